@@ -1,0 +1,49 @@
+"""What is wrong with the program or its input is one of these; what is true of the world is a value.
+
+    ElbowroomError
+    ├── InputError           an argument or a value in a file is not usable
+    │   ├── GridError        an empty grid, a grid larger than memory
+    │   ├── CameraError      intrinsics, pose, an unknown or doubled camera
+    │   ├── FrameError       a depth image that is not what its camera delivers
+    │   ├── MachineError     a URDF, a mesh, a joint that is unknown or out of its limits
+    │   └── SiteError        a site file or a recording's folder
+    └── EvidenceError        evidence that cannot be merged or resolved
+
+`PoseWarning` is a warning, not an error: a pose was a little off a rotation and was brought to the nearest one.
+"""
+
+
+class ElbowroomError(Exception):
+    """Base of every error that elbowroom raises itself."""
+
+
+class InputError(ElbowroomError, ValueError):
+    """An argument or a value in a file is not usable; the message says which, what came, what is allowed."""
+
+
+class GridError(InputError):
+    """A voxel grid that is empty, malformed or too large for this machine's memory."""
+
+
+class CameraError(InputError):
+    """Intrinsics or a pose that no camera can have, an unknown camera, or one named twice."""
+
+
+class FrameError(InputError):
+    """A depth image that its camera cannot have delivered."""
+
+
+class MachineError(InputError):
+    """A URDF, mesh, link or joint that is missing, unknown or out of its limits."""
+
+
+class SiteError(InputError):
+    """A site file or a recording's folder that cannot be used."""
+
+
+class EvidenceError(ElbowroomError):
+    """Evidence of unlike grids, of a camera named twice, or of a kind that the rule cannot be decided from."""
+
+
+class PoseWarning(UserWarning):
+    """A pose was off a rigid transform by less than 1e-3 and was brought to the nearest rotation."""

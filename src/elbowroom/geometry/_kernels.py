@@ -1,0 +1,34 @@
+"""Where a voxel's bit lies: 64 voxels of a 4 x 4 x 4 block share one uint64, 64 such words make a 16-voxel cube."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+
+class Lattice(NamedTuple):
+    """A voxel grid as kernels take it: counts, number of 16-voxel cubes per axis, least corner, edge [m]."""
+
+    nx: int
+    ny: int
+    nz: int
+    cubes_x: int
+    cubes_y: int
+    cubes_z: int
+    x0: float
+    y0: float
+    z0: float
+    edge: float
+
+
+@njit(inline="always")
+def word_of(i, j, k, cubes_y, cubes_z):
+    """Index of the uint64 that holds voxel (i, j, k)."""
+    cube = ((i >> 4) * cubes_y + (j >> 4)) * cubes_z + (k >> 4)
+    return cube * 64 + ((((i >> 2) & 3) * 4 + ((j >> 2) & 3)) * 4 + ((k >> 2) & 3))
+
+
+@njit(inline="always")
+def bit_of(i, j, k):
+    """The bit of voxel (i, j, k) within its word."""
+    return np.uint64(1) << np.uint64(((i & 3) * 4 + (j & 3)) * 4 + (k & 3))

@@ -1,0 +1,100 @@
+"""A fixed depth camera: size of image, intrinsics, pose, kind of depth, noise."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import CameraError
+from elbowroom.geometry.intrinsics import Intrinsics
+from elbowroom.geometry.margin import Margin
+from elbowroom.geometry.noise import NoiseModel
+from elbowroom.geometry.transforms import invert_rigid, nearest_rigid
+
+DepthKind = Literal["planar", "radial"]
+MAX_SIDE_PX = 16384
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DepthCamera:
+    """A depth camera that does not move.
+
+    Args:
+        name: unique among the cameras of a room.
+        width, height: size of the image [px].
+        world_from_camera: pose, shape (4, 4), rigid; OpenCV camera axes (x right, y down, z forward).
+        intrinsics: pinhole and distortion.
+        depth_kind: "planar" (distance along the optical axis) or "radial" (distance from the camera centre).
+        noise: sigma of depth over depth; None: exact.
+        margin: goes before the margin of the call that uses this camera; None: the call's.
+        min_depth_m, max_depth_m: what lies outside is no return [m, in the camera's kind of depth].
+        flying_pixels: whether steps in depth carve only to the nearer side; None: only where there is a noise model.
+
+    Raises:
+        CameraError: a value that no camera can have.
+    """
+
+    name: str
+    width: int
+    height: int
+    world_from_camera: NDArray[np.float64]
+    intrinsics: Intrinsics
+    depth_kind: DepthKind = "planar"
+    noise: NoiseModel | None = None
+    margin: Margin | None = None
+    min_depth_m: float = 0.0
+    max_depth_m: float = float("inf")
+    flying_pixels: bool | None = None
+
+    def __post_init__(self) -> None:
+        if not self.name or "/" in self.name or "\\" in self.name:
+            raise CameraError(f"camera: name is {self.name!r}, must be a non-empty word without slashes")
+        for side in ("width", "height"):
+            value = getattr(self, side)
+            if value != int(value) or not 1 <= value <= MAX_SIDE_PX:
+                raise CameraError(f"camera {self.name}: {side} is {value}, must be 1 to {MAX_SIDE_PX} pixels")
+        if self.depth_kind not in ("planar", "radial"):
+            raise CameraError(f"camera {self.name}: depth_kind is {self.depth_kind!r}, allowed are planar, radial")
+        if not 0 <= self.min_depth_m < self.max_depth_m:
+            raise CameraError(
+                f"camera {self.name}: depth from {self.min_depth_m} to {self.max_depth_m} m is no range; "
+                "min_depth_m must be at least 0 and below max_depth_m"
+            )
+        pose = nearest_rigid(self.world_from_camera, f"camera {self.name}: world_from_camera")
+        pose.setflags(write=False)
+        object.__setattr__(self, "world_from_camera", pose)
+        if self.flying_pixels is None:
+            object.__setattr__(self, "flying_pixels", self.noise is not None)
+
+    @property
+    def camera_from_world(self) -> NDArray[np.float64]:
+        """Inverse pose, shape (4, 4)."""
+        return invert_rigid(self.world_from_camera)
+
+    @property
+    def centre_in_world(self) -> NDArray[np.float64]:
+        """The camera's centre, shape (3,), world frame [m]."""
+        return self.world_from_camera[:3, 3]
+
+    @property
+    def radial_over_planar(self) -> NDArray[np.float64]:
+        """Per pixel: distance from the centre over distance along the axis, shape (height, width), no distortion."""
+        x, y = self.intrinsics.normalised(self.width, self.height)
+        return np.sqrt(1.0 + x[None, :] ** 2 + y[:, None] ** 2)
+
+    def points_in_world(self, depth_m: NDArray[np.floating]) -> NDArray[np.float64]:
+        """The measured points of an undistorted depth image.
+
+        Args:
+            depth_m: shape (height, width) [m, this camera's kind].
+
+        Returns:
+            shape (height, width, 3), world frame [m]; meaningless where there is no return.
+        """
+        x, y = self.intrinsics.normalised(self.width, self.height)
+        z = np.asarray(depth_m, dtype=float)
+        if self.depth_kind == "radial":
+            z = z / self.radial_over_planar
+        in_camera = np.stack([x[None, :] * z, y[:, None] * z, z], axis=-1)
+        return in_camera @ self.world_from_camera[:3, :3].T + self.centre_in_world
