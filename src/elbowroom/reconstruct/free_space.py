@@ -1,0 +1,97 @@
+"""The decision per voxel: free, surface, or unseen. Everything but free is blocked."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.geometry import VoxelGrid, bits
+from elbowroom.geometry.bits import Words
+from elbowroom.machine import Machine, body_words
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FreeSpace:
+    """Which voxels were seen to be free, and why the others were not.
+
+    The planes hold one bit a voxel (`geometry.bits`); bits beyond the grid are zero. `free`, `surface` and `unseen`
+    share the grid out among them. `blind` marks blocked voxels that are disputed for want of valid pixels or frames.
+
+    Args:
+        grid: the watched box.
+        free_words: declared free.
+        surface_words: blocked, and some camera measured a surface there.
+        blind_words: blocked, disputed by a camera that delivered nothing valid there.
+        disputed_words: blocked, and a camera that looks there could not say "through", for whatever reason.
+        body_words: covered by the machine's own grown body when it was taken out.
+    """
+
+    grid: VoxelGrid
+    free_words: Words
+    surface_words: Words
+    blind_words: Words
+    disputed_words: Words
+    body_words: Words = field(default_factory=lambda: np.zeros(0, dtype=np.uint64))
+
+    def __post_init__(self) -> None:
+        for name in ("free_words", "surface_words", "blind_words", "disputed_words", "body_words"):
+            words = getattr(self, name)
+            if words.size == 0:
+                words = bits.empty(self.grid)
+            words = words.view()
+            words.setflags(write=False)
+            object.__setattr__(self, name, words)
+
+    @classmethod
+    def from_occupied(cls, grid: VoxelGrid, occupied: NDArray[np.bool_]) -> "FreeSpace":
+        """A volume that comes from elsewhere, such as ground truth: occupied is surface, all else is free.
+
+        Args:
+            grid: the watched box.
+            occupied: bool, shape of the grid, index order x, y, z.
+
+        Raises:
+            GridError: the array has another shape or is not boolean.
+        """
+        surface = bits.pack(occupied, grid)
+        nothing = bits.empty(grid)
+        return cls(grid, ~surface & bits.inside(grid), surface, nothing, surface)
+
+    def without(self, machine: Machine, joints: Mapping[str, float]) -> "FreeSpace":
+        """The same space with the voxels that the machine's grown body covers made free.
+
+        Args:
+            machine: whose body to take out.
+            joints: its joint positions by name [m or rad].
+        """
+        body = body_words(machine, joints, self.grid)
+        keep = ~body
+        return FreeSpace(
+            self.grid,
+            self.free_words | body,
+            self.surface_words & keep,
+            self.blind_words & keep,
+            self.disputed_words & keep,
+            self.body_words | body,
+        )
+
+    @property
+    def blocked_words(self) -> Words:
+        """Every voxel of the grid that is not free."""
+        return ~self.free_words & bits.inside(self.grid)
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """Declared free, shape of the grid, index order x, y, z."""
+        return bits.unpack(self.free_words, self.grid)
+
+    @property
+    def surface(self) -> NDArray[np.bool_]:
+        """Blocked by something that a camera measured there, shape of the grid."""
+        return bits.unpack(self.surface_words, self.grid)
+
+    @property
+    def unseen(self) -> NDArray[np.bool_]:
+        """Blocked, without a surface: nobody could say that it is free. Shape of the grid."""
+        return bits.unpack(self.blocked_words & ~self.surface_words, self.grid)
