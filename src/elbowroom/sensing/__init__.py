@@ -1,7 +1,9 @@
-"""What cameras deliver: frames, their noise and margins, recordings on disk."""
+"""What cameras deliver: frames, their noise and margins, distorted images made pinhole, joints over time."""
 
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.noise import NOISE_PRESETS, NoiseModel
 from elbowroom.sensing.frame import DepthFrame
+from elbowroom.sensing.joints import JointRecord
+from elbowroom.sensing.rectify import rectified, rectify
 
-__all__ = ["NOISE_PRESETS", "DepthFrame", "Margin", "NoiseModel"]
+__all__ = ["NOISE_PRESETS", "DepthFrame", "JointRecord", "Margin", "NoiseModel", "rectified", "rectify"]

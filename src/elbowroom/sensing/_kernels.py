@@ -1,0 +1,37 @@
+"""Kernels of rectification: arrays and floats only."""
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, nogil=True)
+def bounds_of_contributors(raw, first_u, last_u, first_v, last_v, shallowest, deepest, least, greatest):
+    """Per pinhole pixel the nearest and farthest of the raw pixels first..last; 0 in both unless all are valid.
+
+    Args:
+        raw: shape (h, w), float32 [m].
+        first_u, last_u, first_v, last_v: shape (h, w), int16; first_u below 0 marks a pixel without contributors.
+        shallowest, deepest: range in which a depth is a return [m].
+        least, greatest: shape (h, w), float32 [m]; written.
+    """
+    height, width = raw.shape
+    for v in range(height):
+        for u in range(width):
+            least[v, u] = 0.0
+            greatest[v, u] = 0.0
+            if first_u[v, u] < 0:
+                continue
+            low = np.float32(np.inf)
+            high = np.float32(0.0)
+            valid = True
+            for row in range(first_v[v, u], last_v[v, u] + 1):
+                for column in range(first_u[v, u], last_u[v, u] + 1):
+                    depth = raw[row, column]
+                    # written so that NaN fails it
+                    if not (depth > 0.0 and depth >= shallowest and depth <= deepest and depth < np.inf):
+                        valid = False
+                    low = min(low, depth)
+                    high = max(high, depth)
+            if valid:
+                least[v, u] = low
+                greatest[v, u] = high

@@ -1,0 +1,185 @@
+"""A machine's joint positions over time, to be asked at each frame's time of exposure."""
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import SiteError
+
+END_SLACK_NS = 1_000_000
+"""A record answers up to 1 ms beyond its ends with its first or last row; farther out it knows nothing."""
+MAX_CSV_BYTES = 1_000_000_000
+STAMP_COLUMN = "stamp_ns"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointRecord:
+    """Joint positions at rising times.
+
+    Args:
+        stamps_ns: times [ns, the clock of the frames], shape (n,), whole numbers, strictly increasing, n at least 1.
+        positions: per joint its positions [m or rad], shape (n,).
+        max_gap_ns: rows farther apart than this have nothing known between them; None: any two rows are joined.
+
+    Raises:
+        SiteError: no rows, no joints, lengths that differ, stamps that do not rise, numbers that are not finite.
+    """
+
+    stamps_ns: NDArray[np.int64]
+    positions: Mapping[str, NDArray[np.float64]]
+    max_gap_ns: int | None = None
+
+    def __post_init__(self) -> None:
+        stamps = np.array(self.stamps_ns)
+        if stamps.ndim != 1 or stamps.size == 0 or stamps.dtype.kind not in "iu":
+            raise SiteError(
+                f"joint record: stamps_ns must be whole nanoseconds in one row of at least one, got "
+                f"{stamps.dtype} {stamps.shape}"
+            )
+        stamps = stamps.astype(np.int64)
+        if (np.diff(stamps) <= 0).any():
+            row = int(np.argmax(np.diff(stamps) <= 0)) + 1
+            raise SiteError(
+                f"joint record: stamps_ns[{row}] is {stamps[row]} after {stamps[row - 1]}; stamps must strictly rise"
+            )
+        if not self.positions:
+            raise SiteError("joint record: no joints; at least one is needed")
+        positions = {}
+        for joint, given in self.positions.items():
+            values = np.array(given, dtype=np.float64)
+            if values.shape != stamps.shape:
+                raise SiteError(
+                    f"joint record: {joint} has shape {values.shape}, its stamps have {stamps.shape}"
+                )
+            if not np.isfinite(values).all():
+                row = int(np.argmin(np.isfinite(values)))
+                raise SiteError(f"joint record: {joint}[{row}] is {values[row]}, must be a finite number")
+            values.setflags(write=False)
+            positions[joint] = values
+        stamps.setflags(write=False)
+        object.__setattr__(self, "stamps_ns", stamps)
+        object.__setattr__(self, "positions", positions)
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints, in the order of the record."""
+        return tuple(self.positions)
+
+    def at(self, stamp_ns: int) -> dict[str, float]:
+        """The joint positions at a time, straight between the two rows around it.
+
+        A continuous joint is not unwound: rows on both sides of a full turn are joined through zero.
+
+        Args:
+            stamp_ns: time [ns].
+
+        Returns:
+            Position by joint [m or rad].
+
+        Raises:
+            SiteError: the time lies more than `END_SLACK_NS` outside the record, or in a gap above `max_gap_ns`:
+                where the machine was is not known then, and is not invented.
+        """
+        stamps = self.stamps_ns
+        first, last = int(stamps[0]), int(stamps[-1])
+        if not first - END_SLACK_NS <= stamp_ns <= last + END_SLACK_NS:
+            raise SiteError(
+                f"joints at {stamp_ns} ns: not known, the record spans {first} to {last} ns; "
+                "record the joints for as long as the frames"
+            )
+        clamped = min(max(stamp_ns, first), last)
+        after = int(np.searchsorted(stamps, clamped))
+        if stamps[after] == clamped:
+            return {joint: float(values[after]) for joint, values in self.positions.items()}
+        before = after - 1
+        gap = int(stamps[after]) - int(stamps[before])
+        if self.max_gap_ns is not None and gap > self.max_gap_ns:
+            raise SiteError(
+                f"joints at {stamp_ns} ns: not known, the record has a gap of {gap / 1e6:g} ms there, "
+                f"at most {self.max_gap_ns / 1e6:g} ms are bridged"
+            )
+        # the differences are exact in whole nanoseconds; only their ratio is a float
+        share = (clamped - int(stamps[before])) / gap
+        return {
+            joint: float(values[before] + share * (values[after] - values[before]))
+            for joint, values in self.positions.items()
+        }
+
+    @classmethod
+    def from_csv(cls, path: str | Path, max_gap_ns: int | None = None) -> "JointRecord":
+        """From a file with a header `stamp_ns,<joint>,...` and a row per time.
+
+        Args:
+            path: a CSV file, UTF-8, comma-separated.
+            max_gap_ns: as of the class.
+
+        Raises:
+            SiteError: the file is missing, is no such file, or has a row that is not usable; names file and line.
+        """
+        path = Path(path)
+        if not path.is_file():
+            raise SiteError(
+                f"{path}: no such file; expected joints as CSV with a header {STAMP_COLUMN},<joint>,..."
+            )
+        if path.stat().st_size > MAX_CSV_BYTES:
+            raise SiteError(f"{path}: {path.stat().st_size:,} bytes, at most {MAX_CSV_BYTES:,} are read")
+        try:
+            with path.open(newline="", encoding="utf-8-sig") as file:
+                names, stamps, rows = _read_rows(path, csv.reader(file))
+        except (csv.Error, UnicodeDecodeError) as error:
+            raise SiteError(f"{path}: not a CSV file in UTF-8 ({error})") from None
+        columns = np.array(rows, dtype=np.float64).T
+        return cls(np.array(stamps, dtype=np.int64), dict(zip(names, columns, strict=True)), max_gap_ns)
+
+
+def _read_rows(path: Path, reader: "csv._reader") -> tuple[list[str], list[int], list[list[float]]]:
+    """Names of the joints, stamps, and positions row by row."""
+    header = [name.strip() for name in next(reader, [])]
+    if len(header) < 2 or header[0] != STAMP_COLUMN:
+        raise SiteError(
+            f"{path}: line 1: header is {','.join(header)[:80]!r}, must be {STAMP_COLUMN},<joint>,..."
+        )
+    if len(set(header)) != len(header) or not all(header):
+        raise SiteError(f"{path}: line 1: header has an empty or a doubled name, each column needs its own")
+    stamps: list[int] = []
+    rows: list[list[float]] = []
+    for row in reader:
+        if not row:
+            continue
+        where = f"{path}: line {reader.line_num}"
+        if len(row) != len(header):
+            raise SiteError(f"{where}: {len(row)} values, the header names {len(header)} columns")
+        stamp = _whole(row[0], where)
+        if stamps and stamp <= stamps[-1]:
+            raise SiteError(
+                f"{where}: {STAMP_COLUMN} is {stamp} after {stamps[-1]}; stamps must strictly rise"
+            )
+        stamps.append(stamp)
+        rows.append([_finite(text, where, name) for name, text in zip(header[1:], row[1:], strict=True)])
+    if not rows:
+        raise SiteError(f"{path}: no rows below the header; at least one is needed")
+    return header[1:], stamps, rows
+
+
+def _whole(text: str, where: str) -> int:
+    try:
+        stamp = int(text)
+    except ValueError:
+        raise SiteError(f"{where}: {STAMP_COLUMN} is {text[:40]!r}, must be whole nanoseconds") from None
+    if not -(2**63) <= stamp < 2**63:
+        raise SiteError(f"{where}: {STAMP_COLUMN} is {text[:40]}, must fit 64 bits")
+    return stamp
+
+
+def _finite(text: str, where: str, joint: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not np.isfinite(value):
+        raise SiteError(f"{where}: {joint} is {text[:40]!r}, must be a finite number [m or rad]")
+    return value

@@ -1,0 +1,44 @@
+"""Shared by all tests. With this file here, `tests/` is importable: naive twins are `reference.<name>`."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+PROJECT = Path(__file__).resolve().parents[1]
+EXAMPLES = PROJECT / "examples"
+
+
+@pytest.fixture(scope="session")
+def data_root() -> Path:
+    """The folder of real recordings: ELBOWROOM_DATA, or ../shared/data from the project root; may be absent."""
+    return Path(os.environ.get("ELBOWROOM_DATA", PROJECT.parent / "shared" / "data")).resolve()
+
+
+@pytest.fixture(scope="session")
+def data_folder(data_root: Path) -> Callable[[str], Path]:
+    """data_folder("sevenscenes") is that recording's folder; where it is absent the test is skipped and says so."""
+
+    def folder(name: str) -> Path:
+        path = data_root / name
+        if not path.is_dir():
+            pytest.skip(f"real data absent: no folder {path}; set ELBOWROOM_DATA to where the recordings lie")
+        return path
+
+    return folder
+
+
+@pytest.fixture
+def example_site(data_root: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Path]:
+    """example_site("sevenscenes") is the path of that site file in examples/, skipped where its data is absent."""
+
+    def path(name: str) -> Path:
+        if not (data_root / name).is_dir():
+            pytest.skip(
+                f"real data absent: no folder {data_root / name}; set ELBOWROOM_DATA to where it lies"
+            )
+        monkeypatch.setenv("ELBOWROOM_DATA", str(data_root))
+        return EXAMPLES / f"{name}.yaml"
+
+    return path
