@@ -1,0 +1,21 @@
+"""The machine itself: its links and joints, where they are, which voxels they cover, which pixels they explain."""
+
+from elbowroom.machine.body import body_words, default_growth
+from elbowroom.machine.explain import Explained, explain_frames
+from elbowroom.machine.joint import Joint, Mimic
+from elbowroom.machine.link import Link
+from elbowroom.machine.machine import Machine
+from elbowroom.machine.samples import BodySamples, body_samples
+
+__all__ = [
+    "BodySamples",
+    "Explained",
+    "Joint",
+    "Link",
+    "Machine",
+    "Mimic",
+    "body_samples",
+    "body_words",
+    "default_growth",
+    "explain_frames",
+]
