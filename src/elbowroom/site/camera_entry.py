@@ -1,0 +1,190 @@
+"""Cameras as a site file describes them."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, Field, model_validator
+
+from elbowroom.errors import SiteError
+from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.sensing import NOISE_PRESETS, Margin, NoiseModel
+from elbowroom.site.entry import Count, Entry, Flag, Matrix, NotNegative, Number, Point, Positive, Text
+from elbowroom.site.matrix_file import read_matrix
+from elbowroom.site.paths import expand
+
+PINHOLE = ("fx", "fy", "cx", "cy")
+
+
+class NoiseEntry(Entry):
+    """sigma(z) = constant_m + linear z + quadratic max(z - offset_m, 0)^2 [m]."""
+
+    constant_m: NotNegative = 0.0
+    linear: NotNegative = 0.0
+    quadratic: NotNegative = 0.0
+    offset_m: NotNegative = 0.0
+
+
+def _noise(given: Any) -> Any:
+    """A preset's name as its coefficients; "exact" is a sensor without noise."""
+    if not isinstance(given, str):
+        return given
+    if given == "exact":
+        return None
+    if given not in NOISE_PRESETS:
+        raise ValueError(f"exact, {', '.join(NOISE_PRESETS)}, or coefficients constant_m, linear, quadratic, offset_m")
+    model = NOISE_PRESETS[given]
+    return {name: getattr(model, name) for name in NoiseEntry.model_fields}
+
+
+class MarginEntry(Entry):
+    """What a pixel is not trusted to; what is left out has the defaults of `Margin`."""
+
+    sigmas: NotNegative = Margin.__dataclass_fields__["sigmas"].default
+    bias_m: NotNegative = 0.0
+    lateral_px: NotNegative = Margin.__dataclass_fields__["lateral_px"].default
+    range_linear: NotNegative = 0.0
+    range_quadratic: NotNegative = 0.0
+
+    def build(self) -> Margin:
+        """The margin."""
+        return Margin(**self.model_dump())
+
+
+class CameraSettings(Entry):
+    """What cameras may share; every key may stand in `camera_defaults` or with a camera."""
+
+    width: Count | None = None
+    height: Count | None = None
+    fx: Positive | None = None
+    fy: Positive | None = None
+    cx: Number | None = None
+    cy: Number | None = None
+    intrinsics_file: Text | None = None
+    distortion: tuple[Number, ...] = ()
+    depth_kind: Literal["planar", "radial"] = "planar"
+    depth_scale_m: Positive = 0.001
+    noise: Annotated[NoiseEntry | None, BeforeValidator(_noise)] = None
+    margin: MarginEntry | None = None
+    min_depth_m: NotNegative = 0.0
+    max_depth_m: Positive | None = None
+    flying_pixels: Flag | None = None
+
+    @model_validator(mode="after")
+    def _one_source_of_intrinsics(self) -> "CameraSettings":
+        if self.intrinsics_file and any(getattr(self, key) is not None for key in PINHOLE):
+            raise ValueError("either intrinsics_file or fx, fy, cx, cy, not both")
+        if len(self.distortion) not in (0, 5, 8):
+            raise ValueError("distortion of no coefficient, 5 (k1 k2 p1 p2 k3) or 8 (k1 k2 p1 p2 k3 k4 k5 k6)")
+        return self
+
+    def over(self, defaults: "CameraSettings") -> dict[str, Any]:
+        """What was written here, and where nothing was, what was written in the defaults."""
+        own = {key: getattr(self, key) for key in self.model_fields_set}
+        shared = {key: getattr(defaults, key) for key in defaults.model_fields_set}
+        # a camera's own intrinsics replace the shared ones as a whole, in whatever form they come
+        if "intrinsics_file" in own or any(key in own for key in PINHOLE):
+            shared = {key: value for key, value in shared.items() if key not in ("intrinsics_file", *PINHOLE)}
+        return {**shared, **own}
+
+
+class CameraEntry(CameraSettings):
+    """One camera: its name, its place, and whatever is not shared."""
+
+    name: Annotated[Text, Field(pattern=r"^[^/\\]+$", max_length=100)]
+    world_from_camera: Matrix | None = None
+    pose_file: Text | None = None
+    position_m: Point | None = None
+    look_at_m: Point | None = None
+    up: Point = (0.0, 0.0, 1.0)
+
+    @model_validator(mode="after")
+    def _one_pose(self) -> "CameraEntry":
+        ways = [self.world_from_camera, self.pose_file, self.position_m or self.look_at_m]
+        if sum(way is not None for way in ways) != 1 or (self.position_m is None) != (self.look_at_m is None):
+            raise ValueError("exactly one of world_from_camera, pose_file, or position_m with look_at_m")
+        return self
+
+    def pose(self, beside: Path) -> NDArray[np.float64]:
+        """world_from_camera as it was given, shape (4, 4); not yet checked to be rigid.
+
+        Raises:
+            SiteError: a pose file that is not usable, or a direction of view that is none.
+        """
+        if self.world_from_camera is not None:
+            return np.array(self.world_from_camera)
+        if self.pose_file is not None:
+            return read_matrix(expand(self.pose_file, beside), (4, 4), "pose, camera to world")
+        return looking_at(self.position_m, self.look_at_m, self.up)
+
+
+def looking_at(position_m: Any, look_at_m: Any, up: Any = (0.0, 0.0, 1.0)) -> NDArray[np.float64]:
+    """Pose of a camera that looks at a point and whose image stands upright.
+
+    Args:
+        position_m, look_at_m: where it is and what lies in the middle of its image, world frame [m].
+        up: direction that is up in the image, world frame; straight up or down, the image's up is +y.
+
+    Returns:
+        world_from_camera, shape (4, 4).
+
+    Raises:
+        SiteError: both points are the same, or `up` is no direction.
+    """
+    forward = np.asarray(look_at_m, dtype=float) - np.asarray(position_m, dtype=float)
+    if np.linalg.norm(forward) < 1e-9 or np.linalg.norm(up) < 1e-9:
+        raise SiteError(f"position_m {position_m} and look_at_m {look_at_m} give no direction; they must differ")
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, up)
+    if np.linalg.norm(right) < 1e-6 * np.linalg.norm(up):
+        right = np.cross(forward, (0.0, 1.0, 0.0) if abs(forward[1]) < 0.9 else (1.0, 0.0, 0.0))
+    right /= np.linalg.norm(right)
+    world_from_camera = np.eye(4)
+    world_from_camera[:3, :3] = np.stack([right, np.cross(forward, right), forward], axis=1)
+    world_from_camera[:3, 3] = position_m
+    return world_from_camera
+
+
+def build_camera(
+    name: str, settings: Mapping[str, Any], world_from_camera: NDArray[np.float64], beside: Path
+) -> DepthCamera:
+    """The camera of these settings.
+
+    Args:
+        name: its name.
+        settings: keys and values of `CameraSettings`, those that were written.
+        world_from_camera: shape (4, 4).
+        beside: the site file's folder.
+
+    Raises:
+        SiteError: size or intrinsics are missing, or the intrinsics file is not usable.
+        CameraError: a value that no camera can have.
+    """
+    missing = [key for key in ("width", "height") if settings.get(key) is None]
+    if settings.get("intrinsics_file") is None:
+        missing += [key for key in PINHOLE if settings.get(key) is None]
+    if missing:
+        raise SiteError(f"{', '.join(missing)} not given; needed here or in camera_defaults")
+    distortion = settings.get("distortion", ())
+    if settings.get("intrinsics_file") is not None:
+        path = expand(settings["intrinsics_file"], beside)
+        intrinsics = Intrinsics.from_matrix(read_matrix(path, (3, 3), "camera matrix"), distortion)
+    else:
+        intrinsics = Intrinsics(*(settings[key] for key in PINHOLE), distortion=distortion)
+    noise, margin = settings.get("noise"), settings.get("margin")
+    deepest = settings.get("max_depth_m")
+    return DepthCamera(
+        name=name,
+        width=settings["width"],
+        height=settings["height"],
+        world_from_camera=world_from_camera,
+        intrinsics=intrinsics,
+        depth_kind=settings.get("depth_kind", "planar"),
+        noise=None if noise is None else NoiseModel(**noise.model_dump()),
+        margin=None if margin is None else margin.build(),
+        min_depth_m=settings.get("min_depth_m", 0.0),
+        max_depth_m=float("inf") if deepest is None else deepest,
+        flying_pixels=settings.get("flying_pixels"),
+    )

@@ -1,0 +1,72 @@
+"""Depth images on disk: 16-bit grey PNG, checked before anything is decoded."""
+
+import struct
+import warnings
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from elbowroom.errors import FrameError
+
+SIGNATURE = b"\x89PNG\r\n\x1a\n"
+MAX_FILE_BYTES_PER_PIXEL = 4
+"""A PNG of 16 bits is not larger than its pixels, give or take; text chunks beyond this are not read."""
+COLOURS = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
+
+
+def check_depth_png(path: Path, width: int, height: int) -> None:
+    """Looks at a file's header, decodes nothing.
+
+    Args:
+        path: the file.
+        width, height: size that its camera delivers [px].
+
+    Raises:
+        FrameError: missing, no PNG, another size, not 16 bits of grey, or a file far too large for its image.
+    """
+    if not path.is_file():
+        raise FrameError(f"{path}: no such file; expected a 16-bit PNG of {width} x {height}")
+    with path.open("rb") as file:
+        header = file.read(26)
+    if len(header) < 26 or header[:8] != SIGNATURE or header[12:16] != b"IHDR":
+        raise FrameError(f"{path}: not a PNG file, or cut off in its first bytes; expected a 16-bit PNG")
+    found_width, found_height, depth, colour = struct.unpack(">IIBB", header[16:26])
+    if (found_width, found_height) != (width, height):
+        raise FrameError(f"{path}: {found_width} x {found_height} pixels, its camera has {width} x {height}")
+    if (depth, colour) != (16, 0):
+        raise FrameError(f"{path}: {depth} bits of {COLOURS.get(colour, 'unknown')}, must be 16 bits of grey")
+    allowed = MAX_FILE_BYTES_PER_PIXEL * width * height + 1_000_000
+    if path.stat().st_size > allowed:
+        raise FrameError(f"{path}: {path.stat().st_size:,} bytes, at most {allowed:,} for {width} x {height}")
+
+
+def read_depth_png(path: Path, width: int, height: int) -> NDArray[np.uint16]:
+    """The sensor's whole numbers.
+
+    Args:
+        path: the file.
+        width, height: size that its camera delivers [px].
+
+    Returns:
+        shape (height, width), uint16.
+
+    Raises:
+        FrameError: as `check_depth_png`, or the file is truncated or damaged.
+    """
+    check_depth_png(path, width, height)
+    try:
+        with warnings.catch_warnings():
+            # a size that a camera has was checked above and is no decompression bomb
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with Image.open(path, formats=("PNG",)) as image:
+                # checks every chunk's sum, which decoding alone does not
+                image.verify()
+            with Image.open(path, formats=("PNG",)) as image:
+                pixels = np.asarray(image)
+    except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError) as error:
+        raise FrameError(f"{path}: truncated or damaged PNG ({error}); record or copy it again") from None
+    if pixels.shape != (height, width) or pixels.dtype.kind not in "iu":
+        raise FrameError(f"{path}: decoded to {pixels.dtype} {pixels.shape}, must be 16 bits of grey")
+    return pixels.astype(np.uint16)

@@ -1,0 +1,82 @@
+"""What is wrong with a site file, in one line: the file, the key, what was found, what is allowed."""
+
+import difflib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from elbowroom.errors import SiteError
+
+LONGEST_VALUE = 60
+
+
+def one_line(path: Path, model: type[BaseModel], error: ValidationError) -> SiteError:
+    """The first thing that is wrong, and how many more there are."""
+    details = error.errors(include_url=False)
+    first = details[0]
+    more = f" ({len(details) - 1} more)" if len(details) > 1 else ""
+    location = list(first["loc"])
+    if location[0:1] == ["recording"] and location[1:2] and location[1] in LAYOUTS:
+        del location[1]  # the tag that pydantic puts there is no key of the file
+    where = key_path(location)
+    return SiteError(f"{path}: {f'{where}: ' if where else ''}{_said(first, model, location)}{more}")
+
+
+LAYOUTS = ("folder", "stampless", "seven_scenes")
+"""Kinds of recording."""
+
+
+def key_path(location: Sequence[Any]) -> str:
+    """Keys as people write them: `cameras[1].fx`."""
+    text = ""
+    for part in location:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else str(part)
+    return text
+
+
+def _said(first: ErrorDetails, model: type[BaseModel], location: Sequence[Any]) -> str:
+    found = _short(first["input"])
+    context = first.get("ctx", {})
+    if first["type"] == "missing":
+        return "missing; it must be given"
+    if first["type"] == "extra_forbidden":
+        allowed = keys_at(model, location[:-1])
+        near = difflib.get_close_matches(str(location[-1]), allowed, n=1)
+        meant = f" (did you mean {near[0]}?)" if near else ""
+        return f"unknown key{meant}, allowed: {', '.join(allowed)}"
+    if first["type"] == "value_error":
+        return f"found {found}, allowed: {context['error']}"
+    if first["type"] in ("union_tag_invalid", "union_tag_not_found"):
+        return f"found {found}, allowed: a key layout with {', '.join(LAYOUTS)}"
+    if "expected" in context:
+        return f"found {found}, allowed: {context['expected']}"
+    allowed = first["msg"].removeprefix("Input should be ")
+    return f"found {found}, allowed: {allowed[0].lower()}{allowed[1:]}"
+
+
+def _short(value: Any) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= LONGEST_VALUE else f"{text[: LONGEST_VALUE - 3]}..."
+
+
+def keys_at(model: type[BaseModel], location: Sequence[Any]) -> list[str]:
+    """Names of the keys that a mapping of the file may have, at a place in it."""
+    candidates: list[Any] = [model]
+    for part in location:
+        if isinstance(part, str):
+            candidates = [
+                inner
+                for candidate in candidates
+                for field in [candidate.model_fields.get(part)]
+                for inner in _models(field.annotation if field else candidate)
+            ]
+    return list(dict.fromkeys(key for candidate in candidates for key in candidate.model_fields))
+
+
+def _models(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for inner in get_args(annotation) for model in _models(inner)]

@@ -1,0 +1,44 @@
+"""What a user should know of a site that is valid."""
+
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from elbowroom.site.recording_entry import SevenScenes
+
+if TYPE_CHECKING:
+    from elbowroom.site.site import Site
+
+
+def notes_of(site: "Site") -> tuple[str, ...]:
+    """Notes that follow from the file alone."""
+    entry, notes = site.entry, []
+    if entry.recording is not None and not site.has_stamps:
+        notes.append("frames have no times: no limit on their age")
+        if entry.max_frame_age_ms is not None:
+            notes.append("max_frame_age_ms has no effect on frames without times")
+    elif entry.max_frame_age_ms is None and site.has_stamps:
+        notes.append("max_frame_age_ms is not given: frames of any age count")
+    if entry.rule in ("veto", "any"):
+        notes.append(f"rule {entry.rule}: less evidence may add free space; three and majority never do that")
+    if entry.detail == "point":
+        notes.append("detail point, the thesis' test of voxel centres, is for comparison: it frees occupied voxels")
+    if entry.machine is not None and entry.machine.unchecked_links:
+        notes.append(f"links that are not checked: {', '.join(entry.machine.unchecked_links)}")
+    if entry.machine is not None and not entry.joints:
+        notes.append("no joints with speeds: no motion can be checked")
+    if isinstance(entry.recording, SevenScenes):
+        notes.append("each frame is a camera of its own, all at one moment: the room must not have changed")
+        if entry.recording.exclude:
+            notes.append(f"frames left out: {', '.join(map(str, sorted(entry.recording.exclude)))}")
+    return tuple(notes)
+
+
+def mended_poses(warnings: Sequence[str]) -> tuple[str, ...]:
+    """Many warnings of poses that were a little off as one note, few as they are."""
+    if len(warnings) <= 2:
+        return tuple(warnings)
+    deviations = [float(found[1]) for text in warnings if (found := re.search(r"by ([0-9.e+-]+),", text))]
+    return (
+        f"{len(warnings)} poses were off a rotation by up to {max(deviations):.1e} and were brought to the nearest one",
+    )

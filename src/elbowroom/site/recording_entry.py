@@ -1,0 +1,58 @@
+"""Recordings as a site file describes them: three ways in which people lay out depth images."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from elbowroom.site.entry import Entry, NotNegative, Positive, Text, Whole
+
+
+class StampedFolder(Entry):
+    """`<folder>/<camera>/<stamp_ns>.png` and, for a machine, a CSV of joints.
+
+    Frames of different cameras make one moment if they lie within `max_skew_ms` of each other. Rows of joints
+    farther apart than `max_joint_gap_ms` have nothing known between them. `ignore` names sub-folders of images that
+    belong to no camera.
+    """
+
+    layout: Literal["folder"]
+    folder: Text
+    joints_file: Text = "joints.csv"
+    max_skew_ms: NotNegative = 50.0
+    max_joint_gap_ms: Positive = 500.0
+    ignore: tuple[Text, ...] = ()
+
+
+class StamplessFolder(Entry):
+    """Images without times: the n-th of each camera, in order of names, make the n-th moment.
+
+    `files` gives per camera a pattern or a list of paths below the folder; what it leaves out is `<camera>/*.png`.
+    """
+
+    layout: Literal["stampless"]
+    folder: Text
+    files: dict[Text, Text | tuple[Text, ...]] = Field(default_factory=dict)
+
+
+class SevenScenes(Entry):
+    """The layout of 7-Scenes and TSDF-fusion: `frame-NNNNNN.depth.png` and `.pose.txt`, one static room.
+
+    Each frame is a camera of its own; all of them together are one moment. The camera matrix is
+    `camera-intrinsics.txt` unless `camera_defaults` says otherwise. `include` (all, if left out) and `exclude` name
+    frames by number.
+    """
+
+    layout: Literal["seven_scenes"]
+    folder: Text
+    include: tuple[Whole, ...] | None = None
+    exclude: tuple[Whole, ...] = ()
+
+    @model_validator(mode="after")
+    def _nothing_in_both(self) -> "SevenScenes":
+        both = sorted(set(self.include or ()) & set(self.exclude))
+        if both:
+            raise ValueError(f"each frame in include or in exclude; {both} in both")
+        return self
+
+
+RecordingEntry = Annotated[StampedFolder | StamplessFolder | SevenScenes, Field(discriminator="layout")]

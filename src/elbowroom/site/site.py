@@ -1,0 +1,314 @@
+"""One file that says all of a room: grid, cameras, machine, speeds, rule, recording."""
+
+import math
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from pydantic import ValidationError
+
+from elbowroom.errors import CameraError, GridError, InputError, PoseWarning, SiteError
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.machine import Machine
+from elbowroom.motion import Motion, braking_distance
+from elbowroom.sensing import Margin, NoiseModel
+from elbowroom.site import seven_scenes
+from elbowroom.site.camera_entry import CameraSettings, build_camera
+from elbowroom.site.memory import physical_memory_bytes, require_memory
+from elbowroom.site.messages import one_line
+from elbowroom.site.notes import mended_poses, notes_of
+from elbowroom.site.paths import existing_folder, expand
+from elbowroom.site.recording_entry import SevenScenes, StampedFolder
+from elbowroom.site.schema import SimulatedEntry, SiteEntry
+from elbowroom.site.yaml_file import read_yaml
+
+SIMULATED_ROOM = Path(__file__).with_name("simulated_room.yaml")
+"""The site file of the simulated intervention room, shipped with the package."""
+DEFAULT_EXPLAIN_TOLERANCE_M = 0.01
+
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True, eq=False)
+class Site:
+    """All of a room, as a site file says it. Made by `Site.load`.
+
+    What the file names (poses, a machine, images) is read when it is asked for, and then kept.
+
+    Args:
+        path: the site file; what it names lies relative to its folder.
+        entry: its content, validated.
+    """
+
+    path: Path
+    entry: SiteEntry
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Site":
+        """Reads and validates a site file.
+
+        Raises:
+            SiteError: missing, no YAML, an unknown key, a value that is not allowed; one line that names file, key,
+                what was found and what is allowed.
+        """
+        path = Path(path)
+        try:
+            entry = SiteEntry.model_validate(read_yaml(path))
+        except ValidationError as error:
+            raise one_line(path, SiteEntry, error) from None
+        site = cls(path, entry)
+        site.grid()
+        site.margin()
+        return site
+
+    @classmethod
+    def simulated_room(cls) -> "Site":
+        """The simulated intervention room that ships with the package."""
+        return cls.load(SIMULATED_ROOM)
+
+    @property
+    def name(self) -> str:
+        """Name of the room."""
+        return self.entry.name
+
+    @property
+    def rule(self) -> str:
+        """By which rule voxels are declared free."""
+        return self.entry.rule
+
+    @property
+    def detail(self) -> str:
+        """How closely voxels are tested."""
+        return self.entry.detail
+
+    @property
+    def simulated(self) -> SimulatedEntry | None:
+        """Settings of the simulated room; None: the cameras are real."""
+        return self.entry.simulated
+
+    @property
+    def has_stamps(self) -> bool:
+        """Whether its frames have times: simulated ones and those of layout `folder` do."""
+        return self.simulated is not None or isinstance(self.entry.recording, StampedFolder)
+
+    @property
+    def max_age_ns(self) -> int | None:
+        """Age from which a frame counts no more [ns]; None: no limit, or frames without times."""
+        limit = self.entry.max_frame_age_ms
+        return round(limit * 1e6) if limit is not None and self.has_stamps else None
+
+    @property
+    def explain_tolerance_m(self) -> float:
+        """How far from the machine's model a measured point may lie and still be the machine [m]."""
+        machine = self.entry.machine
+        given = machine.explain_tolerance_m if machine else None
+        return DEFAULT_EXPLAIN_TOLERANCE_M if given is None else given
+
+    def margin(self) -> Margin:
+        """The margin of all cameras that have none of their own."""
+        return self.entry.margin.build()
+
+    def grid(self, voxel_size_m: float | None = None) -> VoxelGrid:
+        """The watched box.
+
+        Args:
+            voxel_size_m: another edge of a voxel for the same box [m]; None: the file's.
+
+        Raises:
+            SiteError: empty, or more voxels than this computer's memory holds.
+        """
+        given = self.entry.grid
+        try:
+            if given.shape is not None:
+                grid = VoxelGrid(given.origin_m, given.shape, given.voxel_size_m)
+            else:
+                grid = VoxelGrid.covering(given.origin_m, given.upper_m or (), given.voxel_size_m)
+            if voxel_size_m is not None:
+                grid = VoxelGrid.covering(grid.lower_m, given.upper_m or grid.upper_m, voxel_size_m)
+            require_memory(grid, physical_memory_bytes())
+            return grid
+        except GridError as error:
+            raise SiteError(f"{self.path}: {error}") from None
+
+    def cameras(self) -> tuple[DepthCamera, ...]:
+        """All cameras, in the order of the file; for layout `seven_scenes` one per frame that is not excluded.
+
+        Raises:
+            SiteError: a camera that none can be, or a file of it that is not usable; or the room is simulated, whose
+                cameras the simulator makes (`simulated_cameras`).
+        """
+        return self._cameras_and_notes[0]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a user should know of this site: poses that were mended, frames without times, links not checked."""
+        return (*notes_of(self), *(self._cameras_and_notes[1] if self.simulated is None else ()))
+
+    @cached_property
+    def _cameras_and_notes(self) -> tuple[tuple[DepthCamera, ...], tuple[str, ...]]:
+        if self.simulated is not None:
+            raise SiteError(f"{self.path}: a simulated room, its cameras are made by the simulator")
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("ignore")
+            warnings.simplefilter("always", PoseWarning)
+            if isinstance(self.entry.recording, SevenScenes):
+                cameras = self._seven_scenes_cameras(seven_scenes.chosen(self.recording_folder(), self.entry.recording))
+            else:
+                cameras = tuple(self._listed_camera(index) for index in range(len(self.entry.cameras)))
+        return cameras, mended_poses([str(warning.message) for warning in caught])
+
+    def _listed_camera(self, index: int) -> DepthCamera:
+        given, folder = self.entry.cameras[index], self.path.parent
+        settings = given.over(self.entry.camera_defaults)
+        return self._blame(
+            f"cameras[{index}] ({given.name})",
+            lambda: build_camera(given.name, settings, given.pose(folder), folder),
+        )
+
+    def _seven_scenes_cameras(self, numbers: tuple[int, ...]) -> tuple[DepthCamera, ...]:
+        folder = self.recording_folder()
+        defaults = self.entry.camera_defaults
+        settings = CameraSettings().over(defaults)
+        if defaults.intrinsics_file is None and defaults.fx is None:
+            settings["intrinsics_file"] = str((folder / seven_scenes.INTRINSICS_FILE).absolute())
+        return tuple(
+            self._blame(
+                f"frame {number}",
+                lambda number=number: build_camera(  # type: ignore[misc]
+                    seven_scenes.name_of(number), settings, seven_scenes.pose(folder, number), self.path.parent
+                ),
+            )
+            for number in numbers
+        )
+
+    def excluded_cameras(self) -> tuple[DepthCamera, ...]:
+        """For layout `seven_scenes`, a camera for each excluded frame: views to check with. Otherwise none."""
+        recording = self.entry.recording
+        if not isinstance(recording, SevenScenes):
+            return ()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", PoseWarning)
+            return self._seven_scenes_cameras(tuple(sorted(recording.exclude)))
+
+    def settings_of(self, camera: str) -> Mapping[str, Any]:
+        """What the file says of a camera, with the shared defaults: keys of `CameraSettings`.
+
+        Raises:
+            SiteError: there is no camera of this name.
+        """
+        if self.simulated is not None or isinstance(self.entry.recording, SevenScenes):
+            return CameraSettings().over(self.entry.camera_defaults)
+        for entry in self.entry.cameras:
+            if entry.name == camera:
+                return entry.over(self.entry.camera_defaults)
+        known = ", ".join(entry.name for entry in self.entry.cameras)
+        raise SiteError(f"{self.path}: unknown camera {camera!r}; cameras are {known}")
+
+    def depth_scale_m(self, camera: str) -> float:
+        """Metres per unit of a camera's 16-bit images."""
+        return float(self.settings_of(camera).get("depth_scale_m", CameraSettings().depth_scale_m))
+
+    def simulated_cameras(self) -> dict[str, Any]:
+        """Arguments for the simulator's `wall_cameras` that make this room's cameras.
+
+        Raises:
+            SiteError: the room is not simulated.
+        """
+        if self.simulated is None:
+            raise SiteError(f"{self.path}: not a simulated room; it has no key simulated")
+        settings = CameraSettings().over(self.entry.camera_defaults)
+        noise, deepest = settings.get("noise"), settings.get("max_depth_m")
+        width, height = self.simulated.size_px
+        return {
+            "count": self.simulated.cameras,
+            "height_m": self.simulated.camera_height_m,
+            "width": width,
+            "height": height,
+            "hfov_deg": self.simulated.field_of_view_deg,
+            "depth_kind": settings.get("depth_kind", "planar"),
+            "noise": None if noise is None else NoiseModel(**noise.model_dump()),
+            "min_depth_m": settings.get("min_depth_m", 0.0),
+            "max_depth_m": math.inf if deepest is None else deepest,
+        }
+
+    def machine(self) -> Machine | None:
+        """The machine at its place; None if the file names none.
+
+        Raises:
+            SiteError, MachineError: a URDF, a link or a pose that is not usable.
+        """
+        return self._machine
+
+    @cached_property
+    def _machine(self) -> Machine | None:
+        given = self.entry.machine
+        if given is None:
+            return None
+        base = None if given.world_from_base is None else np.array(given.world_from_base)
+        if given.builtin is not None:
+            from elbowroom.machine import ceiling_c_arm
+
+            return self._blame(
+                "machine",
+                lambda: ceiling_c_arm(
+                    **({} if base is None else {"world_from_base": base}),
+                    **({"unchecked_links": given.unchecked_links} if given.unchecked_links else {}),
+                ),
+            )
+        urdf = expand(str(given.urdf), self.path.parent)
+        return self._blame(
+            "machine",
+            lambda: Machine.from_urdf(urdf, world_from_base=base, unchecked_links=given.unchecked_links),
+        )
+
+    def motions(self, machine: Machine) -> tuple[Motion, ...]:
+        """Each joint that has a speed in the file, in both directions, with its braking distance at full speed.
+
+        Args:
+            machine: the machine of this site.
+
+        Raises:
+            SiteError: a joint that the machine does not have, or a speed in the unit of another kind of joint.
+        """
+        for name, given in self.entry.joints.items():
+            if name not in machine.joint_names:
+                known = ", ".join(machine.joint_names) or "none"
+                raise SiteError(f"{self.path}: joints.{name}: unknown joint; joints of {machine.name} are {known}")
+            slides = machine.joint(name).unit == "m"
+            if slides != (given.max_speed_m_s is not None):
+                kind, key = ("slides", "max_speed_m_s") if slides else ("turns", "max_speed_deg_s")
+                raise SiteError(f"{self.path}: joints.{name}: {name} {kind}, its speed is written {key}")
+        motions = []
+        for name in machine.joint_names:
+            given = self.entry.joints.get(name)
+            if given is None:
+                continue
+            speed = given.max_speed_m_s or math.radians(given.max_speed_deg_s or 0.0)
+            distance = braking_distance(speed, given.braking_time_s)
+            motions += [Motion(name, direction, distance) for direction in (+1, -1)]
+        return tuple(motions)
+
+    def recording_folder(self) -> Path:
+        """The folder of the recording.
+
+        Raises:
+            SiteError: the site names none, or it is absent.
+        """
+        if self.entry.recording is None:
+            raise SiteError(f"{self.path}: recording: missing; this command reads one")
+        return self._blame(
+            "recording.folder", lambda: existing_folder(self.entry.recording.folder, self.path.parent)
+        )
+
+    def _blame(self, key: str, make: Callable[[], Value]) -> Value:
+        """What `make` returns; its errors name the file and the key."""
+        try:
+            return make()
+        except (SiteError, CameraError) as error:
+            raise SiteError(f"{self.path}: {key}: {error}") from None
+        except InputError as error:
+            raise type(error)(f"{self.path}: {key}: {error}") from None

@@ -1,0 +1,72 @@
+"""YAML from outside, read with care: bounded in size, no aliases, no key twice."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from elbowroom.errors import SiteError
+
+MAX_YAML_BYTES = 1_000_000
+
+
+class _Loader(yaml.SafeLoader):
+    """SafeLoader that refuses aliases and doubled keys, and reads 1e-3 as a number as YAML 1.2 does."""
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        if self.check_event(yaml.AliasEvent):
+            event = self.peek_event()
+            raise yaml.constructor.ConstructorError(
+                None, None, f"alias *{event.anchor}; write the value out, or use camera_defaults", event.start_mark
+            )
+        return super().compose_node(parent, index)
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        seen = set()
+        for key_node, _ in node.value:
+            key = self.construct_object(key_node, deep=True)
+            if not isinstance(key, str | int | float | bool) or key in seen:
+                problem = "is there twice" if isinstance(key, str | int | float | bool) else "is not a word"
+                raise yaml.constructor.ConstructorError(None, None, f"key {key!r} {problem}", key_node.start_mark)
+            seen.add(key)
+        return super().construct_mapping(node, deep)
+
+
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float",
+    re.compile(r"^[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)[eE][-+]?[0-9]+$"),
+    list("-+.0123456789"),
+)
+
+
+def read_yaml(path: Path) -> dict[str, Any]:
+    """The mapping that a YAML file holds.
+
+    Args:
+        path: the file, UTF-8, at most `MAX_YAML_BYTES` long.
+
+    Raises:
+        SiteError: missing, too long, no YAML, an alias, a key that is there twice, or no mapping; one line.
+    """
+    if not path.is_file():
+        raise SiteError(f"{path}: no such file; `elbowroom site new {path.name}` writes one to start from")
+    size = path.stat().st_size
+    if size > MAX_YAML_BYTES:
+        raise SiteError(f"{path}: {size:,} bytes, at most {MAX_YAML_BYTES:,} are read; is this a site file?")
+    try:
+        content = yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)  # noqa: S506, a SafeLoader
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        where = f"line {mark.line + 1}: " if mark else ""
+        raise SiteError(f"{path}: {where}{error.problem}; expected plain YAML") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise SiteError(f"{path}: not YAML in UTF-8 ({' '.join(str(error).split())})") from None
+    except RecursionError:
+        raise SiteError(f"{path}: nested too deeply for a site file") from None
+    except ValueError as error:
+        # dates and whole numbers that Python's own constructors refuse
+        raise SiteError(f"{path}: a value cannot be read ({error})") from None
+    if not isinstance(content, dict):
+        raise SiteError(f"{path}: holds {type(content).__name__}, expected keys such as grid and cameras")
+    return content
