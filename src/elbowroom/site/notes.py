@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def notes_of(site: "Site") -> tuple[str, ...]:
-    """Notes that follow from the file alone."""
+    """Notes that follow from the file and its machine."""
     entry, notes = site.entry, []
     if entry.recording is not None and not site.has_stamps:
         notes.append("frames have no times: no limit on their age")
@@ -23,10 +23,13 @@ def notes_of(site: "Site") -> tuple[str, ...]:
         notes.append(f"rule {entry.rule}: less evidence may add free space; three and majority never do that")
     if entry.detail == "point":
         notes.append("detail point, the thesis' test of voxel centres, is for comparison: it frees occupied voxels")
-    if entry.machine is not None and entry.machine.unchecked_links:
-        notes.append(f"links that are not checked: {', '.join(entry.machine.unchecked_links)}")
-    if entry.machine is not None and not entry.joints:
-        notes.append("no joints with speeds: no motion can be checked")
+    machine = site.machine()
+    if machine is not None:
+        if machine.unchecked_links:
+            notes.append(f"links that are not checked: {', '.join(machine.unchecked_links)}")
+        without = [joint for joint in machine.joint_names if joint not in entry.joints]
+        if without:
+            notes.append(f"joints without a speed, whose motions are not checked: {', '.join(without)}")
     if isinstance(entry.recording, SevenScenes):
         notes.append("each frame is a camera of its own, all at one moment: the room must not have changed")
         if entry.recording.exclude:

@@ -3,7 +3,7 @@
 import math
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from elbowroom.errors import CameraError, GridError, InputError, PoseWarning, SiteError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
+from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.motion import Motion, braking_distance
 from elbowroom.sensing import Margin, NoiseModel
 from elbowroom.site import seven_scenes
@@ -250,15 +251,7 @@ class Site:
             return None
         base = None if given.world_from_base is None else np.array(given.world_from_base)
         if given.builtin is not None:
-            from elbowroom.machine import ceiling_c_arm
-
-            return self._blame(
-                "machine",
-                lambda: ceiling_c_arm(
-                    **({} if base is None else {"world_from_base": base}),
-                    **({"unchecked_links": given.unchecked_links} if given.unchecked_links else {}),
-                ),
-            )
+            return self._blame("machine", lambda: _with_unchecked(ceiling_c_arm(base), given.unchecked_links))
         urdf = expand(str(given.urdf), self.path.parent)
         return self._blame(
             "machine",
@@ -312,3 +305,8 @@ class Site:
             raise SiteError(f"{self.path}: {key}: {error}") from None
         except InputError as error:
             raise type(error)(f"{self.path}: {key}: {error}") from None
+
+
+def _with_unchecked(machine: Machine, links: tuple[str, ...]) -> Machine:
+    """The same machine with more links that are not checked."""
+    return replace(machine, unchecked_links=tuple(dict.fromkeys((*machine.unchecked_links, *links))))
