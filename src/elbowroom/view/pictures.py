@@ -195,4 +195,9 @@ def _cut_lines(triangles: NDArray[np.float64], normal: int, at_m: float) -> NDAr
 
 def _triangles(machine: Machine, joints: Mapping[str, float]) -> NDArray[np.float64]:
     """All triangles of the machine, shape (n, 3, 3), world frame [m]."""
-    return machine.triangles_in_world(joints)
+    world_from_links = machine.world_from_links(joints)
+    placed = [np.zeros((0, 3, 3))]
+    for link in machine.links:
+        world_from_link = world_from_links[link.name]
+        placed.append(link.triangles @ world_from_link[:3, :3].T + world_from_link[:3, 3])
+    return np.concatenate(placed)

@@ -1,0 +1,121 @@
+"""One pass: newest frames in, a verdict for each motion out. Whatever goes wrong on the way is a stop."""
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from elbowroom.errors import InputError
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry.margin import Margin
+from elbowroom.machine import Machine
+from elbowroom.monitor.result import CycleResult
+from elbowroom.motion import Cause, Level, Motion, Verdict, check_motions
+from elbowroom.reconstruct import reconstruct
+from elbowroom.sensing import DepthFrame
+
+
+@dataclass(slots=True, eq=False)
+class Cycle:
+    """The pass and all that stays the same from one to the next. It remembers nothing but its own number.
+
+    Args:
+        grid: the watched box.
+        cameras: all cameras of the room, also those that may deliver nothing.
+        machine: what moves.
+        motions: what is asked in each pass; at least one.
+        rule, detail, margin: as of `reconstruct`.
+        max_age_ns: frames older than this are not used [ns]; None: no limit.
+
+    Raises:
+        InputError: no motions, since then nothing would ever say stop.
+    """
+
+    grid: VoxelGrid
+    cameras: Sequence[DepthCamera]
+    machine: Machine
+    motions: Sequence[Motion]
+    rule: str = "three"
+    detail: str = "pixel"
+    margin: Margin = field(default_factory=Margin)
+    max_age_ns: int | None = None
+    sequence: int = field(default=0, init=False)
+
+    def __post_init__(self) -> None:
+        self.motions = tuple(self.motions)
+        if not self.motions:
+            raise InputError("cycle: no motions to check, at least one is needed")
+
+    def run(self, frames: Sequence[DepthFrame], joints: Mapping[str, float], now_ns: int) -> CycleResult:
+        """Judges all motions by the newest frames.
+
+        It does not raise: a fault of any kind is a stop for every motion, with the reason beside it.
+
+        Args:
+            frames: the newest frame of each camera that has one.
+            joints: the machine's joint positions now [m or rad], or a record to ask at each frame's time.
+            now_ns: the time now [ns, the clock of the frames].
+        """
+        sequence, self.sequence = self.sequence, self.sequence + 1
+        stage_ms: dict[str, float] = {}
+        given: dict[Motion, Verdict] = {}
+        space, oldest, fault = None, None, None
+        try:
+            oldest = _oldest_age_ms(frames, now_ns)
+            with _timed("reconstruct", stage_ms):
+                space = reconstruct(
+                    self.grid,
+                    self.cameras,
+                    frames,
+                    machine=self.machine,
+                    joints=joints,
+                    rule=self.rule,
+                    detail=self.detail,
+                    margin=self.margin,
+                    now_ns=now_ns,
+                    max_age_ns=self.max_age_ns,
+                )
+            with _timed("motion", stage_ms):
+                given = _usable(check_motions(space, self.machine, joints, self.motions))
+        except Exception as error:  # at this border a fault becomes a decision: stop
+            space, given = None, {}
+            fault = f"{type(error).__name__}: {error}"
+        missing = [motion.name for motion in self.motions if motion not in given]
+        if missing and fault is None:
+            fault = f"no usable verdict for {', '.join(missing)}"
+        verdicts = tuple(given.get(motion) or self._stop(motion) for motion in self.motions)
+        return CycleResult(sequence, now_ns, space, verdicts, stage_ms, oldest, fault)
+
+    def _stop(self, motion: Motion) -> Verdict:
+        units = {joint.name: joint.unit for joint in self.machine.joints}
+        return Verdict(motion, Level.STOP, 0.0, units.get(motion.joint, "m or rad"), None, None, Cause.BLIND)
+
+
+def _usable(verdicts: Sequence[Verdict]) -> dict[Motion, Verdict]:
+    """By motion, the verdicts that say a level and a distance that is a number of at least zero."""
+    return {
+        verdict.motion: verdict
+        for verdict in verdicts
+        if isinstance(verdict, Verdict)
+        and isinstance(verdict.motion, Motion)
+        and isinstance(verdict.level, Level)
+        and np.isfinite(verdict.free_travel)
+        and verdict.free_travel >= 0
+    }
+
+
+@contextmanager
+def _timed(stage: str, stage_ms: dict[str, float]) -> Iterator[None]:
+    """Notes how long a stage took, also when it fails."""
+    start = time.perf_counter()
+    try:
+        yield
+    finally:
+        stage_ms[stage] = (time.perf_counter() - start) * 1e3
+
+
+def _oldest_age_ms(frames: Sequence[DepthFrame], now_ns: int) -> float | None:
+    stamps = [frame.stamp_ns for frame in frames if frame.stamp_ns is not None]
+    return (now_ns - min(stamps)) / 1e6 if stamps else None

@@ -1,0 +1,42 @@
+"""What one pass from frames to verdicts came to."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from elbowroom.motion import Level, Verdict
+from elbowroom.reconstruct.free_space import FreeSpace
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CycleResult:
+    """The verdicts of one pass, and how it came to them.
+
+    Args:
+        sequence: number of the pass, from 0.
+        stamp_ns: time at which it began [ns, the clock of the frames].
+        space: the free space that was judged; None: there is none, since the pass failed.
+        verdicts: one for each motion that was asked, in their order; where something failed: stop.
+        stage_ms: time that each stage took [ms], in the order of the stages.
+        oldest_age_ms: age of the oldest frame that was used [ms]; None: no frame, or none with a stamp.
+        fault: why verdicts are missing, one sentence; None: the pass is whole.
+    """
+
+    sequence: int
+    stamp_ns: int
+    space: FreeSpace | None
+    verdicts: tuple[Verdict, ...]
+    stage_ms: Mapping[str, float]
+    oldest_age_ms: float | None
+    fault: str | None = None
+
+    @property
+    def cycle_ms(self) -> float:
+        """Time of the whole pass [ms]."""
+        return sum(self.stage_ms.values())
+
+    @property
+    def level(self) -> Level:
+        """The most cautious level of all motions; stop where there is no verdict."""
+        return min(
+            (verdict.level for verdict in self.verdicts), key=lambda level: level.rank, default=Level.STOP
+        )

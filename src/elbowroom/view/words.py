@@ -1,0 +1,80 @@
+"""Verdicts and times in the words and marks that a terminal shows."""
+
+import math
+
+from elbowroom.motion import Cause, Level, Verdict
+from elbowroom.motion.motion import REACH_IN_BRAKING_DISTANCES
+
+NOT_CERTIFIED = (
+    "Not a certified safety function: it has no performance level (PL) and may only ever reduce motion."
+)
+"""What every summary and every screen must say (docs/safety.md)."""
+
+MARKS: dict[Level, str] = {Level.STOP: "■", Level.DECELERATE: "▲", Level.INFORM: "●", Level.CLEAR: "○"}
+"""A shape for each level, so that it does not hang on colour alone."""
+
+LEVEL_WORDS: dict[Level, str] = {level: level.name for level in Level}
+
+CAUSE_WORDS: dict[Cause, str] = {
+    Cause.SURFACE: "surface",
+    Cause.BLIND: "blind",
+    Cause.OUTSIDE_GRID: "outside the grid",
+    Cause.UNSEEN: "unseen",
+    Cause.NONE: "",
+}
+
+
+def travel_text(distance: float, unit: str) -> str:
+    """A distance along a joint as people read it: "62 mm", "12 cm", "3.4°".
+
+    It is rounded down: what is shown is never more than what is free.
+
+    Args:
+        distance: [m], [rad], or of a path whose joints are of both kinds [m or rad].
+        unit: "m", "rad", or anything else, which is shown with the plain number.
+    """
+    if unit == "m":
+        millimetres = math.floor(distance * 1e3 + 1e-6)
+        return f"{millimetres} mm" if millimetres < 1000 else f"{millimetres // 10} cm"
+    if unit == "rad":
+        return f"{math.floor(math.degrees(distance) * 10 + 1e-6) / 10:.1f}°"
+    return f"{math.floor(distance * 1e3 + 1e-6) / 1e3:.3f} {unit}"
+
+
+def place_text(verdict: Verdict) -> str:
+    """Where the link meets what: "detector at 0.31, -0.20, 1.05 m"; empty where nothing is met."""
+    if verdict.place_in_world is None:
+        return verdict.link or ""
+    x, y, z = verdict.place_in_world
+    return f"{verdict.link} at {x:.2f}, {y:.2f}, {z:.2f} m"
+
+
+def travel_bar(verdict: Verdict, width: int = 20) -> tuple[str, str]:
+    """Free travel as a bar of which a fifth is one braking distance: the filled part and the rest.
+
+    In the rest, a stroke marks where S and M end; the end of the bar is L.
+
+    Args:
+        verdict: whose travel to show.
+        width: of the whole bar [characters].
+    """
+    whole = REACH_IN_BRAKING_DISTANCES * verdict.motion.braking_distance
+    filled = min(width, math.floor(verdict.free_travel / whole * width + 1e-6))
+    marks = {round(width / 5) - 1, round(2 * width / 5) - 1}
+    return "█" * filled, "".join("│" if i in marks else "·" for i in range(filled, width))
+
+
+def plain_line(verdict: Verdict) -> str:
+    """One verdict in a few plain words: "larm + STOP 3.1° (surface, detector)"."""
+    line = f"{verdict.motion.name} {LEVEL_WORDS[verdict.level]}"
+    if verdict.level is Level.CLEAR:
+        return line
+    why = ", ".join(word for word in (CAUSE_WORDS[verdict.cause], verdict.link) if word)
+    return f"{line} {travel_text(verdict.free_travel, verdict.free_travel_unit)}" + (
+        f" ({why})" if why else ""
+    )
+
+
+def counts_text(levels: list[Level]) -> str:
+    """How many motions are at which level: "1 STOP, 7 CLEAR"."""
+    return ", ".join(f"{levels.count(level)} {LEVEL_WORDS[level]}" for level in Level if level in levels)

@@ -1,0 +1,112 @@
+"""A pass gives a verdict for each motion, and stop for each that it has none for."""
+
+import numpy as np
+import pytest
+
+from elbowroom.errors import FrameError, InputError
+from elbowroom.geometry import VoxelGrid
+from elbowroom.monitor import Cycle, cycle
+from elbowroom.motion import Cause, Level, Motion, Verdict
+from elbowroom.reconstruct.free_space import FreeSpace
+from elbowroom.sensing import DepthFrame
+
+GRID = VoxelGrid(origin_m=(0, 0, 0), shape=(4, 4, 4), voxel_size_m=0.1)
+SPACE = FreeSpace.from_occupied(GRID, np.zeros(GRID.shape, dtype=bool))
+MOTIONS = (Motion("slide", +1, 0.1), Motion("slide", -1, 0.1))
+
+
+class OneJoint:
+    """As much of a machine as a pass asks for itself."""
+
+    class _Slide:
+        name, unit = "slide", "m"
+
+    joints = (_Slide(),)
+
+
+def clear(motion: Motion, free_travel: float = 0.5) -> Verdict:
+    return Verdict(motion, Level.CLEAR, free_travel, "m", None, None, Cause.NONE)
+
+
+@pytest.fixture
+def a_cycle(monkeypatch) -> Cycle:
+    """A pass whose two stages answer that all is free and clear, unless a test lets them do otherwise."""
+    monkeypatch.setattr(cycle, "reconstruct", lambda *_, **__: SPACE)
+    monkeypatch.setattr(
+        cycle, "check_motions", lambda space, machine, joints, motions: [*map(clear, motions)]
+    )
+    return Cycle(GRID, (), OneJoint(), MOTIONS)
+
+
+def frames(*stamps_ns: int | None) -> list[DepthFrame]:
+    return [DepthFrame(f"c{i}", stamp, np.ones((2, 2), np.float32)) for i, stamp in enumerate(stamps_ns)]
+
+
+def assert_all_stop(result, reason: str):
+    assert [v.motion for v in result.verdicts] == list(MOTIONS)
+    assert all(v.level is Level.STOP and v.free_travel == 0 and not v.overridable for v in result.verdicts)
+    assert result.level is Level.STOP
+    assert reason in result.fault
+
+
+def test_a_whole_pass_has_verdicts_times_and_no_fault(a_cycle):
+    result = a_cycle.run(frames(2_000_000, 5_000_000), {"slide": 0.0}, 7_000_000)
+    assert result.level is Level.CLEAR and result.fault is None and result.space is SPACE
+    assert list(result.stage_ms) == ["reconstruct", "motion"]
+    assert result.cycle_ms == pytest.approx(sum(result.stage_ms.values()))
+    assert result.oldest_age_ms == 5.0
+
+
+def test_passes_are_numbered(a_cycle):
+    assert [a_cycle.run([], {}, 0).sequence for _ in range(3)] == [0, 1, 2]
+
+
+def test_frames_without_stamps_have_no_age(a_cycle):
+    assert a_cycle.run(frames(None), {}, 0).oldest_age_ms is None
+
+
+@pytest.mark.parametrize(
+    "error", [FrameError("two frames of cam00"), ValueError("NaN"), MemoryError("no room")]
+)
+@pytest.mark.parametrize("stage", ["reconstruct", "check_motions"])
+def test_whatever_is_raised_is_a_stop_with_its_reason(a_cycle, monkeypatch, stage, error):
+    def fails(*_, **__):
+        raise error
+
+    monkeypatch.setattr(cycle, stage, fails)
+    result = a_cycle.run([], {}, 0)
+    assert_all_stop(result, str(error))
+    assert result.space is None
+
+
+def test_frames_that_are_none_at_all_are_a_stop(a_cycle):
+    assert_all_stop(a_cycle.run([None], {}, 0), "AttributeError")
+
+
+@pytest.mark.parametrize(
+    "unusable",
+    [
+        None,
+        clear(MOTIONS[1], float("nan")),
+        clear(MOTIONS[1], -0.1),
+        clear(Motion("another", 1, 0.1)),
+        Verdict(MOTIONS[1], None, 0.5, "m", None, None, Cause.NONE),
+    ],
+)
+def test_a_missing_or_meaningless_verdict_is_a_stop_for_its_motion(a_cycle, monkeypatch, unusable):
+    monkeypatch.setattr(cycle, "check_motions", lambda *_: [clear(MOTIONS[0]), unusable])
+    result = a_cycle.run([], {}, 0)
+    assert [v.level for v in result.verdicts] == [Level.CLEAR, Level.STOP]
+    assert result.verdicts[1].free_travel_unit == "m"
+    assert "slide -" in result.fault and "slide +" not in result.fault
+
+
+def test_verdicts_in_another_order_stay_with_their_motions(a_cycle, monkeypatch):
+    backwards = [clear(MOTIONS[1], 0.2), clear(MOTIONS[0], 0.1)]
+    monkeypatch.setattr(cycle, "check_motions", lambda *_: backwards)
+    assert [v.free_travel for v in a_cycle.run([], {}, 0).verdicts] == [0.1, 0.2]
+
+
+def test_a_cycle_that_asks_nothing_is_refused():
+    with pytest.raises(InputError, match="at least one"):
+        Cycle(GRID, (), OneJoint(), ())
