@@ -1,9 +1,9 @@
-"""Makes the meshes and the URDF of the ceiling C-arm: run it again after changing a size, and commit what it writes.
+"""Makes the meshes and the URDF of the ceiling C-arm: after changing a size run it, commit what it writes.
 
-The four movements are those of the thesis (Hamersma 2011, Fig. 6). Sizes are those of a ceiling-suspended angiography
-stand: a ring of 0.88 m radius that carries detector and source, an L-arm that turns about the vertical through the
-isocentre. All bodies are closed; a link may consist of several that overlap. Frames at zero joints, all parallel to the
-world: x along rail and table (head end at -x), z up, isocentre at (0, 0, 1.1) m.
+The four movements are those of the thesis (Hamersma 2011, Fig. 6); sizes are those of a ceiling-suspended
+angiography stand: a ring of 0.88 m radius carries detector and source, an L-arm turns about the vertical
+through the isocentre. All bodies are closed; a link may consist of several that overlap. Frames at zero
+joints, all parallel to the world: x along rail and table (head end at -x), z up, isocentre at (0, 0, 1.1) m.
 """
 
 from collections.abc import Sequence
@@ -62,7 +62,7 @@ def skin(rings: Sequence[Points]) -> trimesh.Trimesh:
 def along(
     axis: str, outline: Points, stations: Sequence[tuple[float, float]], centre: Sequence[float]
 ) -> trimesh.Trimesh:
-    """A straight body along an axis: the outline at each station (place along the axis, scale of the outline)."""
+    """A straight body along an axis: the outline at each station (place on the axis, scale of it)."""
     order = {"x": (2, 0, 1), "y": (1, 2, 0), "z": (0, 1, 2)}[axis]
     rings = []
     for place, scale in stations:
@@ -96,7 +96,7 @@ def l_beam(
     for angle in np.radians(np.linspace(90, 180, 9))[1:]:
         r = bend + across
         ring = np.stack([r * np.cos(angle), y, r * np.sin(angle)], axis=1)
-        rings.append(ring + (column_x + bend, 0, beam_z - bend))
+        rings.append(ring + np.array([column_x + bend, 0, beam_z - bend]))
     rings.append(np.stack([column_x - across, y, np.full(len(y), foot_z)], axis=1))
     return skin(rings)
 

@@ -1,0 +1,19 @@
+"""Motions checked against free space: how far, how urgent, and why."""
+
+from elbowroom.motion.braking import braking_distance
+from elbowroom.motion.check import check_motion, check_motions, joint_motions
+from elbowroom.motion.motion import JointPath, Motion
+from elbowroom.motion.verdict import Cause, Level, Verdict, most_cautious
+
+__all__ = [
+    "Cause",
+    "JointPath",
+    "Level",
+    "Motion",
+    "Verdict",
+    "braking_distance",
+    "check_motion",
+    "check_motions",
+    "joint_motions",
+    "most_cautious",
+]

@@ -1,0 +1,156 @@
+"""How far may the machine go? Free space and motions in, verdicts out."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import MachineError
+from elbowroom.geometry import bits
+from elbowroom.geometry.parallel import spread
+from elbowroom.machine import Machine
+from elbowroom.motion._kernels import Skin, Volume, explain_block, place_at
+from elbowroom.motion.braking import braking_distance
+from elbowroom.motion.course import Way, way_of
+from elbowroom.motion.motion import JointPath, Motion
+from elbowroom.motion.sweep import Block, blocked_volume, cluster_speeds, find_block, skin_of
+from elbowroom.motion.verdict import Cause, Level, Verdict
+from elbowroom.reconstruct.free_space import FreeSpace
+
+CAUSES = (Cause.SURFACE, Cause.OUTSIDE_GRID, Cause.BLIND, Cause.UNSEEN)
+"""Of a block, by the numbers that the kernel gives them."""
+
+
+def check_motion(
+    space: FreeSpace, machine: Machine, joints: Mapping[str, float], motion: Motion | JointPath
+) -> Verdict:
+    """How far a motion may go until the swept body meets what is not free.
+
+    The swept body is that of the checked links which the motion moves. The machine's own voxels should have
+    been taken out of the space (`reconstruct` does it; `FreeSpace.without`); a body that stands in blocked
+    space has a free travel of 0. What lies outside the grid is blocked. Joint limits cap the free travel, not
+    the level.
+
+    Args:
+        space: the free space.
+        machine: the machine.
+        joints: where it is now, by name [m or rad].
+        motion: a joint and its direction, or a joint path.
+
+    Returns:
+        The verdict; its free travel is never more than the truth in this space.
+
+    Raises:
+        MachineError: an unknown joint, a position that is missing, not finite, or out of the joint's limits.
+    """
+    return check_motions(space, machine, joints, [motion], threads=1)[0]
+
+
+def check_motions(
+    space: FreeSpace,
+    machine: Machine,
+    joints: Mapping[str, float],
+    motions: Sequence[Motion | JointPath],
+    threads: int | None = None,
+) -> list[Verdict]:
+    """The same for many motions from one place, in their order.
+
+    Args:
+        space, machine, joints: as for `check_motion`.
+        motions: what to check.
+        threads: how many to use; None: one for each core.
+
+    Raises:
+        MachineError: as for `check_motion`.
+    """
+    start = machine.positions(joints)
+    ways = [way_of(machine, start, motion) for motion in motions]
+    scene = _Scene.of(space, machine, start)
+    return spread(lambda pair: scene.verdict(*pair), list(zip(motions, ways, strict=True)), threads)
+
+
+def joint_motions(
+    machine: Machine, speeds: Mapping[str, float], braking_times: float | Mapping[str, float]
+) -> list[Motion]:
+    """Every joint in both directions, + first, in the machine's order of joints.
+
+    Args:
+        machine: the machine.
+        speeds: full speed of each joint by name [m/s or rad/s].
+        braking_times: from full speed to rest [s], one for all joints or by name.
+
+    Raises:
+        MachineError: an unknown joint, or one without a speed or a braking time.
+        InputError: a speed or a time that is not a finite number above 0.
+    """
+    times = (
+        braking_times
+        if isinstance(braking_times, Mapping)
+        else dict.fromkeys(machine.joint_names, braking_times)
+    )
+    for what, given in (("speed", speeds), ("braking time", times)):
+        for name in given:
+            machine.joint(name)
+        for name in machine.joint_names:
+            if name not in given:
+                raise MachineError(
+                    f"machine {machine.name}: joint {name!r} has no {what}; all joints need one"
+                )
+    return [
+        Motion(name, direction, braking_distance(speeds[name], times[name]))
+        for name in machine.joint_names
+        for direction in (1, -1)
+    ]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Scene:
+    """What the motions of one check share."""
+
+    space: FreeSpace
+    machine: Machine
+    skin: Skin
+    volume: Volume
+    world_from_link: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, space: FreeSpace, machine: Machine, start: NDArray[np.float64]) -> Self:
+        return cls(
+            space,
+            machine,
+            skin_of(machine, space.grid.voxel_size_m),
+            blocked_volume(space.free_words, space.grid),
+            machine.world_from_link_array(start[None])[0],
+        )
+
+    def verdict(self, motion: Motion | JointPath, way: Way) -> Verdict:
+        speeds = cluster_speeds(self.machine, self.skin, self.world_from_link, way)
+        block = find_block(self.machine, self.skin, speeds, way, self.volume, self.space.grid)
+        if block is None:
+            return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE)
+        cause, link, place = self._explain(block, speeds, way)
+        level = Level.at(block.travel, motion.braking_distance)
+        return Verdict(motion, level, block.travel, way.unit, link, place, cause)
+
+    def _explain(
+        self, block: Block, speeds: NDArray[np.float64], way: Way
+    ) -> tuple[Cause, str, tuple[float, float, float]]:
+        """What the block is, which link meets it, and where."""
+        placed = np.empty((1, len(self.machine.links), 4, 4))
+        middle = block.travel + block.half
+        place_at(self.machine.tree, self.machine.world_from_base, way.course, middle, placed)
+        kind, cluster, (x, y, z) = explain_block(
+            placed[0],
+            self.skin,
+            speeds,
+            block.half,
+            self.volume,
+            self.space.surface_words,
+            self.space.blind_words,
+            self.space.disputed_words,
+            bits.lattice(self.space.grid),
+            block.samples,
+        )
+        return CAUSES[kind], self.machine.link_names[self.skin.link[cluster]], (float(x), float(y), float(z))

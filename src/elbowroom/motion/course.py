@@ -1,0 +1,75 @@
+"""A motion as straight lines in joint space, cut at the reach and at the limits of a joint."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.machine import Machine
+from elbowroom.motion._kernels import Course
+from elbowroom.motion.motion import JointPath, Motion
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Way:
+    """Where a motion leads.
+
+    Args:
+        course: joint positions at knots of rising travel; columns are `machine.joint_names`.
+        length: travel that is looked at, 0 where the joint stands at its limit [unit].
+        unit: "m", "rad", or "m or rad".
+    """
+
+    course: Course
+    length: float
+    unit: str
+
+    @property
+    def rates(self) -> NDArray[np.float64]:
+        """The greatest speed of each joint per unit of travel, shape (n_joints,)."""
+        steps = np.abs(np.diff(self.course.positions, axis=0))
+        return (steps / np.diff(self.course.travel)[:, None]).max(axis=0)
+
+
+def way_of(machine: Machine, start: NDArray[np.float64], motion: Motion | JointPath) -> Way:
+    """Where a motion leads.
+
+    Args:
+        machine: the machine.
+        start: its joint positions now, of `machine.positions`, shape (n_joints,).
+        motion: what is asked.
+
+    Raises:
+        MachineError: the motion names an unknown joint, or a waypoint is out of a joint's limits.
+    """
+    if isinstance(motion, Motion):
+        return _of_joint(machine, start, motion)
+    return _of_path(machine, start, motion)
+
+
+def _of_joint(machine: Machine, start: NDArray[np.float64], motion: Motion) -> Way:
+    joint = machine.joint(motion.joint)
+    column = machine.joint_names.index(motion.joint)
+    room = joint.upper - start[column] if motion.direction > 0 else start[column] - joint.lower
+    length = float(max(0.0, min(motion.looked_at, room)))
+    knots = np.stack([start, start])
+    knots[1, column] += motion.direction * motion.looked_at
+    return Way(Course(np.array([0.0, motion.looked_at]), knots), length, joint.unit)
+
+
+def _of_path(machine: Machine, start: NDArray[np.float64], path: JointPath) -> Way:
+    knots, travel = [start], [0.0]
+    here = dict(zip(machine.joint_names, start.tolist(), strict=True))
+    for waypoint in path.waypoints:
+        here |= waypoint
+        knot = machine.positions(here)
+        step = float(np.abs(knot - knots[-1]).max(initial=0.0))
+        if step > 0:
+            knots.append(knot)
+            travel.append(travel[-1] + step)
+    units = {machine.joint(name).unit for point in path.waypoints for name in point}
+    unit = units.pop() if len(units) == 1 else "m or rad"
+    length = travel[-1] if path.reach is None else min(path.reach, travel[-1])
+    if len(knots) == 1:
+        knots, travel = [start, start], [0.0, 1.0]
+    return Way(Course(np.array(travel), np.array(knots)), length, unit)

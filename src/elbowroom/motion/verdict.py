@@ -1,0 +1,115 @@
+"""What is answered: how far a motion may go, and what ends it.
+
+Levels by the first blocked voxel that the swept body meets, S being the braking distance (thesis 4.1):
+
+    free travel           level        band
+    up to and at S        STOP         S
+    up to and at 2 S      DECELERATE   M
+    up to and at 5 S      INFORM       L
+    beyond, or nothing    CLEAR        0
+
+How verdicts combine (`most_cautious`): the lowest level of this table's order wins; within a level a verdict
+that cannot be overridden goes before one that can; then the one with the least free travel in braking
+distances; then the first. No verdict at all is an error, since nothing seen means stop.
+
+| cause of the block | may be overridden at low speed, while an operator holds on |
+|--------------------|------------------------------------------------------------|
+| SURFACE            | no                                                         |
+| BLIND              | no: losing evidence never makes a block overridable        |
+| OUTSIDE_GRID       | no                                                         |
+| UNSEEN             | yes                                                        |
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import Enum
+
+from elbowroom.errors import InputError
+from elbowroom.motion.motion import JointPath, Motion
+
+
+class Level(Enum):
+    """What to do; the value is the sentence that an operator reads. In order of caution."""
+
+    STOP = "Stop: the way is blocked within the braking distance."
+    DECELERATE = "Slow down: the way is blocked within two braking distances."
+    INFORM = "Take care: the way is blocked within five braking distances."
+    CLEAR = "Clear: nothing in the way within five braking distances."
+
+    @property
+    def rank(self) -> int:
+        """0 for STOP, rising to 3 for CLEAR: the lower, the more cautious."""
+        return list(Level).index(self)
+
+    @property
+    def band(self) -> str:
+        """The thesis' letter for the distance: "S", "M", "L", or "0" when no collision is found."""
+        return "SML0"[self.rank]
+
+    @classmethod
+    def at(cls, free_travel: float, braking_distance: float) -> "Level":
+        """The level of a way that is blocked after `free_travel` [the same unit as the braking distance]."""
+        for level, distances in ((cls.STOP, 1), (cls.DECELERATE, 2), (cls.INFORM, 5)):
+            if not free_travel > distances * braking_distance:
+                return level
+        return cls.CLEAR
+
+
+class Cause(Enum):
+    """What ends the free travel; the value is the phrase that an operator reads."""
+
+    SURFACE = "something seen there"
+    BLIND = "a camera that looks there delivers nothing valid"
+    OUTSIDE_GRID = "the machine would leave the watched space"
+    UNSEEN = "nobody sees that space"
+    NONE = "nothing"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The answer for one motion.
+
+    Args:
+        motion: what was asked.
+        level: what to do.
+        free_travel: how far the motion may go, at most its reach, never more than the truth
+            [free_travel_unit].
+        free_travel_unit: "m", "rad", or "m or rad" for a path whose joints are of both kinds.
+        link: the link that meets the block; None: none does.
+        place_in_world: centre of the blocked voxel, or the link's point that leaves the grid [m]; None: no
+            block.
+        cause: what the block is. NONE also where a joint limit, not a block, ends the travel.
+    """
+
+    motion: Motion | JointPath
+    level: Level
+    free_travel: float
+    free_travel_unit: str
+    link: str | None
+    place_in_world: tuple[float, float, float] | None
+    cause: Cause
+
+    @property
+    def band(self) -> str:
+        """The thesis' letter: "S", "M", "L", or "0"."""
+        return self.level.band
+
+    @property
+    def overridable(self) -> bool:
+        """Whether an operator who holds on may drive on at low speed: only into space that nobody sees."""
+        return self.cause is Cause.UNSEEN
+
+
+def most_cautious(verdicts: Iterable[Verdict]) -> Verdict:
+    """The verdict that wins over the others, by the table above.
+
+    Raises:
+        InputError: no verdict.
+    """
+    every = list(verdicts)
+    if not every:
+        raise InputError("most_cautious: no verdicts; without a verdict the machine must stop")
+    return min(
+        every,
+        key=lambda v: (v.level.rank, v.overridable, v.free_travel / v.motion.braking_distance),
+    )
