@@ -1,0 +1,9 @@
+"""A room to try everything in: solids that move, depth cameras that see them, and what is really there."""
+
+from elbowroom.simulate.cameras import wall_cameras
+from elbowroom.simulate.room import InterventionRoom
+from elbowroom.simulate.sensor import render
+from elbowroom.simulate.solid import Moment, Solid
+from elbowroom.simulate.truth import Truth, true_occupancy
+
+__all__ = ["InterventionRoom", "Moment", "Solid", "Truth", "render", "true_occupancy", "wall_cameras"]

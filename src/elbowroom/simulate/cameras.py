@@ -1,0 +1,117 @@
+"""Depth cameras evenly along the four walls of the room."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import CameraError
+from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.geometry.camera import DepthKind
+from elbowroom.sensing import NoiseModel
+
+SIZES: dict[str, tuple[int, int, DepthKind]] = {
+    "vga": (640, 480, "planar"),
+    "qqvga": (160, 120, "planar"),
+    # the thesis' PMD camera: 64 x 48 pixels, distance from the camera's centre
+    "thesis": (64, 48, "radial"),
+}
+"""Width and height [px] and kind of depth by name, for `wall_cameras(size=...)`."""
+
+
+def wall_cameras(
+    count: int = 21,
+    height_m: float = 2.4,
+    width: int | None = None,
+    height: int | None = None,
+    hfov_deg: float = 90.0,
+    *,
+    size: str = "vga",
+    depth_kind: DepthKind | None = None,
+    aim_m: float = 1.1,
+    half_side_m: float = 1.99,
+    noise: NoiseModel | None = None,
+    min_depth_m: float = 0.0,
+    max_depth_m: float = math.inf,
+) -> tuple[DepthCamera, ...]:
+    """Cameras at equal distances along the walls, each looking at the room's vertical middle axis.
+
+    The first hangs in the middle of the wall at +x, the others follow counter-clockwise seen from above.
+
+    Args:
+        count: how many.
+        height_m: of the cameras above the floor [m].
+        width, height: of the image [px]; pixels are square. None: by `size`.
+        hfov_deg: horizontal field of view, from the left edge of the image to its right edge [deg].
+        size: one of `SIZES`.
+        depth_kind: "planar" or "radial"; None: by `size`.
+        aim_m: height at which the optical axis meets the room's middle axis [m]. Of aims from 0.7 to 2.2 m,
+            1.1 m finds most of an empty room of 4 x 4 x 2.5 m: each part is in view of seven of 21 or three
+            of eight VGA cameras at least.
+        half_side_m: distance of the cameras from the middle planes of the room: just inside its walls [m].
+        noise: sensor noise; None: exact.
+        min_depth_m, max_depth_m: range of the sensor [m].
+
+    Returns:
+        Cameras "cam00", "cam01" and so on.
+
+    Raises:
+        CameraError: fewer than one camera, an unknown size, or a field of view that no pinhole has.
+    """
+    if count != int(count) or count < 1:
+        raise CameraError(f"wall_cameras: count is {count}, must be a whole number of at least 1")
+    if not 0 < hfov_deg < 180:
+        raise CameraError(f"wall_cameras: hfov_deg is {hfov_deg}, must be between 0 and 180 degrees")
+    if size not in SIZES:
+        raise CameraError(f"wall_cameras: size is {size!r}, known are {', '.join(SIZES)}")
+    usual_width, usual_height, usual_kind = SIZES[size]
+    width, height = width or usual_width, height or usual_height
+    focal_px = width / 2 / math.tan(math.radians(hfov_deg) / 2)
+    intrinsics = Intrinsics(fx=focal_px, fy=focal_px, cx=(width - 1) / 2, cy=(height - 1) / 2)
+    digits = max(2, len(str(count - 1)))
+    return tuple(
+        DepthCamera(
+            name=f"cam{number:0{digits}d}",
+            width=width,
+            height=height,
+            world_from_camera=looking_at(
+                (*_along_walls(number / count, half_side_m), height_m), (0.0, 0.0, aim_m)
+            ),
+            intrinsics=intrinsics,
+            depth_kind=depth_kind or usual_kind,
+            noise=noise,
+            min_depth_m=min_depth_m,
+            max_depth_m=max_depth_m,
+        )
+        for number in range(count)
+    )
+
+
+def _along_walls(share: float, half_side_m: float) -> tuple[float, float]:
+    """The place (x, y) at a share of the way round the walls, from the middle of the wall at +x [m]."""
+    way = (share * 8 + 1) % 8
+    wall, along = int(way // 2), way % 2 - 1
+    x, y = ((1.0, along), (-along, 1.0), (-1.0, -along), (along, -1.0))[wall]
+    return x * half_side_m, y * half_side_m
+
+
+def looking_at(
+    eye_m: tuple[float, float, float], target_m: tuple[float, float, float]
+) -> NDArray[np.float64]:
+    """The pose of a camera that looks from one point to another, its image upright.
+
+    Args:
+        eye_m: where the camera is, world frame [m].
+        target_m: what it looks at, not straight above or below [m].
+
+    Returns:
+        world_from_camera, shape (4, 4); x right, y down, z forward.
+    """
+    forward = np.subtract(target_m, eye_m)
+    forward = forward / np.linalg.norm(forward)
+    right = np.cross(forward, (0.0, 0.0, 1.0))
+    right /= np.linalg.norm(right)
+    world_from_camera = np.eye(4)
+    world_from_camera[:3, :3] = np.stack([right, np.cross(forward, right), forward], axis=1)
+    world_from_camera[:3, 3] = eye_m
+    return world_from_camera
