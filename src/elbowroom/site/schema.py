@@ -75,6 +75,10 @@ class SimulatedEntry(Entry):
         return width, height
 
 
+SIMULATED_SETTINGS = ("depth_kind", "noise", "min_depth_m", "max_depth_m")
+"""What `camera_defaults` may say of simulated cameras."""
+
+
 class SiteEntry(Entry):
     """All of a site file."""
 
@@ -104,6 +108,10 @@ class SiteEntry(Entry):
             raise ValueError("at least one camera, or simulated, or a recording of layout seven_scenes")
         if self.simulated is not None and self.recording is not None:
             raise ValueError("either simulated or recording, not both")
+        if self.simulated is not None:
+            beyond = sorted(self.camera_defaults.model_fields_set - set(SIMULATED_SETTINGS))
+            if beyond:
+                raise ValueError(f"camera_defaults of a simulated room: {', '.join(SIMULATED_SETTINGS)}; not {beyond[0]}")
         if self.joints and self.machine is None:
             raise ValueError("joints only with a machine")
         return self

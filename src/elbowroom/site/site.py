@@ -29,6 +29,8 @@ from elbowroom.site.yaml_file import read_yaml
 
 SIMULATED_ROOM = Path(__file__).with_name("simulated_room.yaml")
 """The site file of the simulated intervention room, shipped with the package."""
+NEW_SITE = Path(__file__).with_name("new_site.yaml")
+"""A commented, valid site file to start from."""
 DEFAULT_EXPLAIN_TOLERANCE_M = 0.01
 
 Value = TypeVar("Value")

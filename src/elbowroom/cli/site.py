@@ -1,0 +1,132 @@
+"""`elbowroom site new` and `elbowroom site check`."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from elbowroom.cli.json_output import write_json
+from elbowroom.cli.options import JsonFile, SitePath
+from elbowroom.errors import SiteError
+
+if TYPE_CHECKING:
+    from elbowroom.geometry import DepthCamera
+    from elbowroom.site import Site
+
+site_app = typer.Typer(help="Write a site file, or check one.", no_args_is_help=True)
+
+
+@site_app.command(epilog="Example: elbowroom site new my_room.yaml")
+def new(
+    path: Annotated[Path, typer.Argument(metavar="PATH", help="The file to write.")],
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
+) -> None:
+    """Write a commented, valid site file to start from."""
+    from elbowroom.site.site import NEW_SITE
+    from elbowroom.view.atomic import whole_file
+
+    if path.exists() and not force:
+        raise SiteError(f"{path}: is there already; choose another name, or --force to replace it")
+    with whole_file(path) as unfinished:
+        unfinished.write_text(NEW_SITE.read_text(encoding="utf-8"), encoding="utf-8")
+    print(f"{path} written; change what differs in your room, then: elbowroom site check {path} --out room.png")
+
+
+@site_app.command(epilog="Example: elbowroom site check my_room.yaml --out room.png")
+def check(
+    site_path: SitePath,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="PNG", help="Draw cameras and grid into this picture.")
+    ] = None,
+    json_file: JsonFile = None,
+) -> None:
+    """Validate a site file with everything it names, and say what memory it takes."""
+    from elbowroom.site import Site
+
+    site = Site.load(site_path)
+    row = _findings(site)
+    if out is not None:
+        _draw(site, out)
+    write_json(json_file, [row])
+    _say(row)
+    if out is not None:
+        print(f"picture   {out}")
+
+
+def cameras_of(site: "Site") -> "tuple[DepthCamera, ...]":
+    """The cameras of a site, those of a simulated room made by the simulator.
+
+    Raises:
+        SiteError: a camera that none can be.
+    """
+    if site.simulated is None:
+        return site.cameras()
+    from elbowroom.simulate.cameras import wall_cameras
+
+    return wall_cameras(**site.simulated_cameras())
+
+
+def _findings(site: "Site") -> dict[str, Any]:
+    """All that can be said of a site without carving; raises on whatever is wrong with it."""
+    import numpy as np
+
+    from elbowroom.site import check_images, memory_of
+    from elbowroom.site.coverage import views_per_voxel
+
+    grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
+    motions = site.motions(machine) if machine is not None else ()
+    moments, images = check_images(site) if site.entry.recording is not None else (None, None)
+    views = views_per_voxel(grid, cameras)
+    memory = memory_of(grid, cameras)
+    return {
+        "site": str(site.path),
+        "name": site.name,
+        "voxel_size_m": grid.voxel_size_m,
+        "shape": grid.shape,
+        "origin_m": grid.origin_m,
+        "cameras": len(cameras),
+        "sizes_px": sorted({f"{camera.width}x{camera.height}" for camera in cameras}),
+        "seen_by_one_pct": 100.0 * float(np.mean(views >= 1)),
+        "seen_by_three_pct": 100.0 * float(np.mean(views >= 3)),
+        "machine": machine.name if machine is not None else None,
+        "motions": len(motions),
+        "rule": site.rule,
+        "detail": site.detail,
+        "moments": moments,
+        "images": images,
+        "plane_bytes": memory.plane_bytes,
+        "planes_bytes": memory.planes_bytes,
+        "frames_bytes": memory.frames_bytes,
+        "pyramids_bytes": memory.pyramids_bytes,
+        "maps_bytes": memory.maps_bytes,
+        "memory_bytes": memory.total_bytes,
+        "notes": site.notes,
+    }
+
+
+def _say(row: dict[str, Any]) -> None:
+    shape = " x ".join(map(str, row["shape"]))
+    lines = {
+        "site": f"{row['site']} is valid: {row['name']}",
+        "grid": f"{shape} voxels of {row['voxel_size_m'] * 100:g} cm from {list(row['origin_m'])} m",
+        "cameras": f"{row['cameras']} of {', '.join(row['sizes_px'])} px; of the grid {row['seen_by_one_pct']:.0f} % "
+        f"lie in the view of one or more, {row['seen_by_three_pct']:.0f} % of three or more, if nothing stood there",
+        "machine": f"{row['machine']}, {row['motions']} motions to check" if row["machine"] else "none",
+        "decision": f"rule {row['rule']}, detail {row['detail']}",
+        "recording": f"{row['images']} images of {row['moments']} moments, headers checked" if row["images"] else "none",
+        "memory": f"about {row['memory_bytes'] / 1e6:.0f} MB: planes {row['planes_bytes'] / 1e6:.1f} "
+        f"(one bit a voxel, {row['plane_bytes'] / 1e3:.0f} kB each), frames {row['frames_bytes'] / 1e6:.1f}, "
+        f"pyramids {row['pyramids_bytes'] / 1e6:.1f}, lens maps {row['maps_bytes'] / 1e6:.1f}, program the rest",
+    }
+    for key, text in lines.items():
+        print(f"{key:9} {text}")
+    for note in row["notes"]:
+        print(f"note      {note}")
+
+
+def _draw(site: "Site", out: Path) -> None:
+    from elbowroom.site.picture import draw_site
+    from elbowroom.view.atomic import whole_file
+
+    with whole_file(out) as unfinished:
+        draw_site(site.name, site.grid(), cameras_of(site)).save(unfinished, format="PNG")
