@@ -35,6 +35,7 @@ def a_result(fault: str | None = None) -> CycleResult:
 def shown(width: int, fault: str | None = None, *, terminal: bool = True) -> str:
     console = Console(file=io.StringIO(), width=width, force_terminal=terminal, color_system=None)
     with TerminalView(WATCHED, console) as view:
+        view.start()
         view.show(a_result(fault), 33.0)
     view.print_summary()
     return console.file.getvalue()

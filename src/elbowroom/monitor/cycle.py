@@ -14,7 +14,7 @@ from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
 from elbowroom.motion import Cause, Level, Motion, Verdict, check_motions
 from elbowroom.reconstruct import reconstruct
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, JointRecord
 
 
 @dataclass(slots=True, eq=False)
@@ -48,15 +48,22 @@ class Cycle:
         if not self.motions:
             raise InputError("cycle: no motions to check, at least one is needed")
 
-    def run(self, frames: Sequence[DepthFrame], joints: Mapping[str, float], now_ns: int) -> CycleResult:
+    def run(
+        self,
+        frames: Sequence[DepthFrame],
+        joints: Mapping[str, float],
+        now_ns: int,
+        joints_at_frames: JointRecord | None = None,
+    ) -> CycleResult:
         """Judges all motions by the newest frames.
 
         It does not raise: a fault of any kind is a stop for every motion, with the reason beside it.
 
         Args:
             frames: the newest frame of each camera that has one.
-            joints: the machine's joint positions now [m or rad], or a record to ask at each frame's time.
+            joints: the machine's joint positions now, by name [m or rad]; motions begin there.
             now_ns: the time now [ns, the clock of the frames].
+            joints_at_frames: positions over time, to be asked at each frame's time; None: `joints` held then too.
         """
         sequence, self.sequence = self.sequence, self.sequence + 1
         stage_ms: dict[str, float] = {}
@@ -70,7 +77,7 @@ class Cycle:
                     self.cameras,
                     frames,
                     machine=self.machine,
-                    joints=joints,
+                    joints=joints if joints_at_frames is None else joints_at_frames,
                     rule=self.rule,
                     detail=self.detail,
                     margin=self.margin,

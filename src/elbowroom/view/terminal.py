@@ -75,7 +75,7 @@ class Watched:
 
 
 class TerminalView:
-    """Shows passes as they come: a live screen on a terminal, a line a second elsewhere. Use it as a context.
+    """Shows passes as they come: a live screen on a terminal, a line a second elsewhere. A context that stops at its end.
 
     Args:
         watched: what the run watches.
@@ -90,15 +90,23 @@ class TerminalView:
         self._last_shown_s = float("-inf")
 
     def __enter__(self) -> "TerminalView":
-        if self._live is not None:
-            self._live.start()
-        else:
-            self.console.print(f"{self.watched.title}: {self.watched.room}", soft_wrap=True)
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self.stop()
+
+    def start(self) -> None:
+        """Begins the screen and the time that rates are counted over."""
+        self.log.start_s = time.perf_counter()
+        if self._live is not None:
+            self._live.start()
+        else:
+            self.console.print(f"{self.watched.title}: {self.watched.room}", soft_wrap=True, highlight=False)
+
+    def stop(self) -> None:
+        """Ends the screen; what it showed last stays. Does nothing the second time."""
         if self._live is not None:
             self._live.stop()
 

@@ -1,0 +1,57 @@
+"""The command line: `elbowroom COMMAND`. Errors are one line that says what to do."""
+
+import sys
+import warnings
+from collections.abc import Sequence
+
+import typer
+
+from elbowroom.errors import ElbowroomError
+
+FAILED = 2
+INTERRUPTED = 130
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Runs the command line and exits with its code: 0 done, 2 an error in one line on stderr, 130 on Ctrl-C.
+
+    Args:
+        argv: the words after the program's name; None: those of this process.
+    """
+    sys.exit(run(argv))
+
+
+def run(argv: Sequence[str] | None = None) -> int:
+    """As `main`, but gives the code back."""
+    from elbowroom.cli.app import app
+
+    with warnings.catch_warnings():
+        warnings.showwarning = _show_warning  # type: ignore[assignment]
+        try:
+            code = app(
+                args=None if argv is None else list(argv), prog_name="elbowroom", standalone_mode=False
+            )
+        except ElbowroomError as error:
+            return _fail(str(error))
+        except (KeyboardInterrupt, typer.Abort):
+            return INTERRUPTED
+        except OSError as error:
+            return _fail(f"{error.filename or 'the system'}: {error.strerror or error}")
+        except MemoryError:
+            return _fail("not enough memory; choose larger voxels (--voxel-size) or a smaller grid")
+        except Exception as error:
+            # usage errors: typer's own class, or click's, by version; both say themselves what is wrong
+            message = getattr(error, "format_message", None)
+            if message is None:
+                raise
+            return _fail(f"{message()} (elbowroom COMMAND --help shows what is allowed)")
+    return code if isinstance(code, int) else 0
+
+
+def _fail(message: str) -> int:
+    print(f"elbowroom: {' '.join(message.split())}", file=sys.stderr)
+    return FAILED
+
+
+def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
+    print(f"note: {' '.join(str(message).split())}", file=sys.stderr)

@@ -1,0 +1,64 @@
+"""All commands, each from a file of its own."""
+
+from typing import Annotated
+
+import typer
+
+from elbowroom.cli.bench import bench
+from elbowroom.cli.check import check
+from elbowroom.cli.evaluate import evaluate_app
+from elbowroom.cli.monitor import monitor
+from elbowroom.cli.reconstruct import reconstruct
+from elbowroom.cli.site import site_app
+
+app = typer.Typer(
+    name="elbowroom",
+    help="How much elbow room does the machine have? Free space and motion verdicts from depth cameras.",
+    epilog="Begin with: elbowroom monitor",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["--help", "-h"]},
+)
+
+
+def _example(*lines: str) -> str:
+    return "\n\n".join(["Examples:", *lines])
+
+
+app.command(
+    epilog=_example(
+        "elbowroom monitor",
+        "elbowroom monitor --voxel-size 0.02 --seconds 20 --json run.json --out pictures",
+        "elbowroom monitor my_room.yaml",
+    )
+)(monitor)
+app.command(
+    epilog=_example(
+        "elbowroom reconstruct my_room.yaml --out result",
+        "elbowroom reconstruct my_room.yaml --out result --voxel-size 0.02 --joints long=0.1,larm=12deg",
+    )
+)(reconstruct)
+app.command(epilog=_example("elbowroom check my_room.yaml --joint larm --direction +"))(check)
+app.command(epilog=_example("elbowroom bench --json bench.json"))(bench)
+app.add_typer(evaluate_app, name="evaluate")
+app.add_typer(site_app, name="site")
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from elbowroom.cli.json_output import commit, package_version
+
+        version, source = package_version(), commit()
+        print(f"elbowroom {version}" + (f" ({source})" if source != version else ""))
+        raise typer.Exit
+
+
+@app.callback(invoke_without_command=True)
+def _main(
+    context: typer.Context,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    if context.invoked_subcommand is None:
+        print(context.get_help())

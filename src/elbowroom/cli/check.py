@@ -1,0 +1,38 @@
+"""`elbowroom check`: one motion, one verdict, in words."""
+
+from typing import Annotated
+
+import typer
+
+from elbowroom.cli.options import (
+    Detail,
+    JointsText,
+    JsonFile,
+    Rule,
+    SitePath,
+    VoxelSize,
+    parse_direction,
+    parse_joints,
+)
+
+
+def check(
+    site: SitePath,
+    joint: Annotated[str, typer.Option(metavar="NAME", help="The joint that shall move.")],
+    direction: Annotated[str, typer.Option(metavar="+|-", help="Which way its value shall change.")],
+    moment: Annotated[int, typer.Option(min=0, help="Which moment of the recording, from 0.")] = 0,
+    rule: Rule = None,
+    detail: Detail = None,
+    voxel_size: VoxelSize = None,
+    joints: JointsText = None,
+    json: JsonFile = None,
+) -> None:
+    """Say how far one joint may move, what ends its way, and what each camera saw there."""
+    way, positions = parse_direction(direction), parse_joints(joints)
+
+    from elbowroom.cli.check_run import ask
+    from elbowroom.cli.room import open_room
+    from elbowroom.site import Site
+
+    room = open_room(Site.load(site), voxel_size_m=voxel_size, rule=rule, detail=detail, joints=positions)
+    ask(room, joint, way, moment, json)

@@ -1,0 +1,80 @@
+"""The run of `elbowroom check`: a moment, a motion, a verdict and its reasons."""
+
+from pathlib import Path
+
+from rich.console import Console
+
+from elbowroom.cli.json_output import json_rows
+from elbowroom.cli.progress import Steps
+from elbowroom.cli.reconstruct_run import scene_at, space_of
+from elbowroom.cli.room import Room
+from elbowroom.cli.rows import verdict_row
+from elbowroom.errors import InputError
+from elbowroom.motion import Motion, Verdict, check_motion
+from elbowroom.reconstruct import FreeSpace, warm_up
+from elbowroom.view.words import NOT_CERTIFIED, travel_text
+
+
+def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | None) -> None:
+    """Checks one motion and prints the verdict.
+
+    Raises:
+        InputError: no machine, no such joint, no speed for it, or no such moment.
+    """
+    machine, motions = room.machine_and_motions()
+    machine.joint(joint)
+    motion = next((m for m in motions if (m.joint, m.direction) == (joint, direction)), None)
+    if motion is None:
+        known = ", ".join(dict.fromkeys(m.joint for m in motions))
+        raise InputError(f"{room.site.path}: joints.{joint}: no speed; joints with a speed are {known}")
+    with json_rows(json_file) as add:
+        with Steps(Console(stderr=True), 4) as steps:
+            steps.begin("compiling kernels")
+            warm_up()
+            steps.begin("reading images")
+            scene = scene_at(room, moment)
+            steps.begin("reconstructing")
+            space = space_of(room, scene)
+            steps.begin("checking the motion")
+            verdict = check_motion(space, machine, scene.joints or {}, motion)
+        reasons = _reasons(space, verdict)
+        add(
+            {
+                "site": room.site.name,
+                "moment": moment,
+                "voxel_size_m": room.grid.voxel_size_m,
+                "rule": room.rule,
+                "detail": room.detail,
+                "joints": scene.joints,
+                **verdict_row(verdict),
+                "explanation": reasons,
+                "unchecked_links": machine.unchecked_links,
+            }
+        )
+    print(f"{verdict.motion.name}: {verdict.level.value}")
+    print(_travel(motion, verdict))
+    if verdict.place_in_world is not None:
+        x, y, z = verdict.place_in_world
+        print(f"What ends it: {verdict.cause.value}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
+    if verdict.overridable:
+        print("An operator who holds on may drive on at low speed, since nobody sees that space.")
+    for line in reasons:
+        print(line)
+    if machine.unchecked_links:
+        print(f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}.")
+    print(NOT_CERTIFIED)
+
+
+def _travel(motion: Motion, verdict: Verdict) -> str:
+    free, looked_at, brakes = (
+        travel_text(distance, verdict.free_travel_unit)
+        for distance in (verdict.free_travel, motion.looked_at, motion.braking_distance)
+    )
+    return f"Free travel: {free} of {looked_at} looked at; it brakes within {brakes}."
+
+
+def _reasons(space: FreeSpace, verdict: Verdict) -> list[str]:
+    """What each camera saw at the place that ends the travel, a line each; nothing if that lies nowhere."""
+    if verdict.place_in_world is None or not space.grid.contains(verdict.place_in_world):
+        return []
+    return str(space.explain(verdict.place_in_world)).splitlines()

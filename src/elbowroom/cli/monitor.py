@@ -1,0 +1,69 @@
+"""`elbowroom monitor`: how far may each joint go, many times a second."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from elbowroom.cli.options import (
+    Detail,
+    JointsText,
+    JsonFile,
+    Rule,
+    VoxelSize,
+    parse_joints,
+    parse_resolution,
+    use_threads,
+)
+
+
+def monitor(
+    site: Annotated[
+        Path | None,
+        typer.Argument(metavar="[SITE]", help="A site file. Default: a simulated intervention room."),
+    ] = None,
+    seconds: Annotated[
+        float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")
+    ] = None,
+    voxel_size: VoxelSize = None,
+    cameras: Annotated[
+        int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")
+    ] = None,
+    resolution: Annotated[
+        str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
+    ] = None,
+    rule: Rule = None,
+    detail: Detail = None,
+    joints: JointsText = None,
+    threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
+    json: JsonFile = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
+    ] = None,
+) -> None:
+    """Watch a room and say, per joint and direction, how far the machine may go.
+
+    Without SITE: a simulated intervention room, where people walk and a C-arm
+    moves. A site with a recording plays it once. Ctrl-C ends with a summary.
+
+    Not a certified safety function.
+    """
+    positions = parse_joints(joints)
+    size_px = None if resolution is None else parse_resolution(resolution)
+    use_threads(threads)
+
+    from elbowroom.cli.monitor_run import watch
+    from elbowroom.cli.room import open_room
+    from elbowroom.site import Site
+
+    room = open_room(
+        Site.simulated_room() if site is None else Site.load(site),
+        voxel_size_m=voxel_size,
+        rule=rule,
+        detail=detail,
+        joints=positions,
+        cameras=cameras,
+        resolution=size_px,
+        in_real_time=True,
+    )
+    watch(room, seconds=seconds, json_file=json, out_dir=out)

@@ -1,0 +1,122 @@
+"""Options that several commands share, and what people may type for them."""
+
+import math
+import os
+import re
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from elbowroom.errors import InputError
+
+
+class RuleName(StrEnum):
+    """Rules by which cameras are combined."""
+
+    THREE = "three"
+    MAJORITY = "majority"
+    VETO = "veto"
+    ANY = "any"
+
+
+class DetailName(StrEnum):
+    """How closely a voxel is compared with an image."""
+
+    FOOTPRINT = "footprint"
+    PIXEL = "pixel"
+    POINT = "point"
+
+
+SitePath = Annotated[
+    Path, typer.Argument(metavar="SITE", help="A site file (YAML); elbowroom site new writes one.")
+]
+JsonFile = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", help="Write the results as JSON: meta and rows.")
+]
+Rule = Annotated[
+    RuleName | None, typer.Option("--rule", help="How cameras are combined. Default: the site's.")
+]
+Detail = Annotated[
+    DetailName | None, typer.Option("--detail", help="How closely images are looked at. Default: the site's.")
+]
+VoxelSize = Annotated[
+    float | None,
+    typer.Option("--voxel-size", metavar="METRES", help="Edge of a voxel. Default: the site's."),
+]
+JointsText = Annotated[
+    str | None,
+    typer.Option(
+        "--joints",
+        metavar="NAME=VALUE,...",
+        help="Joint positions that hold throughout, such as long=0.1,larm=12deg; plain: m or rad.",
+    ),
+]
+
+IN_BASE_UNITS = {"": 1.0, "m": 1.0, "rad": 1.0, "mm": 1e-3, "deg": math.pi / 180}
+
+
+def parse_joints(text: str | None) -> dict[str, float] | None:
+    """Joint positions [m or rad] by name from "long=0.1,larm=12deg".
+
+    Raises:
+        InputError: something between two commas is not name=number, perhaps with m, mm, rad or deg behind it.
+    """
+    if text is None:
+        return None
+    joints: dict[str, float] = {}
+    for part in text.split(","):
+        name, _, value = (word.strip() for word in part.partition("="))
+        match = re.fullmatch(r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(m|mm|rad|deg)?", value)
+        try:
+            joints[name] = float(match[1]) * IN_BASE_UNITS[match[2] or ""] if match and name else float("nan")
+        except ValueError:
+            joints[name] = float("nan")
+        if not math.isfinite(joints[name]):
+            raise InputError(
+                f"--joints: {part.strip()!r} is no joint position; write name=value, as long=0.1,larm=12deg"
+            )
+    return joints
+
+
+def parse_resolution(text: str) -> tuple[int, int]:
+    """Width and height [px] from "160x120".
+
+    Raises:
+        InputError: not two whole numbers above zero with an x between them.
+    """
+    match = re.fullmatch(r"([0-9]{1,5})x([0-9]{1,5})", text.strip().lower())
+    if not match or min(int(match[1]), int(match[2])) < 1:
+        raise InputError(
+            f"--resolution: {text!r} is no size of an image; write width x height, such as 160x120"
+        )
+    return int(match[1]), int(match[2])
+
+
+def parse_direction(text: str) -> int:
+    """+1 or -1 from "+" or "-".
+
+    Raises:
+        InputError: anything else.
+    """
+    directions = {"+": 1, "+1": 1, "1": 1, "-": -1, "-1": -1}
+    if text not in directions:
+        raise InputError(f"--direction: {text!r} is no direction; allowed are + and -")
+    return directions[text]
+
+
+def use_threads(count: int | None) -> None:
+    """Keeps this process on so many cores; None: all that it has.
+
+    Raises:
+        InputError: below one, more than there are, or a system on which a process cannot be kept to cores.
+    """
+    if count is None:
+        return
+    if not hasattr(os, "sched_setaffinity"):
+        raise InputError("--threads: this system cannot keep a process to some of its cores; leave it out")
+    cores = sorted(os.sched_getaffinity(0))
+    if not 1 <= count <= len(cores):
+        raise InputError(f"--threads: {count} threads, this process may use 1 to {len(cores)}")
+    os.sched_setaffinity(0, cores[:count])

@@ -1,0 +1,52 @@
+"""Steps of longer work: a bar on a terminal, plain lines elsewhere."""
+
+import time
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+
+class Steps:
+    """Shows which step of how many is being done. Use it as a context.
+
+    Args:
+        console: where to show it.
+        count: number of steps.
+    """
+
+    def __init__(self, console: Console, count: int) -> None:
+        self.console, self.count, self.done = console, count, 0
+        self.seconds: dict[str, float] = {}
+        self._current: tuple[str, float] | None = None
+        columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+        self._bar = Progress(*columns, console=console, transient=True) if console.is_terminal else None
+        self._task = self._bar.add_task("", total=count) if self._bar else None
+
+    def __enter__(self) -> "Steps":
+        if self._bar:
+            self._bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._end_step()
+        if self._bar:
+            self._bar.stop()
+
+    def begin(self, what: str) -> None:
+        """Ends the step before and begins the next one, such as "compiling kernels"."""
+        self._end_step()
+        self._current = (what, time.perf_counter())
+        if self._bar and self._task is not None:
+            self._bar.update(self._task, description=f"{what} ...", completed=self.done)
+        else:
+            self.console.print(f"{what} ...", highlight=False)
+        self.done += 1
+
+    def _end_step(self) -> None:
+        if self._current is not None:
+            what, start = self._current
+            self.seconds[what] = time.perf_counter() - start
+            self._current = None

@@ -1,0 +1,59 @@
+"""Results as rows of the files that `--json` writes."""
+
+from typing import Any
+
+import numpy as np
+
+from elbowroom.monitor import CycleResult
+from elbowroom.motion import JointPath, Verdict
+from elbowroom.reconstruct.free_space import FreeSpace
+
+
+def verdict_row(verdict: Verdict) -> dict[str, Any]:
+    """A verdict; `free_travel` and `braking_distance` are in `free_travel_unit`."""
+    motion = verdict.motion
+    path = isinstance(motion, JointPath)
+    return {
+        "joint": motion.name if isinstance(motion, JointPath) else motion.joint,
+        "direction": None if path else "+" if motion.direction > 0 else "-",
+        "level": verdict.level.name.lower(),
+        "band": verdict.band,
+        "free_travel": verdict.free_travel,
+        "free_travel_unit": verdict.free_travel_unit,
+        "braking_distance": motion.braking_distance,
+        "cause": verdict.cause.name.lower(),
+        "overridable": verdict.overridable,
+        "link": verdict.link,
+        "place_m": verdict.place_in_world,
+    }
+
+
+def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
+    """A pass: one row of kind "cycle" and one of kind "verdict" per motion, joined by `sequence`."""
+    shared = {"sequence": result.sequence, "time_s": result.stamp_ns / 1e9}
+    cycle = {
+        "kind": "cycle",
+        **shared,
+        "level": result.level.name.lower(),
+        "cycle_ms": result.cycle_ms,
+        "stage_ms": dict(result.stage_ms),
+        "source_ms": source_ms,
+        "oldest_age_ms": result.oldest_age_ms,
+        "fault": result.fault,
+    }
+    return [cycle, *({"kind": "verdict", **shared, **verdict_row(verdict)} for verdict in result.verdicts)]
+
+
+def shares_pct(space: FreeSpace) -> dict[str, float]:
+    """Shares of all voxels of the grid: free, surface, unseen [%]; blind is a part of surface and unseen."""
+    planes = {
+        "free_pct": space.free_words,
+        "surface_pct": space.surface_words,
+        "unseen_pct": space.blocked_words & ~space.surface_words,
+        "blind_pct": space.blind_words,
+        "body_pct": space.body_words,
+    }
+    return {
+        name: 100 * int(np.unpackbits(words.view(np.uint8)).sum(dtype=np.int64)) / space.grid.size
+        for name, words in planes.items()
+    }
