@@ -1,6 +1,7 @@
-"""The machine itself: its links and joints, where they are, which voxels they cover, which pixels they explain."""
+"""The machine: its links and joints, where they are, which voxels they cover, which pixels they explain."""
 
 from elbowroom.machine.body import body_words, default_growth
+from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.machine.explain import Explained, explain_frames
 from elbowroom.machine.joint import Joint, Mimic
 from elbowroom.machine.link import Link
@@ -16,6 +17,7 @@ __all__ = [
     "Mimic",
     "body_samples",
     "body_words",
+    "ceiling_c_arm",
     "default_growth",
     "explain_frames",
 ]

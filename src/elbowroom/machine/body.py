@@ -1,8 +1,18 @@
 """Which voxels the machine's own body covers."""
 
-from elbowroom.geometry import VoxelGrid
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import MachineError
+from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.bits import Words
+from elbowroom.geometry.parallel import default_threads, spread
+from elbowroom.machine._kernels import mark_balls, mark_points
 from elbowroom.machine.machine import Joints, Machine
+from elbowroom.machine.samples import ROUNDING_M, BodySamples, body_samples
+
+POINTS_PER_THREAD = 40_000
+"""Fewer samples than this for each thread are not worth another one."""
 
 
 def default_growth(grid: VoxelGrid) -> float:
@@ -10,6 +20,79 @@ def default_growth(grid: VoxelGrid) -> float:
     return grid.voxel_size_m / 2
 
 
-def body_words(machine: Machine, joints: Joints, grid: VoxelGrid, growth_m: float | None = None) -> Words:
-    """The plane of the voxels that the grown body covers."""
-    raise NotImplementedError
+def body_words(
+    machine: Machine,
+    joints: Joints,
+    grid: VoxelGrid,
+    growth_m: float | None = None,
+    threads: int | None = None,
+) -> Words:
+    """The plane of the voxels that the grown body covers.
+
+    Set is every voxel that the solid body touches, and every one within `growth_m` less a quarter voxel of its surface.
+    Never set is a voxel farther than `growth_m` from the body. Unchecked links are part of the body; what lies outside
+    the grid is left out.
+
+    Args:
+        machine: whose body.
+        joints: one position for each joint, by name [m or rad].
+        grid: the watched box.
+        growth_m: by how much the body is grown [m], at least a quarter voxel; None: half a voxel.
+        threads: how many to use; None: all cores.
+
+    Raises:
+        MachineError: joints that are not possible, more than one configuration, or a growth below a quarter voxel.
+    """
+    samples = body_samples(machine, grid.voxel_size_m, unchecked=True)
+    growth = default_growth(grid) if growth_m is None else growth_m
+    if not (np.isfinite(growth) and growth >= samples.cover_m):
+        raise MachineError(f"growth_m is {growth}, must be at least {samples.cover_m:g} m, a quarter voxel")
+    positions = machine.positions(joints)
+    if positions.ndim != 1:
+        raise MachineError(f"body_words takes one position for each joint, got arrays of {len(positions)}")
+    world_from_link = machine.world_from_link_array(positions[None])[0]
+    total = len(samples.points) + len(samples.interior)
+    shares = min(threads or default_threads(), max(1, total // POINTS_PER_THREAD))
+    planes = spread(
+        lambda share: _mark(samples, world_from_link, grid, growth, share, shares), range(shares), threads
+    )
+    for plane in planes[1:]:
+        planes[0] |= plane
+    return planes[0]
+
+
+def _mark(
+    samples: BodySamples,
+    world_from_link: NDArray[np.float64],
+    grid: VoxelGrid,
+    growth_m: float,
+    share: int,
+    shares: int,
+) -> Words:
+    """One share of the samples, on a plane of its own."""
+    words, cells = bits.empty(grid), bits.lattice(grid)
+    inner = len(samples.interior)
+    mark_balls(
+        samples.points,
+        samples.cluster_start,
+        samples.cluster_stop,
+        samples.cluster_link,
+        samples.cluster_centre,
+        samples.cluster_radius,
+        share,
+        shares,
+        world_from_link,
+        cells,
+        growth_m - ROUNDING_M / 2,
+        words,
+    )
+    mark_points(
+        samples.interior,
+        samples.interior_link,
+        inner * share // shares,
+        inner * (share + 1) // shares,
+        world_from_link,
+        cells,
+        words,
+    )
+    return words

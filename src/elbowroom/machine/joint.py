@@ -56,5 +56,5 @@ class Joint:
 
     @property
     def unit(self) -> str:
-        """"m" for a joint that slides, "rad" for one that turns."""
+        """ "m" for a joint that slides, "rad" for one that turns."""
         return "m" if self.kind == "prismatic" else "rad"

@@ -144,13 +144,17 @@ class Machine:
         for name in self.joint_names:
             joint = self.joint(name)
             if name not in joints:
-                raise MachineError(f"machine {self.name}: joint {name!r} has no position; all joints need one")
+                raise MachineError(
+                    f"machine {self.name}: joint {name!r} has no position; all joints need one"
+                )
             try:
                 values = np.asarray(joints[name], dtype=np.float64)
             except (TypeError, ValueError):
                 raise MachineError(f"joint {name}: {joints[name]!r} is not a number [{joint.unit}]") from None
             if not np.isfinite(values).all():
-                raise MachineError(f"joint {name}: position is not finite, got {joints[name]!r} [{joint.unit}]")
+                raise MachineError(
+                    f"joint {name}: position is not finite, got {joints[name]!r} [{joint.unit}]"
+                )
             beyond = (values < joint.lower - LIMIT_TOLERANCE) | (values > joint.upper + LIMIT_TOLERANCE)
             if beyond.any():
                 raise MachineError(
@@ -168,7 +172,9 @@ class Machine:
         """
         values = list(self.checked(joints).values())
         if any(value.ndim > 1 for value in values):
-            raise MachineError(f"machine {self.name}: joint positions must be numbers or arrays of one dimension")
+            raise MachineError(
+                f"machine {self.name}: joint positions must be numbers or arrays of one dimension"
+            )
         try:
             return np.stack(np.broadcast_arrays(*values), axis=-1) if values else np.zeros(0)
         except ValueError:

@@ -1,12 +1,16 @@
 """Points that stand for the machine's body: on its surface for touching and sweeping, inside for what it fills."""
 
 from dataclasses import dataclass
+from threading import Lock
+from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from elbowroom.errors import MachineError
+from elbowroom.geometry.parallel import spread
 from elbowroom.machine import _kernels_samples as kernels
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Machine
@@ -60,12 +64,149 @@ class BodySamples:
     interior_link: NDArray[np.int32]
 
 
+class _LinkSamples(NamedTuple):
+    """The samples of one link: points in cluster order, where clusters stop (k + 1), interior points."""
+
+    points: NDArray[np.float32]
+    stops: NDArray[np.int64]
+    interior: NDArray[np.float32]
+
+
+_kept: WeakKeyDictionary[Machine, dict[tuple[float, bool], BodySamples]] = WeakKeyDictionary()
+_keeping = Lock()
+
+
 def body_samples(machine: Machine, voxel_size_m: float, *, unchecked: bool = False) -> BodySamples:
-    """The samples of a machine's checked links for voxels of a size; made once and kept.
+    """The samples of a machine's checked links for voxels of a size; made once per machine and size, then kept.
 
     Args:
         machine: whose links.
         voxel_size_m: edge of a voxel [m].
-        unchecked: take the unchecked links as well.
+        unchecked: whether to take the unchecked links as well.
+
+    Raises:
+        MachineError: the size is not above zero, or so small that a link has too many cells.
     """
-    raise NotImplementedError
+    if not (np.isfinite(voxel_size_m) and voxel_size_m > 0):
+        raise MachineError(f"body samples: voxel_size_m is {voxel_size_m}, must be above 0 [m]")
+    unchecked = unchecked and len(machine.unchecked_links) > 0
+    with _keeping:
+        kept = _kept.setdefault(machine, {})
+        key = (float(voxel_size_m), unchecked)
+        if key not in kept:
+            kept[key] = _sample(machine, float(voxel_size_m), unchecked)
+        return kept[key]
+
+
+def _sample(machine: Machine, voxel_size_m: float, unchecked: bool) -> BodySamples:
+    names = machine.checked_links
+    rows = [
+        row
+        for row, link in enumerate(machine.links)
+        if link.has_geometry and (unchecked or link.name in names)
+    ]
+    cover_m = COVER_IN_VOXELS * voxel_size_m
+    parts = spread(lambda row: _sample_link(machine.links[row], voxel_size_m, cover_m), rows)
+    firsts = np.cumsum([0] + [len(part.points) for part in parts])
+    starts = np.concatenate([first + part.stops[:-1] for first, part in zip(firsts[:-1], parts, strict=True)])
+    stops = np.concatenate([first + part.stops[1:] for first, part in zip(firsts[:-1], parts, strict=True)])
+    points = np.concatenate([part.points for part in parts])
+    centre, radius = _spheres(points, starts, stops)
+    arrays = {
+        "points": points,
+        "point_link": np.repeat(np.int32(rows), [len(part.points) for part in parts]),
+        "cluster_link": np.repeat(np.int32(rows), [len(part.stops) - 1 for part in parts]),
+        "cluster_start": starts,
+        "cluster_stop": stops,
+        "cluster_centre": centre,
+        "cluster_radius": radius,
+        "interior": np.concatenate([part.interior for part in parts]),
+        "interior_link": np.repeat(np.int32(rows), [len(part.interior) for part in parts]),
+    }
+    for array in arrays.values():
+        array.setflags(write=False)
+    return BodySamples(voxel_size_m, cover_m, **arrays)
+
+
+def _sample_link(link: Link, voxel_size_m: float, cover_m: float) -> _LinkSamples:
+    points = surface_points(link.triangles, cover_m - ROUNDING_M)
+    order = np.empty(len(points), dtype=np.int64)
+    stops = np.empty(len(points) + 1, dtype=np.int64)
+    count = kernels.cluster(points, CLUSTER_SIZE, order, stops)
+    return _LinkSamples(
+        points[order].astype(np.float32),
+        stops[: count + 1],
+        interior_points(link, voxel_size_m).astype(np.float32),
+    )
+
+
+def surface_points(triangles: NDArray[np.float64], cover_m: float) -> NDArray[np.float64]:
+    """Few points of triangles such that all of them lies within `cover_m` of a point.
+
+    The triangles are cut into pieces finer than the covering radius; then those points are kept that cover most of
+    what is left. On flat parts that ends within half again of the best possible, a square lattice.
+
+    Args:
+        triangles: shape (m, 3, 3) [m].
+        cover_m: covering radius [m].
+
+    Returns:
+        shape (n, 3) [m].
+    """
+    # 3 x 3 pieces of this pitch just fit within reach of the middle one
+    pitch = 0.47 * cover_m
+    count = kernels.tile_triangles(triangles, pitch, np.empty((0, 3)), np.empty(0), False)
+    points, reach = np.empty((count, 3)), np.empty(count)
+    kernels.tile_triangles(triangles, pitch, points, reach, True)
+    edge = 0.67 * cover_m
+    index = np.floor((points - points.min(axis=0)) / edge).astype(np.int64) + 1
+    _, size_y, size_z = index.max(axis=0) + 2
+    number = (index[:, 0] * size_y + index[:, 1]) * size_z + index[:, 2]
+    order = np.argsort(number, kind="stable")
+    points, number = points[order], number[order]
+    is_first = np.append(True, number[1:] != number[:-1])
+    first = np.append(np.flatnonzero(is_first), count)
+    runs = kernels.neighbour_runs(number[is_first], size_y * size_z, size_z, first)
+    slack = cover_m - reach[order]
+    return points[kernels.thin_out(points, slack * slack, np.cumsum(is_first) - 1, runs)]
+
+
+def interior_points(link: Link, voxel_size_m: float) -> NDArray[np.float64]:
+    """A lattice of points in the solid that a link's surface encloses; gaps narrower than v / 3.5 count as closed.
+
+    The surface is marked in a lattice of cells of half the points' pitch; what cannot be reached from outside without
+    crossing a marked cell is inside. Points in marked cells are kept: they lie within a quarter voxel of the surface.
+
+    Args:
+        link: a link with geometry.
+        voxel_size_m: edge v; a cube of that edge wholly inside holds a point.
+
+    Returns:
+        shape (m, 3), link frame [m].
+
+    Raises:
+        MachineError: the link's bounding box has more than `MAX_CELLS` such cells.
+    """
+    edge = 0.9999 * voxel_size_m / (2 * np.sqrt(3))
+    lower = link.triangles.min(axis=(0, 1)) - 1.5 * edge
+    counts = np.floor((link.triangles.max(axis=(0, 1)) - lower) / edge).astype(np.int64) + 2
+    if np.prod(counts.astype(float)) > MAX_CELLS:
+        raise MachineError(
+            f"link {link.name}: {counts.tolist()} cells of {edge:.2g} m for voxels of {voxel_size_m:g} m are more "
+            f"than {MAX_CELLS:,}; use larger voxels"
+        )
+    surface = np.zeros(tuple(counts), dtype=np.bool_)
+    kernels.mark_surface(link.triangles, lower, edge, surface)
+    outside, _ = ndimage.label(~surface)
+    inside = np.argwhere(outside[::2, ::2, ::2] != outside[0, 0, 0])
+    return lower + (2 * inside + 0.5) * edge
+
+
+def _spheres(
+    points: NDArray[np.float32], starts: NDArray[np.int64], stops: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Middle of the bounding box of each cluster, and the farthest of its points from there."""
+    given = points.astype(np.float64)
+    centre = (np.minimum.reduceat(given, starts) + np.maximum.reduceat(given, starts)) / 2
+    away = np.linalg.norm(given - np.repeat(centre, stops - starts, axis=0), axis=1)
+    return centre, np.maximum.reduceat(away, starts)

@@ -50,9 +50,7 @@ def read_urdf(path: Path, package_dirs: Sequence[Path]) -> Parts:
     links = tuple(_link(by_name[name], path, package_dirs) for name in order)
     if not any(link.has_geometry for link in links):
         raise MachineError(f"{path}: no link has a mesh, box, cylinder or sphere; a machine needs a body")
-    joints = tuple(
-        _joint(into[name], path) for name in order if name in into and into[name].type in MOVABLE
-    )
+    joints = tuple(_joint(into[name], path) for name in order if name in into and into[name].type in MOVABLE)
     return Parts(robot.name, links, joints, _tree(order, into, joints, path))
 
 
@@ -86,19 +84,25 @@ def _tree_order(robot: yourdf.Robot, path: Path) -> list[str]:
     for joint in robot.joints:
         for link in (joint.parent, joint.child):
             if link not in children:
-                raise MachineError(f"{path}: joint {joint.name} names link {link!r}; links are {', '.join(names)}")
+                raise MachineError(
+                    f"{path}: joint {joint.name} names link {link!r}; links are {', '.join(names)}"
+                )
         children[joint.parent].append(joint.child)
     is_child = [child for family in children.values() for child in family]
     roots = [name for name in names if name not in is_child]
     if len(roots) != 1 or len(set(is_child)) != len(is_child):
-        raise MachineError(f"{path}: links must form one tree; without a parent are: {', '.join(roots) or 'none'}")
+        raise MachineError(
+            f"{path}: links must form one tree; without a parent are: {', '.join(roots) or 'none'}"
+        )
     order, waiting = [], roots
     while waiting:
         name = waiting.pop(0)
         order.append(name)
         waiting = children[name] + waiting
     if len(order) != len(names):
-        raise MachineError(f"{path}: links must form one tree; {sorted(set(names) - set(order))} hang in a ring")
+        raise MachineError(
+            f"{path}: links must form one tree; {sorted(set(names) - set(order))} hang in a ring"
+        )
     return order
 
 
@@ -202,7 +206,9 @@ def _leader(joint: Joint, movable: dict[str, Joint], path: Path) -> tuple[str, f
         offset += multiplier * joint.mimic.offset
         multiplier *= joint.mimic.multiplier
         if joint.mimic.joint not in movable or joint.mimic.joint in seen:
-            raise MachineError(f"{path}: joint {joint.name} mimics {joint.mimic.joint!r}, which leads nowhere")
+            raise MachineError(
+                f"{path}: joint {joint.name} mimics {joint.mimic.joint!r}, which leads nowhere"
+            )
         joint = movable[joint.mimic.joint]
         seen.append(joint.name)
     return joint.name, multiplier, offset
