@@ -1,58 +1,163 @@
 """Rays turned into a solid's frame, and what a sensor makes of exact depth."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
 EDGE_STEP_M = 0.05
 """A step in depth of this makes an edge [m]."""
+NEAREST_M = 1e-4
+"""What is nearer to the camera's plane than this counts as behind it [m]."""
+FARTHEST_M = 1e4
+"""Stands for the depth of nothing at all where edges are looked for [m]."""
 
 
 @njit(cache=True, nogil=True)
-def turn_rays(directions, solid_from_camera, rows, columns, depth, turned, known):
-    """Directions of a rectangle of pixels in the frame of a solid.
+def gather_rays(boxes, world_from_solid, camera_from_world, directions, x_range, y_range, depth):
+    """The rays that may meet a solid, turned into its frame.
 
     Args:
+        boxes: least and greatest corners of boxes that hold the solid, shape (k, 2, 3), its frame [m].
+        world_from_solid, camera_from_world: shape (4, 4), rigid.
         directions: shape (h, w, 3), camera frame.
-        solid_from_camera: rotation, shape (3, 3).
-        rows, columns: first and one past the last.
+        x_range: least and greatest X/Z of each column's rays, shape (2, w).
+        y_range: least and greatest Y/Z of each row's rays, shape (2, h).
         depth: planar depth known so far, shape (h, w) [m].
-        turned: float32, shape (at least rows x columns, 3), written.
-        known: float32, shape (at least rows x columns,), written: the depth of these pixels.
+
+    Returns:
+        The camera's centre, float32, shape (3,), and of n pixels: flat indices, shape (n,), directions,
+        float32, shape (n, 3), both in the solid's frame, and the depth known so far, float32, shape (n,).
     """
-    r = solid_from_camera
+    height, width = depth.shape
+    m = _camera_from_solid(world_from_solid, camera_from_world)
+    may_meet = np.zeros((height, width), np.bool_)
+    rows_used, columns_used = (height, 0), (width, 0)
+    for box in range(boxes.shape[0]):
+        top, bottom, left, right = _rectangle(boxes[box], m, x_range, y_range)
+        if top < bottom and left < right:
+            may_meet[top:bottom, left:right] = True
+            rows_used = (min(rows_used[0], top), max(rows_used[1], bottom))
+            columns_used = (min(columns_used[0], left), max(columns_used[1], right))
+    count = 0
+    for v in range(rows_used[0], rows_used[1]):
+        for u in range(columns_used[0], columns_used[1]):
+            count += may_meet[v, u]
+    pixels = np.empty(count, np.int64)
+    turned = np.empty((count, 3), np.float32)
+    known = np.empty(count, np.float32)
     n = 0
-    for v in range(rows[0], rows[1]):
-        for u in range(columns[0], columns[1]):
-            x, y, z = directions[v, u, 0], directions[v, u, 1], directions[v, u, 2]
-            turned[n, 0] = r[0, 0] * x + r[0, 1] * y + r[0, 2] * z
-            turned[n, 1] = r[1, 0] * x + r[1, 1] * y + r[1, 2] * z
-            turned[n, 2] = r[2, 0] * x + r[2, 1] * y + r[2, 2] * z
-            known[n] = depth[v, u]
-            n += 1
+    for v in range(rows_used[0], rows_used[1]):
+        for u in range(columns_used[0], columns_used[1]):
+            if may_meet[v, u]:
+                x, y, z = directions[v, u, 0], directions[v, u, 1], directions[v, u, 2]
+                for axis in range(3):
+                    turned[n, axis] = m[0, axis] * x + m[1, axis] * y + m[2, axis] * z
+                known[n] = depth[v, u]
+                pixels[n] = v * width + u
+                n += 1
+    origin = np.empty(3, np.float32)
+    for axis in range(3):
+        origin[axis] = -(m[0, axis] * m[0, 3] + m[1, axis] * m[1, 3] + m[2, axis] * m[2, 3])
+    return origin, pixels, turned, known
 
 
 @njit(cache=True, nogil=True)
-def keep_nearer(hits, is_dark, rows, columns, depth, dark):
-    """Puts hits that are nearer than what is known into a rectangle of the image.
+def _camera_from_solid(world_from_solid, camera_from_world):
+    m = np.empty((3, 4))
+    for row in range(3):
+        for column in range(4):
+            m[row, column] = camera_from_world[row, 3] if column == 3 else 0.0
+            for k in range(3):
+                m[row, column] += camera_from_world[row, k] * world_from_solid[k, column]
+    return m
+
+
+@njit(cache=True, nogil=True)
+def _rectangle(bounds, camera_from_solid, x_range, y_range):
+    """First and one past the last row and column that a box may meet; all if it reaches behind the camera."""
+    m = camera_from_solid
+    low_x, high_x, low_y, high_y = np.inf, -np.inf, np.inf, -np.inf
+    behind = 0
+    for corner in range(8):
+        x, y, z = bounds[corner & 1, 0], bounds[(corner >> 1) & 1, 1], bounds[corner >> 2, 2]
+        depth = m[2, 0] * x + m[2, 1] * y + m[2, 2] * z + m[2, 3]
+        if depth < NEAREST_M:
+            behind += 1
+            continue
+        right = (m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3]) / depth
+        down = (m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3]) / depth
+        low_x, high_x = min(low_x, right), max(high_x, right)
+        low_y, high_y = min(low_y, down), max(high_y, down)
+    if behind == 8:
+        return 0, 0, 0, 0
+    if behind > 0:
+        return 0, y_range.shape[1], 0, x_range.shape[1]
+    top, bottom = _meeting(y_range, low_y - 1e-6, high_y + 1e-6)
+    left, end = _meeting(x_range, low_x - 1e-6, high_x + 1e-6)
+    return top, bottom, left, end
+
+
+@njit(cache=True, nogil=True)
+def _meeting(ranges, low, high):
+    """First and one past the last interval of a list that meets (low, high)."""
+    first, end = 0, 0
+    for n in range(ranges.shape[1]):
+        if ranges[0, n] <= high and ranges[1, n] >= low:
+            if end == 0:
+                first = n
+            end = n + 1
+    return first, end
+
+
+@njit(cache=True, nogil=True)
+def keep_nearer(hits, pixels, is_dark, depth, dark):
+    """Puts hits that are nearer than what is known into the image.
 
     Args:
-        hits: planar depth, shape (at least rows x columns,) [m].
+        hits: planar depth, shape (n,) [m].
+        pixels: their flat indices, shape (n,).
         is_dark: whether the solid that was hit is dark.
-        rows, columns: first and one past the last.
         depth: shape (h, w), written.
         dark: bool, shape (h, w), written.
     """
-    n = 0
-    for v in range(rows[0], rows[1]):
-        for u in range(columns[0], columns[1]):
-            if hits[n] < depth[v, u]:
-                depth[v, u] = hits[n]
-                dark[v, u] = is_dark
-            n += 1
+    width = depth.shape[1]
+    for n in range(hits.shape[0]):
+        v, u = pixels[n] // width, pixels[n] % width
+        if hits[n] < depth[v, u]:
+            depth[v, u] = hits[n]
+            dark[v, u] = is_dark
+
+
+class Sensor(NamedTuple):
+    """How a sensor departs from exact depth.
+
+    Fields:
+        flying: share of edge pixels that get a depth between both sides.
+        missing, dark_missing, grazing_missing: shares without return: anywhere, and added on
+            dark and grazed surfaces.
+        grazed: relative change of depth from pixel to pixel from which a smooth surface is grazed.
+        least, greatest: the sensor's range [m].
+        constant, linear, quadratic, offset: sigma of depth, as in NoiseModel.
+        radial: whether it delivers radial depth; noise and range are in that kind of depth, too.
+    """
+
+    flying: float
+    missing: float
+    dark_missing: float
+    grazing_missing: float
+    grazed: float
+    least: float
+    greatest: float
+    constant: float
+    linear: float
+    quadratic: float
+    offset: float
+    radial: bool
 
 
 @njit(cache=True, nogil=True)
-def disturb(depth, dark, lengths, normal, uniform, noise, sensor, radial, out):
+def disturb(depth, dark, lengths, normal, uniform, sensor, out):
     """Depth as a sensor delivers it: flying pixels, noise, missing returns, its range.
 
     A pixel is at an edge where inverse depth bends: for planes it is linear over the image, so that a floor
@@ -63,46 +168,42 @@ def disturb(depth, dark, lengths, normal, uniform, noise, sensor, radial, out):
         dark: where a dark surface is seen, shape (h, w).
         lengths: radial over planar depth, shape (h, w).
         normal: standard normal numbers, shape (h, w).
-        uniform: random uint32, shape (h, w).
-        noise: sigma's constant, linear and quadratic coefficient and offset.
-        sensor: flying share, missing share, dark missing share, grazing missing share, least and greatest
-            depth [m], relative change of depth from pixel to pixel from which a smooth surface is grazed.
-        radial: whether the camera delivers radial depth, which is also what its noise depends on.
+        uniform: random uint32, shape (h, w): the low half decides, the high half mixes.
+        sensor: how it departs from exact depth.
         out: shape (h, w), written; 0 is no return.
     """
     height, width = depth.shape
-    flying, missing, dark_missing, grazing_missing, least, greatest, grazed = sensor
     for v in range(height):
         for u in range(width):
             z = depth[v, u]
-            chance = float(uniform[v, u] & np.uint32(0xFFFF)) / 65536.0
-            mix = float(uniform[v, u] >> np.uint32(16)) / 65536.0
-            lost = missing
-            if dark[v, u]:
-                lost += dark_missing
-            near, far, slope = _neighbourhood(depth, v, u)
-            if slope > grazed:
-                lost += grazing_missing
-            if chance >= 1.0 - lost or not z < np.inf:
-                out[v, u] = 0.0
+            out[v, u] = 0.0
+            if not z < FARTHEST_M:
                 continue
-            if far > near and far < np.inf and chance < flying:
-                z = near + mix * (far - near)
-            if radial:
+            near, far, change = _neighbourhood(depth, v, u)
+            lost = sensor.missing
+            if dark[v, u]:
+                lost += sensor.dark_missing
+            if change > 2.0 * sensor.grazed * z:
+                lost += sensor.grazing_missing
+            chance = (uniform[v, u] & np.uint32(0xFFFF)) / 65536.0
+            if chance >= 1.0 - lost:
+                continue
+            if far > near and far < FARTHEST_M and chance < sensor.flying:
+                z = near + (uniform[v, u] >> np.uint32(16)) / 65536.0 * (far - near)
+            if sensor.radial:
                 z *= lengths[v, u]
-            beyond = max(z - noise[3], 0.0)
-            z += normal[v, u] * (noise[0] + noise[1] * z + noise[2] * beyond * beyond)
-            out[v, u] = z if z > 0.0 and least <= z <= greatest else 0.0
+            beyond = max(z - sensor.offset, 0.0)
+            z += normal[v, u] * (sensor.constant + sensor.linear * z + sensor.quadratic * beyond * beyond)
+            if z > 0.0 and sensor.least <= z <= sensor.greatest:
+                out[v, u] = z
 
 
 @njit(cache=True, nogil=True)
 def _neighbourhood(depth, v, u):
-    """Least and greatest depth across an edge (equal where there is none), relative slope where smooth."""
+    """Least and greatest depth across an edge (equal if there is none), change over two pixels if smooth."""
     height, width = depth.shape
-    z = depth[v, u]
-    near, far, slope = z, z, 0.0
-    if not z < np.inf:
-        return near, far, slope
+    z = min(depth[v, u], FARTHEST_M)
+    near, far, change = z, z, 0.0
     for axis in range(2):
         if axis == 0:
             if u == 0 or u == width - 1:
@@ -112,20 +213,21 @@ def _neighbourhood(depth, v, u):
             if v == 0 or v == height - 1:
                 continue
             a, b = depth[v - 1, u], depth[v + 1, u]
-        bend = abs(1.0 / a - 2.0 / z + 1.0 / b)
-        if bend * z * z > EDGE_STEP_M:
+        a, b = min(a, FARTHEST_M), min(b, FARTHEST_M)
+        # |1/a - 2/z + 1/b| z^2 > step, without a division
+        if abs(z * (a + b) - 2.0 * a * b) * z > EDGE_STEP_M * a * b:
             near, far = min(near, a, b), max(far, a, b)
         else:
-            slope = max(slope, abs(b - a) / (2.0 * z))
-    return near, far, slope
+            change = max(change, abs(b - a))
+    return near, far, change
 
 
 @njit(cache=True, nogil=True)
-def as_delivered(depth, lengths, least, greatest, radial, out):
+def as_delivered(depth, lengths, limits, radial, out):
     """Exact planar depth as a perfect sensor of this kind and range delivers it; 0 is no return."""
     for v in range(depth.shape[0]):
         for u in range(depth.shape[1]):
             z = depth[v, u]
             if radial:
                 z *= lengths[v, u]
-            out[v, u] = z if z < np.inf and least <= z <= greatest else 0.0
+            out[v, u] = z if z < np.inf and limits[0] <= z <= limits[1] else 0.0

@@ -1,9 +1,12 @@
 """A rigid solid in the room: a closed mesh and where it is."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+
+BOX_LEVELS = 4
+"""A mesh's triangles are halved so many times to find its boxes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
@@ -15,10 +18,14 @@ class Mesh:
     Args:
         vertices: shape (n, 3), the solid's frame [m].
         faces: shape (m, 3), indices of vertices, counter-clockwise seen from outside.
+
+    Attributes:
+        boxes: up to 16 boxes that hold all triangles, least and greatest corners, shape (k, 2, 3) [m].
     """
 
     vertices: NDArray[np.float64]
     faces: NDArray[np.int32]
+    boxes: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
         vertices = np.array(self.vertices, dtype=np.float64, order="C")
@@ -27,11 +34,20 @@ class Mesh:
         faces.setflags(write=False)
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "faces", faces)
+        boxes = np.array(_boxes(vertices[faces], BOX_LEVELS)) if len(faces) else np.zeros((0, 2, 3))
+        boxes.setflags(write=False)
+        object.__setattr__(self, "boxes", boxes)
 
-    @property
-    def bounds(self) -> NDArray[np.float64]:
-        """Least and greatest corner, shape (2, 3), the solid's frame [m]."""
-        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+def _boxes(triangles: NDArray[np.float64], levels: int) -> list[NDArray[np.float64]]:
+    """Boxes about halves of the triangles, halved again, always along the longest side."""
+    box = np.stack([triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))])
+    if levels == 0 or len(triangles) < 16:
+        return [box]
+    middles = triangles.mean(axis=1)[:, np.argmax(box[1] - box[0])]
+    order = np.argsort(middles, kind="stable")
+    half = len(order) // 2
+    return _boxes(triangles[order[:half]], levels - 1) + _boxes(triangles[order[half:]], levels - 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,0 +1,101 @@
+"""Exact depth of solids at pixel centres, by rays that are cast in each solid's own frame.
+
+A ray-casting scene is built once for each mesh and kept; a solid that moves costs no new scene, its rays are
+turned instead. What never moves is cast once for each camera.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from embreex.mesh_construction import TriangleMesh
+from embreex.rtcore_scene import EmbreeScene
+from numpy.typing import NDArray
+
+from elbowroom.geometry import DepthCamera
+from elbowroom.simulate import _kernels_sensor as kernels
+from elbowroom.simulate.rays import PixelRays, pixel_rays
+from elbowroom.simulate.solid import Mesh, Moment, Solid
+
+CAMERAS_KEPT = 64
+"""For so many cameras, rays and the image of what never moves are kept."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RangeImage:
+    """What one camera sees, before its sensor makes depth of it.
+
+    Args:
+        depth: planar depth at pixel centres, infinite where nothing is, float32, shape (h, w) [m].
+        dark: where a dark surface is seen, shape (h, w).
+        rays: the pixels' rays.
+    """
+
+    depth: NDArray[np.float32]
+    dark: NDArray[np.bool_]
+    rays: PixelRays
+
+
+def range_image(camera: DepthCamera, moment: Moment) -> RangeImage:
+    """Casts the rays of one camera.
+
+    Args:
+        camera: distorted or not; its range, noise and kind of depth play no part here.
+        moment: the solids.
+
+    Raises:
+        CameraError: the lens model folds over within the image.
+    """
+    still = _static_image(camera, moment.static_solids)
+    image = RangeImage(still.depth.copy(), still.dark.copy(), still.rays)
+    _cast_all(camera, moment.moving_solids, image)
+    return image
+
+
+@lru_cache(maxsize=CAMERAS_KEPT)
+def _static_image(camera: DepthCamera, solids: tuple[Solid, ...]) -> RangeImage:
+    shape = (camera.height, camera.width)
+    nothing = np.full(shape, np.inf, dtype=np.float32)
+    image = RangeImage(nothing, np.zeros(shape, dtype=np.bool_), pixel_rays(camera))
+    _cast_all(camera, solids, image)
+    return image
+
+
+def _cast_all(camera: DepthCamera, solids: tuple[Solid, ...], image: RangeImage) -> None:
+    camera_from_world = camera.camera_from_world
+    for solid in solids:
+        _cast(camera_from_world, solid, image)
+
+
+def _cast(camera_from_world: NDArray[np.float64], solid: Solid, image: RangeImage) -> None:
+    """Lets a solid cover what lies behind it; only pixels about the mesh's boxes are cast."""
+    rays = image.rays
+    origin, pixels, turned, known = kernels.gather_rays(
+        solid.mesh.boxes,
+        solid.world_from_solid,
+        camera_from_world,
+        rays.directions,
+        rays.x_range,
+        rays.y_range,
+        image.depth,
+    )
+    if len(pixels):
+        # all rays share one origin: an array of strides (0, 4) over three numbers
+        origins: NDArray[np.float32] = np.ndarray(
+            turned.shape, np.float32, buffer=origin.data, strides=(0, 4)
+        )
+        hits = _scene_of(solid.mesh).run(origins, turned, dists=known, query="DISTANCE")
+        kernels.keep_nearer(hits, pixels, solid.is_dark, image.depth, image.dark)
+
+
+_scenes: WeakKeyDictionary[Mesh, EmbreeScene] = WeakKeyDictionary()
+
+
+def _scene_of(mesh: Mesh) -> EmbreeScene:
+    scene = _scenes.get(mesh)
+    if scene is None:
+        scene = EmbreeScene()
+        TriangleMesh(scene, mesh.vertices.astype(np.float32), mesh.faces)
+        _scenes[mesh] = scene
+    return scene
