@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import GridError
-from elbowroom.geometry._kernels import Lattice
+from elbowroom.geometry._kernels import Lattice, bit_of, word_of
 from elbowroom.geometry.grid import VoxelGrid
 
 Words = NDArray[np.uint64]

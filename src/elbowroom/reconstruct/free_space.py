@@ -2,13 +2,36 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.bits import Words
+from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine, body_words
+from elbowroom.reconstruct.images import RoomImages
+
+if TYPE_CHECKING:
+    from elbowroom.reconstruct.point_report import PointReport
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Source:
+    """What a free space was made of: kept by reference, so that `explain` can ask again. Nothing is stored per voxel.
+
+    Args:
+        images: of the room's cameras.
+        margin: of cameras without one of their own.
+        detail: of the carve.
+        model_depth: by camera, what the machine explains [m].
+    """
+
+    images: RoomImages
+    margin: Margin
+    detail: str
+    model_depth: Mapping[str, NDArray[np.float32]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,7 +47,8 @@ class FreeSpace:
         surface_words: blocked, and some camera measured a surface there.
         blind_words: blocked, disputed by a camera that delivered nothing valid there.
         disputed_words: blocked, and a camera that looks there could not say "through", for whatever reason.
-        body_words: covered by the machine's own grown body when it was taken out.
+        body_words: made free because the machine's own grown body covers it.
+        source: what it was made of, for `explain`; None: it comes from elsewhere.
     """
 
     grid: VoxelGrid
@@ -33,6 +57,7 @@ class FreeSpace:
     blind_words: Words
     disputed_words: Words
     body_words: Words = field(default_factory=lambda: np.zeros(0, dtype=np.uint64))
+    source: Source | None = None
 
     def __post_init__(self) -> None:
         for name in ("free_words", "surface_words", "blind_words", "disputed_words", "body_words"):
@@ -74,6 +99,7 @@ class FreeSpace:
             self.blind_words & keep,
             self.disputed_words & keep,
             self.body_words | body,
+            self.source,
         )
 
     @property
@@ -95,3 +121,17 @@ class FreeSpace:
     def unseen(self) -> NDArray[np.bool_]:
         """Blocked, without a surface: nobody could say that it is free. Shape of the grid."""
         return bits.unpack(self.blocked_words & ~self.surface_words, self.grid)
+
+    def explain(self, point_in_world: ArrayLike) -> "PointReport":
+        """What each camera saw at one point's voxel, and which camera could settle it.
+
+        Args:
+            point_in_world: shape (3,), world frame [m].
+
+        Raises:
+            GridError: the point lies outside the grid.
+            EvidenceError: there are no frames at hand, as for a volume that comes from elsewhere.
+        """
+        from elbowroom.reconstruct.point_report import report_on
+
+        return report_on(self, np.asarray(point_in_world, dtype=float))

@@ -1,0 +1,302 @@
+"""Coarse to fine over cubes of 16 voxels, blocks of 4 and single voxels: what all cameras say, as bit planes.
+
+Early-out (`complete` False): a voxel that three cameras see through is done, and no plane but ONE, TWO and THREE says
+anything of it, so that neither the order nor the grouping of cameras can be read off the result.
+"""
+
+import numpy as np
+from numba import njit
+
+from elbowroom.reconstruct._kernels_box import (
+    ALL,
+    BLANK,
+    FAR,
+    FLOATS,
+    GREATEST,
+    INSIDE,
+    INTS,
+    LEAST,
+    NEAR,
+    OUTSIDE,
+    QUANTUM,
+    SIZE,
+    SPLIT,
+    STATE,
+    CROSSING,
+    U,
+    V,
+    bound_inside,
+    bound_partly,
+    decide_inside,
+    decide_partly,
+    look_up,
+    place_cube,
+)
+from elbowroom.reconstruct._kernels_pixel import (
+    DISPUTES,
+    IS_BLIND,
+    IS_SURFACE,
+    PIXEL_FLOATS,
+    THROUGH,
+    settle_centre,
+    settle_voxel,
+)
+from elbowroom.reconstruct._kernels_pyramid import NEUTRAL, NO_RETURN
+
+ONE, TWO, THREE, DISPUTED, SURFACE, BLIND = range(6)
+PLANES = 6
+POINT, FOOTPRINT, PIXEL = range(3)
+NOTHING = np.uint64(0)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _count_through(planes, word, mask):
+    """Adds one camera's word to the planes *at least 1, 2, 3 cameras see through*."""
+    planes[THREE, word] |= planes[TWO, word] & mask
+    planes[TWO, word] |= planes[ONE, word] & mask
+    planes[ONE, word] |= mask
+
+
+@njit(cache=True, nogil=True)
+def _tally(counts, word, mask):
+    for lane in range(64):
+        counts[word, lane] += np.uint8((mask >> np.uint64(lane)) & np.uint64(1))
+
+
+@njit(cache=True, nogil=True)
+def _lowest_lane(mask):
+    """The number of the lowest set bit, by halving."""
+    lane = 0
+    rest = mask
+    for step in (32, 16, 8, 4, 2, 1):
+        if not rest & ((np.uint64(1) << np.uint64(step)) - np.uint64(1)):
+            rest >>= np.uint64(step)
+            lane += step
+    return lane
+
+
+@njit(cache=True, nogil=True)
+def _measured_at_centre(views, c, unsure, partly, floats):
+    """Which unsure boxes hold the measured point of their centre's pixel, and which have pixels without a return."""
+    surface, blind = NOTHING, NOTHING
+    width, first = int(views.numbers[c, SIZE]), views.texel_first[c]
+    quantum = views.numbers[c, QUANTUM]
+    rest = unsure
+    while rest:
+        lane = _lowest_lane(rest)
+        bit = np.uint64(1) << np.uint64(lane)
+        rest &= ~bit
+        if partly and floats[STATE + lane] == CROSSING:
+            continue
+        if np.isinf(floats[GREATEST + lane]):
+            blind |= bit
+        texel = views.doubt_texels[first + int(floats[V + lane]) * width + int(floats[U + lane])]
+        greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
+        if texel == NEUTRAL or greatest == NO_RETURN:
+            continue
+        if floats[NEAR + lane] <= greatest * quantum <= floats[FAR + lane]:
+            surface |= bit
+    return surface, blind
+
+
+@njit(cache=True, nogil=True)
+def _contested(floats, unsure, partly):
+    """Of the unsure boxes those that unexplained pixels dispute; LEAST and GREATEST come from `doubt`."""
+    disputed = NOTHING
+    rest = unsure
+    while rest:
+        lane = _lowest_lane(rest)
+        bit = np.uint64(1) << np.uint64(lane)
+        rest &= ~bit
+        crossing = partly and floats[STATE + lane] == CROSSING
+        past = floats[LEAST + lane] > floats[FAR + lane]
+        hidden = floats[GREATEST + lane] < floats[NEAR + lane]
+        if crossing or not (past or hidden):
+            disputed |= bit
+    return disputed
+
+
+@njit(cache=True, nogil=True)
+def _ask(views, c, scale, x, y, z, edge, keep_partly, floats, ints, flags):
+    """Words (through, unsure) of the 64 children of a cube, and whether the cube lies partly outside the image."""
+    numbers, levels, offset, trust = views.numbers, views.levels, views.offset, views.trust
+    px, py, pz, state = place_cube(numbers, c, scale, x, y, z, edge)
+    if state == OUTSIDE:
+        return NOTHING, NOTHING, False
+    if state == INSIDE:
+        bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
+        look_up(trust, numbers[c, QUANTUM], floats, ints)
+        through, unsure = decide_inside(floats, flags)
+        return through, unsure, False
+    bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
+    look_up(trust, numbers[c, QUANTUM], floats, ints)
+    through, unsure, cut = decide_partly(floats, flags)
+    return through, (unsure | cut) if keep_partly else unsure, True
+
+
+@njit(cache=True, nogil=True)
+def carve_cubes(
+    cubes, lattice, inside, views, detail, complete, planes, through_count, dispute_count
+):
+    """Carves some 16-voxel cubes; each writes only its own 64 words.
+
+    Args:
+        cubes: (n,) indices of cubes.
+        lattice: the grid.
+        inside: (words,) uint64, ones where the grid has voxels.
+        views: all cameras.
+        detail: FOOTPRINT or PIXEL.
+        complete: whether all cameras are asked of every voxel, and counted.
+        planes: (PLANES, words) uint64, zeros on entry.
+        through_count, dispute_count: (words, 64) uint8 where complete, else of no size.
+    """
+    numbers = views.numbers
+    cameras = numbers.shape[0]
+    floats = np.empty(FLOATS, dtype=np.float32)
+    ints = np.empty(INTS, dtype=np.int32)
+    flags = np.empty(192, dtype=np.uint8)
+    scratch = np.empty(PIXEL_FLOATS, dtype=np.float64)
+    through = np.empty(cameras, dtype=np.uint64)
+    mixed = np.empty(cameras, dtype=np.uint64)
+    undecided = np.empty(cameras, dtype=np.uint64)
+    edge = lattice.edge
+    block = 4.0 * edge
+    for cube in cubes:
+        x = lattice.x0 + (cube // (lattice.cubes_y * lattice.cubes_z)) * 16 * edge
+        y = lattice.y0 + ((cube // lattice.cubes_z) % lattice.cubes_y) * 16 * edge
+        z = lattice.z0 + (cube % lattice.cubes_z) * 16 * edge
+        for c in range(cameras):
+            through[c], mixed[c], _ = _ask(
+                views, c, 1, x + 0.5 * block, y + 0.5 * block, z + 0.5 * block, block, True, floats, ints, flags
+            )
+        for lane in range(64):
+            word = cube * 64 + lane
+            if not inside[word]:
+                continue
+            here = np.uint64(1) << np.uint64(lane)
+            for c in range(cameras):
+                if through[c] & here:
+                    _count_through(planes, word, ALL)
+                    if complete:
+                        _tally(through_count, word, ALL)
+            bx = x + (lane >> 4) * block + 0.5 * edge
+            by = y + ((lane >> 2) & 3) * block + 0.5 * edge
+            bz = z + (lane & 3) * block + 0.5 * edge
+            for c in range(cameras):
+                undecided[c] = NOTHING
+                open_voxels = inside[word] if complete else inside[word] & ~planes[THREE, word]
+                if not mixed[c] & here or not open_voxels:
+                    continue
+                seen, unsure, partly = _ask(views, c, 0, bx, by, bz, edge, detail == PIXEL, floats, ints, flags)
+                seen &= open_voxels
+                unsure &= open_voxels
+                _count_through(planes, word, seen)
+                if complete:
+                    _tally(through_count, word, seen)
+                if numbers[c, BLANK] != 0.0:
+                    planes[DISPUTED, word] |= unsure
+                    planes[BLIND, word] |= unsure
+                    if complete:
+                        _tally(dispute_count, word, unsure)
+                elif detail == PIXEL:
+                    undecided[c] = unsure
+                elif unsure:
+                    if numbers[c, SPLIT] != 0.0:
+                        look_up(views.doubt, numbers[c, QUANTUM], floats, ints)
+                        unsure = _contested(floats, unsure, partly)
+                    surface, blind = _measured_at_centre(views, c, unsure, partly, floats)
+                    planes[DISPUTED, word] |= unsure
+                    planes[SURFACE, word] |= surface
+                    planes[BLIND, word] |= blind
+                    if complete:
+                        _tally(dispute_count, word, unsure)
+            if detail == PIXEL:
+                for c in range(cameras):
+                    rest = undecided[c] if complete else undecided[c] & ~planes[THREE, word]
+                    seen, disputed = NOTHING, NOTHING
+                    while rest:
+                        voxel = _lowest_lane(rest)
+                        bit = np.uint64(1) << np.uint64(voxel)
+                        rest &= ~bit
+                        answer = settle_voxel(
+                            numbers,
+                            c,
+                            views.texel_first[c],
+                            views.trust_texels,
+                            views.doubt_texels,
+                            bx + (voxel >> 4) * edge,
+                            by + ((voxel >> 2) & 3) * edge,
+                            bz + (voxel & 3) * edge,
+                            edge,
+                            scratch,
+                        )
+                        if answer & THROUGH:
+                            seen |= bit
+                        if answer & DISPUTES:
+                            disputed |= bit
+                        if answer & IS_SURFACE:
+                            planes[SURFACE, word] |= bit
+                        if answer & IS_BLIND:
+                            planes[BLIND, word] |= bit
+                    _count_through(planes, word, seen)
+                    planes[DISPUTED, word] |= disputed
+                    if complete:
+                        _tally(through_count, word, seen)
+                        _tally(dispute_count, word, disputed)
+            if not complete:
+                unsettled = ~planes[THREE, word]
+                planes[DISPUTED, word] &= unsettled
+                planes[SURFACE, word] &= unsettled
+                planes[BLIND, word] &= unsettled
+            for plane in range(PLANES):
+                planes[plane, word] &= inside[word]
+
+
+@njit(cache=True, nogil=True)
+def carve_points(
+    cubes, lattice, inside, views, detail, complete, planes, through_count, dispute_count
+):
+    """The thesis' test of voxel centres, every voxel with every camera; arguments as of `carve_cubes`."""
+    numbers = views.numbers
+    edge = lattice.edge
+    for cube in cubes:
+        x = lattice.x0 + (cube // (lattice.cubes_y * lattice.cubes_z)) * 16 * edge
+        y = lattice.y0 + ((cube // lattice.cubes_z) % lattice.cubes_y) * 16 * edge
+        z = lattice.z0 + (cube % lattice.cubes_z) * 16 * edge
+        for word in range(cube * 64, cube * 64 + 64):
+            if not inside[word]:
+                continue
+            lane = word & 63
+            bx = x + ((lane >> 4) * 4 + 0.5) * edge
+            by = y + (((lane >> 2) & 3) * 4 + 0.5) * edge
+            bz = z + ((lane & 3) * 4 + 0.5) * edge
+            for c in range(numbers.shape[0]):
+                seen, disputed, surface, blind = NOTHING, NOTHING, NOTHING, NOTHING
+                for voxel in range(64):
+                    answer = settle_centre(
+                        numbers,
+                        c,
+                        views.texel_first[c],
+                        views.doubt_texels,
+                        bx + (voxel >> 4) * edge,
+                        by + ((voxel >> 2) & 3) * edge,
+                        bz + (voxel & 3) * edge,
+                        edge,
+                    )
+                    bit = (np.uint64(1) << np.uint64(voxel)) & inside[word]
+                    seen |= bit if answer & THROUGH else NOTHING
+                    disputed |= bit if answer & DISPUTES else NOTHING
+                    surface |= bit if answer & IS_SURFACE else NOTHING
+                    blind |= bit if answer & IS_BLIND else NOTHING
+                _count_through(planes, word, seen)
+                planes[DISPUTED, word] |= disputed
+                planes[SURFACE, word] |= surface
+                planes[BLIND, word] |= blind
+                if complete:
+                    _tally(through_count, word, seen)
+                    _tally(dispute_count, word, disputed)
+            if not complete:
+                unsettled = ~planes[THREE, word]
+                planes[DISPUTED, word] &= unsettled
+                planes[SURFACE, word] &= unsettled
+                planes[BLIND, word] &= unsettled

@@ -1,0 +1,121 @@
+"""Frames of any group of cameras -> evidence."""
+
+from collections.abc import Mapping, Sequence
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import InputError
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits
+from elbowroom.geometry.bits import Words
+from elbowroom.geometry.margin import Margin
+from elbowroom.geometry.parallel import default_threads, spread
+from elbowroom.reconstruct import _kernels_carve as kernels
+from elbowroom.reconstruct.evidence import Counts, Evidence
+from elbowroom.reconstruct.images import RoomImages, room_images
+from elbowroom.reconstruct.views import fill, layout_of
+from elbowroom.sensing import DepthFrame
+
+Detail = Literal["footprint", "pixel", "point"]
+DETAILS: tuple[str, ...] = get_args(Detail)
+_CODES = {"point": kernels.POINT, "footprint": kernels.FOOTPRINT, "pixel": kernels.PIXEL}
+SHARES_PER_THREAD = 8
+
+
+def carve(
+    grid: VoxelGrid,
+    cameras: Sequence[DepthCamera],
+    frames: Sequence[DepthFrame],
+    *,
+    detail: Detail = "pixel",
+    margin: Margin | None = None,
+    complete: bool = False,
+    model_depth: Mapping[str, NDArray[np.float32]] | None = None,
+    unexplained: Words | None = None,
+    threads: int | None = None,
+) -> Evidence:
+    """What cameras know of each voxel by one frame each. A camera without a frame disputes all that it looks at.
+
+    Args:
+        grid: the watched box.
+        cameras: a group of cameras, in any order.
+        frames: at most one of each of them.
+        detail: "footprint": a voxel is through if all pixels around its footprint lie behind it; "pixel": if every
+            pixel whose widened cone meets it lies behind where the cone leaves it; "point": the thesis' test of
+            centres (section 3.1), for comparison.
+        margin: for cameras without one of their own; None: `Margin()`.
+        complete: ask all cameras of every voxel and count them, as rules other than `three` need.
+        model_depth: by camera, up to where the machine explains each pixel [m], 0: not explained (`machine.explain`).
+        unexplained: plane of voxels in which returns lie that the machine does not explain.
+        threads: None: all cores. The result does not depend on it.
+
+    Raises:
+        CameraError: a camera named twice, a frame of an unknown camera, or more than 255 cameras.
+        FrameError: two frames of one camera, or a frame of another size than its camera's.
+    """
+    images = room_images(cameras, frames)
+    return carve_images(
+        grid,
+        images,
+        detail=detail,
+        margin=margin,
+        complete=complete,
+        model_depth=model_depth,
+        unexplained=unexplained,
+        threads=threads,
+    )
+
+
+def carve_images(
+    grid: VoxelGrid,
+    images: RoomImages,
+    *,
+    detail: Detail = "pixel",
+    margin: Margin | None = None,
+    complete: bool = False,
+    model_depth: Mapping[str, NDArray[np.float32]] | None = None,
+    unexplained: Words | None = None,
+    threads: int | None = None,
+) -> Evidence:
+    """As `carve`, from images that are pinhole already.
+
+    Raises:
+        InputError: an unknown detail.
+        CameraError: more than 255 cameras.
+    """
+    if detail not in DETAILS:
+        raise InputError(f"detail: {detail!r} is unknown, allowed are {', '.join(DETAILS)}")
+    layout = layout_of(grid, images.cameras, margin or Margin())
+    cells = bits.lattice(grid)
+    cubes = cells.cubes_x * cells.cubes_y * cells.cubes_z
+    planes = np.zeros((kernels.PLANES, cubes * 64), dtype=np.uint64)
+    through, disputes = (np.zeros((cubes * 64 if complete else 0, 64), dtype=np.uint8) for _ in range(2))
+    kernel = kernels.carve_points if detail == "point" else kernels.carve_cubes
+    shares = min(cubes, SHARES_PER_THREAD * (threads or default_threads()))
+    views, buffers = fill(layout, images, model_depth or {}, threads)
+    try:
+        spread(
+            lambda share: kernel(
+                np.arange(share, cubes, shares),
+                cells,
+                layout.inside,
+                views,
+                _CODES[detail],
+                complete,
+                planes,
+                through,
+                disputes,
+            ),
+            range(shares),
+            threads,
+        )
+    finally:
+        layout.give_back(buffers)
+    return Evidence(
+        grid,
+        tuple(camera.name for camera in images.cameras),
+        planes,
+        bits.empty(grid) if unexplained is None else unexplained,
+        Counts(through, disputes) if complete else None,
+    )

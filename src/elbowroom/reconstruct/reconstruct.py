@@ -1,0 +1,146 @@
+"""The newest frames of all cameras -> free space: the main job up to where motion begins."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+
+from elbowroom.errors import InputError
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry.margin import Margin
+from elbowroom.machine import Machine, explain_frames
+from elbowroom.reconstruct.carve import Detail, carve_images
+from elbowroom.reconstruct.free_space import FreeSpace, Source
+from elbowroom.reconstruct.images import frames_by_camera, room_images
+from elbowroom.reconstruct.resolve import Rule, needs_complete, resolve
+from elbowroom.sensing import DepthFrame, JointRecord
+
+Joints = Mapping[str, float] | JointRecord
+Timer = Callable[[str], AbstractContextManager[None]]
+
+
+def reconstruct(
+    grid: VoxelGrid,
+    cameras: Sequence[DepthCamera],
+    frames: Sequence[DepthFrame],
+    machine: Machine | None = None,
+    joints: Joints | None = None,
+    *,
+    rule: Rule = "three",
+    detail: Detail = "pixel",
+    margin: Margin | None = None,
+    now_ns: int | None = None,
+    max_age_ns: int | None = None,
+    explain_tolerance_m: float = 0.01,
+    threads: int | None = None,
+    timer: Timer | None = None,
+) -> FreeSpace:
+    """Space seen to be free, from one frame of each camera and nothing older.
+
+    Args:
+        grid: the watched box.
+        cameras: all cameras of the room. One that has no frame, or only one past its age, disputes all that it
+            looks at.
+        frames: at most one of each camera.
+        machine: whose body is explained in the images and taken out of the volume; None: the bare room.
+        joints: its positions by name [m or rad], or a record to be asked at each frame's time. The body is taken out
+            where it is at the newest frame's time.
+        rule: `three` (default), `majority`, `veto`, `any`: see `resolve`.
+        detail: `pixel` (default), `footprint`, `point`: see `carve`.
+        margin: for cameras without one of their own; None: `Margin()`: 3 sigma, half a pixel.
+        now_ns: the time now [ns, the clock of the frames]; needed for an age limit.
+        max_age_ns: frames older than this are not used [ns]; None: no limit.
+        explain_tolerance_m: how near to the machine's model a return counts as the machine, besides its noise [m].
+        threads: None: all cores. The result does not depend on it.
+        timer: called with the name of each stage, returns a context manager around it; None: nobody measures.
+
+    Raises:
+        CameraError, FrameError: two frames of one camera, a frame of an unknown camera or of another size.
+        MachineError: joints that are unknown, missing or out of their limits.
+        InputError: an unknown rule or detail, a machine without joints, an age limit without the time.
+    """
+    stage = timer or _untimed
+    complete = needs_complete(rule)
+    frames_by_camera(cameras, frames)
+    fresh = young_enough(frames, now_ns, max_age_ns)
+    images = room_images(cameras, fresh)
+    model_depth, unexplained, here = None, None, None
+    if machine is not None:
+        if joints is None:
+            raise InputError("reconstruct: a machine without joints; give its joint positions by name")
+        here = _positions_now(joints, fresh, now_ns)
+        with stage("explain"):
+            seen = [camera for camera in images.cameras if camera.name in images.least_m]
+            stamps = {frame.camera: frame.stamp_ns for frame in fresh}
+            explained = explain_frames(
+                machine,
+                seen,
+                [images.least_m[camera.name] for camera in seen],
+                [_positions_at(joints, stamps[camera.name], camera.name) for camera in seen],
+                tolerance_m=explain_tolerance_m,
+                grid=grid,
+                threads=threads,
+            )
+        model_depth, unexplained = explained.model_depth, explained.unexplained_words
+    with stage("carve"):
+        evidence = carve_images(
+            grid,
+            images,
+            detail=detail,
+            margin=margin,
+            complete=complete,
+            model_depth=model_depth,
+            unexplained=unexplained,
+            threads=threads,
+        )
+    with stage("resolve"):
+        return resolve(
+            evidence,
+            cameras,
+            rule=rule,
+            detail=detail,
+            margin=margin,
+            machine=machine,
+            joints=here,
+            source=Source(images, margin or Margin(), detail, model_depth or {}),
+            threads=threads,
+        )
+
+
+def young_enough(
+    frames: Sequence[DepthFrame], now_ns: int | None, max_age_ns: int | None
+) -> list[DepthFrame]:
+    """The frames within their age limit: neither older, nor so far ahead of the clock, nor without a time.
+
+    Raises:
+        InputError: an age limit without the time now, or one below zero.
+    """
+    if max_age_ns is None:
+        return list(frames)
+    if now_ns is None:
+        raise InputError("max_age_ns: an age limit needs the time, give now_ns")
+    if max_age_ns < 0:
+        raise InputError(f"max_age_ns: is {max_age_ns}, must be at least 0")
+    return [f for f in frames if f.stamp_ns is not None and abs(now_ns - f.stamp_ns) <= max_age_ns]
+
+
+@contextmanager
+def _untimed(_: str) -> Iterator[None]:
+    yield
+
+
+def _positions_at(joints: Joints, stamp_ns: int | None, camera: str) -> Mapping[str, float]:
+    if not isinstance(joints, JointRecord):
+        return joints
+    if stamp_ns is None:
+        raise InputError(f"frame of {camera}: has no time, so a joint record cannot say where the machine was")
+    return joints.at(stamp_ns)
+
+
+def _positions_now(joints: Joints, frames: Sequence[DepthFrame], now_ns: int | None) -> Mapping[str, float]:
+    if not isinstance(joints, JointRecord):
+        return joints
+    newest = [frame.stamp_ns for frame in frames if frame.stamp_ns is not None]
+    if newest:
+        return joints.at(max(newest))
+    if now_ns is None:
+        raise InputError("joints: a record needs frames with times, or now_ns")
+    return joints.at(now_ns)

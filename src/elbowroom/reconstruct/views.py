@@ -1,0 +1,246 @@
+"""Cameras and frames as the arrays that carving kernels take."""
+
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import CameraError
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits
+from elbowroom.geometry.bits import Words
+from elbowroom.geometry.margin import Margin
+from elbowroom.geometry.parallel import spread
+from elbowroom.reconstruct import _kernels_box as box
+from elbowroom.reconstruct import _kernels_pyramid as pyramid
+from elbowroom.reconstruct._kernels_box import Views
+from elbowroom.reconstruct.images import Image, RoomImages
+
+SPARE_M = 0.5
+"""Depth beyond the grid's farthest corner that is still told apart."""
+
+
+def margin_polynomial(camera: DepthCamera, margin: Margin) -> NDArray[np.float64]:
+    """k sigma(z) + bias + range error as (constant, linear, quadratic, quadratic beyond offset, offset)."""
+    constant, linear, beyond, offset = margin.bias_m, margin.range_linear, 0.0, 0.0
+    if camera.noise is not None:
+        constant += margin.sigmas * camera.noise.constant_m
+        linear += margin.sigmas * camera.noise.linear
+        beyond, offset = margin.sigmas * camera.noise.quadratic, camera.noise.offset_m
+    return np.array([constant, linear, margin.range_quadratic, beyond, offset])
+
+
+@dataclass(slots=True, eq=False)
+class _Buffers:
+    """Memory that one carve fills and the next one fills again: fresh pages would cost more than the filling."""
+
+    trust_texels: NDArray[np.uint32]
+    doubt_texels: NDArray[np.uint32]
+    trust: NDArray[np.uint32]
+    doubt: NDArray[np.uint32]
+
+
+@dataclass(slots=True, eq=False)
+class Layout:
+    """What of a carve does not depend on the frames: cameras in a grid."""
+
+    grid: VoxelGrid
+    cameras: tuple[DepthCamera, ...]
+    numbers: NDArray[np.float64]
+    levels: NDArray[np.int64]
+    offset: NDArray[np.float32]
+    texel_first: NDArray[np.int64]
+    shapes: list[list[tuple[int, int]]]
+    inside: Words
+    _spare: list[_Buffers] = field(default_factory=list)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def take_buffers(self, split: bool) -> _Buffers:
+        """Buffers of the last carve, or new ones; `split`: with a doubt of their own."""
+        with self._lock:
+            for position, buffers in enumerate(self._spare):
+                if (buffers.doubt is not buffers.trust) == split:
+                    return self._spare.pop(position)
+        texels = int(self.texel_first[-1])
+        windows = int(self.levels[-1, -1, 0] + 1)
+        trust_texels = np.zeros(texels, dtype=np.uint32)
+        trust = np.zeros(windows, dtype=np.uint32)
+        if not split:
+            return _Buffers(trust_texels, trust_texels, trust, trust)
+        return _Buffers(trust_texels, np.zeros_like(trust_texels), trust, np.zeros_like(trust))
+
+    def give_back(self, buffers: _Buffers) -> None:
+        """Returns buffers for the next carve."""
+        with self._lock:
+            del self._spare[1:]
+            self._spare.insert(0, buffers)
+
+
+@lru_cache(maxsize=8)
+def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin) -> Layout:
+    """Lays cameras out over a grid. Distorted cameras must have been made pinhole before.
+
+    Raises:
+        CameraError: a camera is still distorted, or more than 255 cameras.
+    """
+    if len(cameras) > 255:
+        raise CameraError(f"carve: {len(cameras)} cameras in one group, at most 255 can be counted")
+    numbers = np.zeros((len(cameras), box.COLUMNS))
+    offset = np.zeros((len(cameras), 2, 3, 64), dtype=np.float32)
+    lanes = np.stack(np.meshgrid(range(4), range(4), range(4), indexing="ij"), axis=-1).reshape(64, 3)
+    corners = grid.lower_m + (grid.upper_m - grid.lower_m) * np.stack(
+        np.meshgrid((0, 1), (0, 1), (0, 1), indexing="ij"), axis=-1
+    ).reshape(8, 3)
+    depth = max((_levels_of(camera) for camera in cameras), default=1)
+    levels = np.zeros((len(cameras), depth, 2), dtype=np.int64)
+    texel_first = np.zeros(len(cameras) + 1, dtype=np.int64)
+    shapes, first = [], 0
+    for c, camera in enumerate(cameras):
+        if camera.intrinsics.is_distorted:
+            raise CameraError(f"camera {camera.name}: is distorted, bring its image to a pinhole image before carving")
+        own = camera.margin or margin
+        k = camera.intrinsics
+        rotation = camera.camera_from_world[:3, :3]
+        polynomial = margin_polynomial(camera, own)
+        reach = float(np.linalg.norm(corners - camera.centre_in_world, axis=1).max()) + SPARE_M
+        reach += float(pyramid.margin_at.py_func(reach, polynomial))
+        row = numbers[c]
+        row[:12] = camera.camera_from_world[:3].reshape(12)
+        row[box.LENS : box.LENS + 4] = k.fx, k.fy, k.cx, k.cy
+        row[box.SIZE : box.SIZE + 2] = camera.width, camera.height
+        row[box.MARGIN : box.MARGIN + 5] = polynomial
+        row[box.LATERAL] = own.lateral_px
+        row[box.QUANTUM] = reach / (pyramid.FAR_CLIP - 4)
+        row[box.RADIAL] = camera.depth_kind == "radial"
+        row[box.CENTRE : box.CENTRE + 3] = camera.centre_in_world
+        middle = float(np.linalg.norm(grid.lower_m / 2 + grid.upper_m / 2 - camera.centre_in_world))
+        # windows over single pixels only where voxels of the middle of the grid are that small
+        row[box.LOWEST] = 0 if 0.5 * grid.voxel_size_m * k.fx < max(middle, 1e-3) else 1
+        for scale, edge in enumerate((grid.voxel_size_m, 4 * grid.voxel_size_m)):
+            shift = rotation @ lanes.T * edge
+            offset[c, scale] = shift * np.array([k.fx, k.fy, 1.0])[:, None]
+            half = row[box.HALF_EXTENT + 4 * scale : box.HALF_EXTENT + 4 * scale + 4]
+            half[:3] = np.abs(rotation).sum(axis=1) * edge / 2
+            half[3] = edge * 0.8660255
+        own_shapes = [(camera.height, camera.width)]
+        for _ in range(depth - 1):
+            h, w = own_shapes[-1]
+            own_shapes.append((-(-h // 2), -(-w // 2)))
+        row[box.LOWEST] = min(row[box.LOWEST], depth - 1)
+        for level, (h, w) in enumerate(own_shapes):
+            levels[c, level] = first, w
+            first += h * w if level >= row[box.LOWEST] else 0
+        shapes.append(own_shapes)
+        texel_first[c + 1] = texel_first[c] + camera.width * camera.height
+    return Layout(grid, cameras, numbers, levels, offset, texel_first, shapes, bits.inside(grid))
+
+
+def _levels_of(camera: DepthCamera) -> int:
+    return int(np.ceil(np.log2(max(camera.width, camera.height)))) + 1
+
+
+def fill(
+    layout: Layout, images: RoomImages, model_depth: Mapping[str, Image], threads: int | None
+) -> tuple[Views, _Buffers]:
+    """Builds the windows of all cameras; a camera without images is blank.
+
+    Args:
+        layout: cameras in a grid.
+        images: of those cameras.
+        model_depth: by camera, depth up to which the machine explains the pixel [m], 0 where it does not.
+        threads: None: all cores.
+
+    Returns:
+        What kernels take, and the buffers behind it, to be given back after the carve.
+    """
+    split = bool(model_depth)
+    buffers = layout.take_buffers(split)
+    numbers = layout.numbers.copy()
+
+    def build(c: int) -> None:
+        camera = layout.cameras[c]
+        here = slice(layout.texel_first[c], layout.texel_first[c + 1])
+        shape = (camera.height, camera.width)
+        trust = buffers.trust_texels[here].reshape(shape)
+        doubt = buffers.doubt_texels[here].reshape(shape)
+        if camera.name in images.least_m:
+            numbers[c, box.SPLIT] = _texels(layout, c, images, model_depth.get(camera.name), trust, doubt)
+        else:
+            numbers[c, box.BLANK] = 1
+            trust[:] = 0
+            doubt[:] = 0
+        _windows(layout, c, trust, buffers.trust)
+        if split:
+            if numbers[c, box.SPLIT]:
+                _windows(layout, c, doubt, buffers.doubt)
+            else:
+                doubt[:] = trust
+                _copy_windows(layout, c, buffers)
+
+    spread(build, range(len(layout.cameras)), threads)
+    views = Views(
+        numbers,
+        layout.levels,
+        layout.offset,
+        buffers.trust,
+        buffers.doubt,
+        layout.texel_first,
+        buffers.trust_texels,
+        buffers.doubt_texels,
+    )
+    return views, buffers
+
+
+def _texels(
+    layout: Layout,
+    c: int,
+    images: RoomImages,
+    model_m: Image | None,
+    trust: NDArray[np.uint32],
+    doubt: NDArray[np.uint32],
+) -> bool:
+    """Level 0 of one camera; returns whether the machine explains any of its pixels."""
+    camera = layout.cameras[c]
+    least_m, greatest_m = images.least_m[camera.name], images.greatest_m[camera.name]
+    polynomial = layout.numbers[c, box.MARGIN : box.MARGIN + 5]
+    quantum = layout.numbers[c, box.QUANTUM]
+    low, high = np.float32(camera.min_depth_m), np.float32(camera.max_depth_m)
+    explained = model_m is not None and bool(model_m.any())
+    none = np.zeros((0, 0), dtype=np.uint32)
+    if not camera.flying_pixels:
+        pyramid.texels_of_frame(least_m, greatest_m, low, high, np.float32(quantum), trust)
+        if explained:
+            doubt[:] = trust
+    else:
+        measured = np.empty_like(trust)
+        pyramid.texels_of_frame(least_m, greatest_m, low, high, np.float32(quantum), measured)
+        pyramid.lower_at_steps(measured, none, quantum, polynomial, trust)
+        if explained:
+            unexplained = np.empty_like(trust)
+            pyramid.ignore_explained(model_m, measured, unexplained)
+            pyramid.lower_at_steps(measured, unexplained, quantum, polynomial, doubt)
+    if explained:
+        pyramid.mark_explained(model_m, polynomial, quantum, trust, doubt)
+    return explained
+
+
+def _windows(layout: Layout, c: int, texels: NDArray[np.uint32], windows: NDArray[np.uint32]) -> None:
+    fine = texels
+    for level, shape in enumerate(layout.shapes[c]):
+        if level:
+            coarse = np.empty(shape, dtype=np.uint32)
+            pyramid.halve(fine, coarse)
+            fine = coarse
+        if level >= layout.numbers[c, box.LOWEST]:
+            first = layout.levels[c, level, 0]
+            out = windows[first : first + shape[0] * shape[1]].reshape(shape).view(np.uint16)
+            pyramid.windows_of(fine.view(np.uint16), np.empty_like(out), out)
+
+
+def _copy_windows(layout: Layout, c: int, buffers: _Buffers) -> None:
+    last = layout.shapes[c][-1]
+    start = layout.levels[c, int(layout.numbers[c, box.LOWEST]), 0]
+    end = layout.levels[c, -1, 0] + last[0] * last[1]
+    buffers.doubt[start:end] = buffers.trust[start:end]
