@@ -31,9 +31,14 @@ def clear(motion: Motion, free_travel: float = 0.5) -> Verdict:
 @pytest.fixture
 def a_cycle(monkeypatch) -> Cycle:
     """A pass whose two stages answer that all is free and clear, unless a test lets them do otherwise."""
-    monkeypatch.setattr(cycle, "reconstruct", lambda *_, **__: SPACE)
+
+    def reconstruct(*_, timer, **__):
+        with timer("carve"):
+            return SPACE
+
+    monkeypatch.setattr(cycle, "reconstruct", reconstruct)
     monkeypatch.setattr(
-        cycle, "check_motions", lambda space, machine, joints, motions: [*map(clear, motions)]
+        cycle, "check_motions", lambda space, machine, joints, motions, _: [*map(clear, motions)]
     )
     return Cycle(GRID, (), OneJoint(), MOTIONS)
 
@@ -52,7 +57,7 @@ def assert_all_stop(result, reason: str):
 def test_a_whole_pass_has_verdicts_times_and_no_fault(a_cycle):
     result = a_cycle.run(frames(2_000_000, 5_000_000), {"slide": 0.0}, 7_000_000)
     assert result.level is Level.CLEAR and result.fault is None and result.space is SPACE
-    assert list(result.stage_ms) == ["reconstruct", "motion"]
+    assert list(result.stage_ms) == ["carve", "motion"]
     assert result.cycle_ms == pytest.approx(sum(result.stage_ms.values()))
     assert result.oldest_age_ms == 5.0
 

@@ -93,3 +93,8 @@ def test_a_file_in_the_place_of_the_folder_is_named(tmp_path, space):
     with pytest.raises(InputError, match="is no folder"):
         save_sections(space, tmp_path / "out")
     assert folder(tmp_path / "a" / "b").is_dir()
+
+
+def test_a_folder_in_the_place_of_the_file_is_named_before_the_work(tmp_path):
+    with pytest.raises(InputError, match="is a folder; name a file"), whole_file(tmp_path):
+        pytest.fail("the block must not begin")

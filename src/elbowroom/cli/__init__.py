@@ -26,7 +26,7 @@ def run(argv: Sequence[str] | None = None) -> int:
     from elbowroom.cli.app import app
 
     with warnings.catch_warnings():
-        warnings.showwarning = _show_warning  # type: ignore[assignment]
+        warnings.showwarning = _show_warning
         try:
             code = app(
                 args=None if argv is None else list(argv), prog_name="elbowroom", standalone_mode=False

@@ -44,12 +44,20 @@ def watch(room: Room, *, seconds: float | None, json_file: Path | None, out_dir:
     if out_dir is not None:
         folder(out_dir)
     cycle = Cycle(
-        room.grid, room.cameras, machine, motions, room.rule, room.detail, room.margin, room.site.max_age_ns
+        room.grid,
+        room.cameras,
+        machine,
+        motions,
+        rule=room.rule,
+        detail=room.detail,
+        margin=room.margin,
+        max_age_ns=room.site.max_age_ns,
+        explain_tolerance_m=room.site.explain_tolerance_m,
     )
     console = Console()
-    for note in room.site.notes:
-        console.print(f"note: {note}", highlight=False, soft_wrap=True)
     with json_rows(json_file) as add, TerminalView(room.watched, console) as view:
+        for note in room.site.notes:
+            console.print(f"note: {note}", highlight=False, soft_wrap=True)
         _warm_up(room, cycle, console)
         add(_room_row(room))
         last: tuple[Scene, CycleResult] | None = None

@@ -3,32 +3,16 @@
 import math
 import os
 import re
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
 from elbowroom.errors import InputError
 
 
-class RuleName(StrEnum):
-    """Rules by which cameras are combined."""
-
-    THREE = "three"
-    MAJORITY = "majority"
-    VETO = "veto"
-    ANY = "any"
-
-
-class DetailName(StrEnum):
-    """How closely a voxel is compared with an image."""
-
-    FOOTPRINT = "footprint"
-    PIXEL = "pixel"
-    POINT = "point"
-
-
+RuleName = Literal["three", "majority", "veto", "any"]
+DetailName = Literal["footprint", "pixel", "point"]
 SitePath = Annotated[
     Path, typer.Argument(metavar="SITE", help="A site file (YAML); elbowroom site new writes one.")
 ]

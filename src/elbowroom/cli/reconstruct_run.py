@@ -44,6 +44,7 @@ def space_of(room: Room, scene: Scene) -> FreeSpace:
         margin=room.margin,
         now_ns=scene.now_ns if room.site.has_stamps else None,
         max_age_ns=room.site.max_age_ns,
+        explain_tolerance_m=room.site.explain_tolerance_m,
     )
 
 

@@ -4,11 +4,15 @@ import itertools
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.motion import Motion
+from elbowroom.reconstruct import Detail, Rule
 from elbowroom.sensing import DepthFrame, JointRecord, Margin
 from elbowroom.site import RecordedMoment, Site, moments
 from elbowroom.view.terminal import Watched
@@ -49,8 +53,8 @@ class Room:
     grid: VoxelGrid
     cameras: tuple[DepthCamera, ...]
     machine: Machine | None
-    rule: str
-    detail: str
+    rule: Rule
+    detail: Detail
     scenes: Callable[[], Iterator[Scene]]
 
     @property
@@ -90,8 +94,8 @@ def open_room(
     site: Site,
     *,
     voxel_size_m: float | None = None,
-    rule: str | None = None,
-    detail: str | None = None,
+    rule: Rule | None = None,
+    detail: Detail | None = None,
     joints: Mapping[str, float] | None = None,
     cameras: int | None = None,
     resolution: tuple[int, int] | None = None,
@@ -109,7 +113,7 @@ def open_room(
         in_real_time: recorded moments with times come no faster than they were recorded.
 
     Raises:
-        InputError: cameras or resolution for a room that is not simulated, joints that the machine does not have.
+        InputError: cameras or resolution where the room is not simulated, joints that no machine has.
     """
     grid, machine = site.grid(voxel_size_m), site.machine()
     if joints is not None:
@@ -134,13 +138,16 @@ def open_room(
             )
         made = site.cameras()
         scenes = lambda: _recorded(site, joints, in_real_time)  # noqa: E731
-    return Room(site, grid, made, machine, rule or site.rule, detail or site.detail, scenes)
+    # the file's words are among those that are allowed: its schema says so
+    return Room(
+        site, grid, made, machine, rule or cast(Rule, site.rule), detail or cast(Detail, site.detail), scenes
+    )
 
 
 def _simulated(
     cameras: tuple[DepthCamera, ...], machine: Machine | None, joints: Mapping[str, float] | None, seed: int
 ) -> Iterator[Scene]:
-    """Moments of the simulated room as time goes on. Its frames are new when they come: simulating takes no age."""
+    """Moments of the simulated room as time goes on. Frames are new when they come, however long it took."""
     from elbowroom.simulate import InterventionRoom, render
 
     room = InterventionRoom(machine=machine)
@@ -177,5 +184,6 @@ def _record_of(moment: RecordedMoment) -> JointRecord | None:
     }
     if not at:
         return None
-    stamps = sorted(at)
-    return JointRecord(stamps, {name: [at[stamp][name] for stamp in stamps] for name in at[stamps[0]]})  # type: ignore[arg-type]
+    stamps = np.array(sorted(at), dtype=np.int64)
+    rows = [at[int(stamp)] for stamp in stamps]
+    return JointRecord(stamps, {name: np.array([row[name] for row in rows]) for name in rows[0]})

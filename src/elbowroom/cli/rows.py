@@ -12,10 +12,12 @@ from elbowroom.reconstruct.free_space import FreeSpace
 def verdict_row(verdict: Verdict) -> dict[str, Any]:
     """A verdict; `free_travel` and `braking_distance` are in `free_travel_unit`."""
     motion = verdict.motion
-    path = isinstance(motion, JointPath)
+    joint, direction = (
+        (motion.name, None) if isinstance(motion, JointPath) else (motion.joint, "-+"[motion.direction > 0])
+    )
     return {
-        "joint": motion.name if isinstance(motion, JointPath) else motion.joint,
-        "direction": None if path else "+" if motion.direction > 0 else "-",
+        "joint": joint,
+        "direction": direction,
         "level": verdict.level.name.lower(),
         "band": verdict.band,
         "free_travel": verdict.free_travel,

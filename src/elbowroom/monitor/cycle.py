@@ -13,7 +13,7 @@ from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
 from elbowroom.motion import Cause, Level, Motion, Verdict, check_motions
-from elbowroom.reconstruct import reconstruct
+from elbowroom.reconstruct import Detail, Rule, reconstruct
 from elbowroom.sensing import DepthFrame, JointRecord
 
 
@@ -28,6 +28,8 @@ class Cycle:
         motions: what is asked in each pass; at least one.
         rule, detail, margin: as of `reconstruct`.
         max_age_ns: frames older than this are not used [ns]; None: no limit.
+        explain_tolerance_m: as of `reconstruct` [m].
+        threads: None: all cores.
 
     Raises:
         InputError: no motions, since then nothing would ever say stop.
@@ -37,10 +39,12 @@ class Cycle:
     cameras: Sequence[DepthCamera]
     machine: Machine
     motions: Sequence[Motion]
-    rule: str = "three"
-    detail: str = "pixel"
+    rule: Rule = "three"
+    detail: Detail = "pixel"
     margin: Margin = field(default_factory=Margin)
     max_age_ns: int | None = None
+    explain_tolerance_m: float = 0.01
+    threads: int | None = None
     sequence: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -63,7 +67,7 @@ class Cycle:
             frames: the newest frame of each camera that has one.
             joints: the machine's joint positions now, by name [m or rad]; motions begin there.
             now_ns: the time now [ns, the clock of the frames].
-            joints_at_frames: positions over time, to be asked at each frame's time; None: `joints` held then too.
+            joints_at_frames: positions over time, asked at each frame's time; None: `joints` held then too.
         """
         sequence, self.sequence = self.sequence, self.sequence + 1
         stage_ms: dict[str, float] = {}
@@ -71,21 +75,23 @@ class Cycle:
         space, oldest, fault = None, None, None
         try:
             oldest = _oldest_age_ms(frames, now_ns)
-            with _timed("reconstruct", stage_ms):
-                space = reconstruct(
-                    self.grid,
-                    self.cameras,
-                    frames,
-                    machine=self.machine,
-                    joints=joints if joints_at_frames is None else joints_at_frames,
-                    rule=self.rule,
-                    detail=self.detail,
-                    margin=self.margin,
-                    now_ns=now_ns,
-                    max_age_ns=self.max_age_ns,
-                )
+            space = reconstruct(
+                self.grid,
+                self.cameras,
+                frames,
+                machine=self.machine,
+                joints=joints if joints_at_frames is None else joints_at_frames,
+                rule=self.rule,
+                detail=self.detail,
+                margin=self.margin,
+                now_ns=now_ns,
+                max_age_ns=self.max_age_ns,
+                explain_tolerance_m=self.explain_tolerance_m,
+                threads=self.threads,
+                timer=lambda stage: _timed(stage, stage_ms),
+            )
             with _timed("motion", stage_ms):
-                given = _usable(check_motions(space, self.machine, joints, self.motions))
+                given = _usable(check_motions(space, self.machine, joints, self.motions, self.threads))
         except Exception as error:  # at this border a fault becomes a decision: stop
             space, given = None, {}
             fault = f"{type(error).__name__}: {error}"

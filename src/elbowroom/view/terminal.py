@@ -75,7 +75,9 @@ class Watched:
 
 
 class TerminalView:
-    """Shows passes as they come: a live screen on a terminal, a line a second elsewhere. A context that stops at its end.
+    """Shows passes as they come: a live screen on a terminal, a line a second elsewhere.
+
+    As a context, it stops the screen at its end.
 
     Args:
         watched: what the run watches.

@@ -1,0 +1,54 @@
+"""What people type becomes numbers, or one line that says what to type."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from elbowroom.cli.options import parse_direction, parse_joints, parse_resolution, use_threads
+from elbowroom.errors import InputError
+
+
+@given(st.dictionaries(st.sampled_from(["long", "larm", "joint_1"]), st.floats(-1e3, 1e3), min_size=1))
+def test_joints_are_read_back_as_they_were_written(joints):
+    assert parse_joints(",".join(f"{name}={value!r}" for name, value in joints.items())) == joints
+
+
+def test_joints_may_carry_a_unit():
+    given_joints = parse_joints("long=120mm, larm = -12deg,carc=0.2 rad,rail=1m")
+    assert given_joints == pytest.approx({"long": 0.12, "larm": -math.radians(12), "carc": 0.2, "rail": 1.0})
+
+
+def test_no_joints_are_none():
+    assert parse_joints(None) is None
+
+
+@pytest.mark.parametrize(
+    "text", ["", "long", "long=", "=1", "long=1,,", "long=nan", "long=inf", "long=1ft", "long=.", "a=1e999"]
+)
+def test_joints_that_are_none_are_named(text):
+    with pytest.raises(InputError, match=r"--joints: .* write name=value"):
+        parse_joints(text)
+
+
+def test_resolution_is_width_and_height():
+    assert parse_resolution("160x120") == (160, 120)
+
+
+@pytest.mark.parametrize("text", ["160", "x120", "0x4", "160x-1", "1e3x4", "160x120x3"])
+def test_what_is_no_resolution_is_named(text):
+    with pytest.raises(InputError, match=r"--resolution: .* such as 160x120"):
+        parse_resolution(text)
+
+
+def test_direction_is_a_sign():
+    assert [parse_direction(text) for text in ("+", "-", "+1", "-1")] == [1, -1, 1, -1]
+    with pytest.raises(InputError, match="allowed are \\+ and -"):
+        parse_direction("up")
+
+
+@pytest.mark.parametrize("count", [0, 100_000])
+def test_threads_that_are_not_there_are_refused(count):
+    with pytest.raises(InputError, match="this process may use 1 to"):
+        use_threads(count)
