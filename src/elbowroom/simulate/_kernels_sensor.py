@@ -14,15 +14,13 @@ FARTHEST_M = 1e4
 
 
 @njit(cache=True, nogil=True)
-def gather_rays(boxes, world_from_solid, camera_from_world, directions, x_range, y_range, depth):
+def gather_rays(boxes, world_from_solid, camera_from_world, rays, depth):
     """The rays that may meet a solid, turned into its frame.
 
     Args:
         boxes: least and greatest corners of boxes that hold the solid, shape (k, 2, 3), its frame [m].
         world_from_solid, camera_from_world: shape (4, 4), rigid.
-        directions: shape (h, w, 3), camera frame.
-        x_range: least and greatest X/Z of each column's rays, shape (2, w).
-        y_range: least and greatest Y/Z of each row's rays, shape (2, h).
+        rays: X/Z and Y/Z of the pixels and their ranges, as PixelRays.
         depth: planar depth known so far, shape (h, w) [m].
 
     Returns:
@@ -34,7 +32,7 @@ def gather_rays(boxes, world_from_solid, camera_from_world, directions, x_range,
     may_meet = np.zeros((height, width), np.bool_)
     rows_used, columns_used = (height, 0), (width, 0)
     for box in range(boxes.shape[0]):
-        top, bottom, left, right = _rectangle(boxes[box], m, x_range, y_range)
+        top, bottom, left, right = _rectangle(boxes[box], m, rays.x_range, rays.y_range)
         if top < bottom and left < right:
             may_meet[top:bottom, left:right] = True
             rows_used = (min(rows_used[0], top), max(rows_used[1], bottom))
@@ -50,9 +48,9 @@ def gather_rays(boxes, world_from_solid, camera_from_world, directions, x_range,
     for v in range(rows_used[0], rows_used[1]):
         for u in range(columns_used[0], columns_used[1]):
             if may_meet[v, u]:
-                x, y, z = directions[v, u, 0], directions[v, u, 1], directions[v, u, 2]
+                x, y = float(rays.x[v, u]), float(rays.y[v, u])
                 for axis in range(3):
-                    turned[n, axis] = m[0, axis] * x + m[1, axis] * y + m[2, axis] * z
+                    turned[n, axis] = m[0, axis] * x + m[1, axis] * y + m[2, axis]
                 known[n] = depth[v, u]
                 pixels[n] = v * width + u
                 n += 1
@@ -157,7 +155,7 @@ class Sensor(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def disturb(depth, dark, lengths, normal, uniform, sensor, out):
+def disturb(depth, dark, rays, normal, uniform, sensor, out):
     """Depth as a sensor delivers it: flying pixels, noise, missing returns, its range.
 
     A pixel is at an edge where inverse depth bends: for planes it is linear over the image, so that a floor
@@ -166,7 +164,7 @@ def disturb(depth, dark, lengths, normal, uniform, sensor, out):
     Args:
         depth: planar depth, infinite where nothing is, shape (h, w) [m].
         dark: where a dark surface is seen, shape (h, w).
-        lengths: radial over planar depth, shape (h, w).
+        rays: X/Z and Y/Z of the pixels, as PixelRays.
         normal: standard normal numbers, shape (h, w).
         uniform: random uint32, shape (h, w): the low half decides, the high half mixes.
         sensor: how it departs from exact depth.
@@ -191,7 +189,7 @@ def disturb(depth, dark, lengths, normal, uniform, sensor, out):
             if far > near and far < FARTHEST_M and chance < sensor.flying:
                 z = near + (uniform[v, u] >> np.uint32(16)) / 65536.0 * (far - near)
             if sensor.radial:
-                z *= lengths[v, u]
+                z *= _length(rays, v, u)
             beyond = max(z - sensor.offset, 0.0)
             z += normal[v, u] * (sensor.constant + sensor.linear * z + sensor.quadratic * beyond * beyond)
             if z > 0.0 and sensor.least <= z <= sensor.greatest:
@@ -223,11 +221,18 @@ def _neighbourhood(depth, v, u):
 
 
 @njit(cache=True, nogil=True)
-def as_delivered(depth, lengths, limits, radial, out):
+def _length(rays, v, u):
+    """Radial over planar depth of a pixel."""
+    x, y = float(rays.x[v, u]), float(rays.y[v, u])
+    return np.sqrt(1.0 + x * x + y * y)
+
+
+@njit(cache=True, nogil=True)
+def as_delivered(depth, rays, limits, radial, out):
     """Exact planar depth as a perfect sensor of this kind and range delivers it; 0 is no return."""
     for v in range(depth.shape[0]):
         for u in range(depth.shape[1]):
             z = depth[v, u]
             if radial:
-                z *= lengths[v, u]
+                z *= _length(rays, v, u)
             out[v, u] = z if z < np.inf and limits[0] <= z <= limits[1] else 0.0

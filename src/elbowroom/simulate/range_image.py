@@ -70,21 +70,16 @@ def _cast_all(camera: DepthCamera, solids: tuple[Solid, ...], image: RangeImage)
 
 def _cast(camera_from_world: NDArray[np.float64], solid: Solid, image: RangeImage) -> None:
     """Lets a solid cover what lies behind it; only pixels about the mesh's boxes are cast."""
-    rays = image.rays
     origin, pixels, turned, known = kernels.gather_rays(
         solid.mesh.boxes,
         solid.world_from_solid,
         camera_from_world,
-        rays.directions,
-        rays.x_range,
-        rays.y_range,
+        image.rays,
         image.depth,
     )
     if len(pixels):
         # all rays share one origin: an array of strides (0, 4) over three numbers
-        origins: NDArray[np.float32] = np.ndarray(
-            turned.shape, np.float32, buffer=origin.data, strides=(0, 4)
-        )
+        origins = np.ndarray(turned.shape, dtype=np.float32, buffer=origin.data, strides=(0, 4))
         hits = _scene_of(solid.mesh).run(origins, turned, dists=known, query="DISTANCE")
         kernels.keep_nearer(hits, pixels, solid.is_dark, image.depth, image.dark)
 

@@ -14,17 +14,16 @@ ACCURACY = 1e-10
 
 
 class PixelRays(NamedTuple):
-    """Directions of a camera's pixels.
+    """Directions (x, y, 1) of a camera's pixels, so that the length along a ray is planar depth.
 
     Fields:
-        directions: shape (h, w, 3), camera frame, z = 1, so that the length along a ray is planar depth.
-        lengths: shape (h, w): radial depth over planar depth.
+        x, y: X/Z and Y/Z, float32, shape (h, w): as exact as the depth that is cast along them.
         x_range: per column the least and greatest X/Z, shape (2, w).
         y_range: per row the least and greatest Y/Z, shape (2, h).
     """
 
-    directions: NDArray[np.float64]
-    lengths: NDArray[np.float32]
+    x: NDArray[np.float32]
+    y: NDArray[np.float32]
     x_range: NDArray[np.float64]
     y_range: NDArray[np.float64]
 
@@ -38,10 +37,9 @@ def pixel_rays(camera: DepthCamera) -> PixelRays:
     x, y = np.meshgrid(*camera.intrinsics.normalised(camera.width, camera.height))
     if camera.intrinsics.is_distorted:
         x, y = undistort(x, y, camera.intrinsics, f"camera {camera.name}")
-    directions = np.stack([x, y, np.ones_like(x)], axis=-1)
     return PixelRays(
-        directions=directions,
-        lengths=np.linalg.norm(directions, axis=-1).astype(np.float32),
+        x=x.astype(np.float32),
+        y=y.astype(np.float32),
         x_range=np.stack([x.min(axis=0), x.max(axis=0)]),
         y_range=np.stack([y.min(axis=1), y.max(axis=1)]),
     )

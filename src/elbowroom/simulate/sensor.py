@@ -62,9 +62,7 @@ def render(
             _disturb(image, camera, camera.noise, flying_pixels, missing, random, depth)
         else:
             limits = (camera.min_depth_m, camera.max_depth_m)
-            kernels.as_delivered(
-                image.depth, image.rays.lengths, limits, camera.depth_kind == "radial", depth
-            )
+            kernels.as_delivered(image.depth, image.rays, limits, camera.depth_kind == "radial", depth)
         return DepthFrame(camera=camera.name, stamp_ns=moment.stamp_ns, depth_m=depth)
 
     return spread(one, cameras, threads)
@@ -101,4 +99,4 @@ def _disturb(
     )
     normal = random.standard_normal(depth.shape, dtype=np.float32)
     uniform = random.integers(0, 2**32, depth.shape, dtype=np.uint32)
-    kernels.disturb(image.depth, image.dark, image.rays.lengths, normal, uniform, sensor, depth)
+    kernels.disturb(image.depth, image.dark, image.rays, normal, uniform, sensor, depth)
