@@ -19,6 +19,7 @@ from elbowroom.view.palette import (
     MACHINE_INK,
     SOFT_INK,
     WORDS,
+    Label,
     colour_table,
     labels,
     shares,
@@ -130,13 +131,15 @@ def _section(
     if triangles is not None:
         plot.draw_silhouette(triangles[:, :, plane], MACHINE_INK, 0.16)
         plot.draw_segments(_cut_lines(triangles, normal, at_m)[:, :, plane], MACHINE_INK, 3)
-    for camera in cameras:
+    drawn = sum(
         plot.draw_wedge(camera.centre_in_world[plane], camera.world_from_camera[plane, 2], CAMERA_INK)
+        for camera in cameras
+    )
     plot.draw_axes(AXES[plane[0]], AXES[plane[1]])
     _title(
         plot, f"{'Horizontal' if normal == 2 else 'Vertical'} section at {axis} = {at_m:.2f} m", space, volume
     )
-    _legend(plot, cut, triangles is not None, len(cameras))
+    _legend(plot, cut, triangles is not None, drawn)
     return plot.picture
 
 
@@ -160,6 +163,8 @@ def _legend(plot: Plot, cut: NDArray[np.uint8], with_machine: bool, cameras: int
     y = plot.picture.height - 84
     x = float(LEFT_PX)
     for label, share in shares(cut).items():
+        if label is Label.BODY and not with_machine and share == 0:
+            continue
         pen.rectangle((x, y, x + 20, y + 20), fill=COLOURS[label], outline=INK)
         words = f"{WORDS[label]} {share:.1%}"
         pen.text((x + 28, y + 10), words, fill=INK, font=text, anchor="lm")
@@ -172,7 +177,13 @@ def _legend(plot: Plot, cut: NDArray[np.uint8], with_machine: bool, cameras: int
         x += 28 + pen.textlength(words, font=text) + 30
     if cameras:
         pen.ellipse((x + 5, y + 5, x + 15, y + 15), fill=CAMERA_INK)
-        pen.text((x + 28, y + 10), f"{cameras} camera{'s' * (cameras > 1)}", fill=INK, font=text, anchor="lm")
+        pen.text(
+            (x + 28, y + 10),
+            f"{cameras} camera{'s' * (cameras > 1)}, and where they look",
+            fill=INK,
+            font=text,
+            anchor="lm",
+        )
 
 
 def _cut_lines(triangles: NDArray[np.float64], normal: int, at_m: float) -> NDArray[np.float64]:

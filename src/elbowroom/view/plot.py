@@ -100,17 +100,20 @@ class Plot:
 
     def draw_wedge(
         self, point_m: NDArray[np.float64], direction: NDArray[np.float64], colour: Colour
-    ) -> None:
+    ) -> bool:
         """Marks a place by a dot, and where it looks by a wedge that opens that way.
 
         Args:
             point_m: shape (2,) [m]; outside the area nothing is drawn.
             direction: shape (2,), in the plot's axes; shorter than 1 where it leans out of the plane.
             colour: of the mark.
+
+        Returns:
+            Whether it was drawn.
         """
         slack_m = 6 / self.px_per_m
         if (point_m < self.lower_m - slack_m).any() or (point_m > self.upper_m + slack_m).any():
-            return
+            return False
         x, y = self.area_px(point_m) + np.array([self.left_px, self.top_px])
         forward = np.array([direction[0], -direction[1]])
         length = float(np.linalg.norm(forward))
@@ -122,6 +125,7 @@ class Plot:
             ImageDraw.Draw(cover).polygon(corners, fill=90)
             self.picture.paste(colour, (0, 0), cover)
         ImageDraw.Draw(self.picture).ellipse((x - 5, y - 5, x + 5, y + 5), fill=colour, outline=PAPER)
+        return True
 
     def draw_axes(self, right: str, up: str) -> None:
         """Draws a frame, ticks at round numbers of metres and the names of both axes."""
