@@ -1,14 +1,29 @@
-"""Which pixels of a depth image are the machine itself, and what touches it."""
+"""Which pixels of depth images are the machine itself, and what else was seen near its body."""
 
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.errors import FrameError, MachineError
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
+from elbowroom.geometry.parallel import spread
+from elbowroom.machine import _kernels_image as kernels
+from elbowroom.machine._kernels_image import TILE, View
+from elbowroom.machine.body import default_growth
 from elbowroom.machine.machine import Joints, Machine
+from elbowroom.machine.rasterise import canvas, mesh_of, view_of
+from elbowroom.machine.samples import BodySamples, body_samples
+
+BALL_VOXEL_M = 0.1
+"""The body is covered with balls of some 0.2 m, the clusters of its samples for voxels of this size."""
+REACH_M = 0.1
+"""Returns this much farther from the body are kept as well: it moves between frame and decision [m]."""
+RETURN_SIGMAS = 3.0
+"""A return may lie this many sigmas nearer or farther than measured."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -16,10 +31,12 @@ class Explained:
     """What the machine explains of a set of depth images.
 
     Args:
-        model_depth: by camera, shape (height, width), float32: 0 where the pixel is not explained; else up to where
-            its ray is free, the nearest depth of the model in the pixel's 3x3 neighbourhood [m, the camera's kind].
-        unexplained_words: plane of the grid: voxels near the body that hold a return that the machine does not
-            explain; None if no grid was given.
+        model_depth: by camera, float32, shape (height, width) [m, the camera's kind]: 0 where the pixel is not
+            explained; else the depth up to which its ray is free, the model's nearest within the 3 x 3 pixels
+            about it.
+        unexplained_words: plane of the grid with every voxel, near the grown body, that may hold a return that
+            the machine does not explain; such voxels must not be freed as body. Voxels farther from the body
+            may be set too. None if no grid was given.
     """
 
     model_depth: dict[str, NDArray[np.float32]]
@@ -35,6 +52,144 @@ def explain_frames(
     tolerance_sigmas: float = 5.5,
     grid: VoxelGrid | None = None,
     threads: int | None = None,
+    growth_m: float | None = None,
 ) -> Explained:
-    """Explains the pixels of depth images by the machine's model."""
-    raise NotImplementedError
+    """Finds the pixels whose measured point lies on the machine's model.
+
+    A valid depth d is explained if it lies between the least and the greatest depth that the model has within
+    the 3 x 3 pixels about it, give or take `tolerance_m` + `tolerance_sigmas` * sigma(d). Where the model is not
+    in these pixels, nothing is explained.
+
+    Args:
+        machine: with all its links, unchecked ones too.
+        cameras: without distortion.
+        depths: for each camera, floating, shape (height, width) [m, its kind]; what is not a finite number above
+            zero and within the camera's range is no return.
+        joints_per_camera: for each camera, joint positions at its frame's time, by name [m or rad].
+        tolerance_m, tolerance_sigmas: as above; not the margin of carving.
+        grid: for `unexplained_words`; None: without.
+        threads: how many to use; None: all cores.
+        growth_m: by how much the body is grown where voxels are cleared [m]; None: half a voxel.
+
+    Raises:
+        CameraError: a camera has distortion.
+        FrameError: an image of another size than its camera's, or not as many images or joints as cameras.
+        MachineError: joints that are not possible, or a tolerance below zero.
+    """
+    if not (len(cameras) == len(depths) == len(joints_per_camera)):
+        raise FrameError(
+            f"explain_frames: {len(cameras)} cameras, {len(depths)} images and {len(joints_per_camera)} joint "
+            "positions; must be as many of each"
+        )
+    if not (tolerance_m >= 0 and tolerance_sigmas >= 0):
+        raise MachineError(f"tolerance is {tolerance_m} m + {tolerance_sigmas} sigmas, must be at least 0")
+    views = [view_of(camera) for camera in cameras]
+    images = [_image(camera, depth) for camera, depth in zip(cameras, depths, strict=True)]
+    placed = _camera_from_links(machine, cameras, joints_per_camera)
+    near_body = None
+    if grid is not None:
+        growth = default_growth(grid) if growth_m is None else growth_m
+        near_body = _Near(grid, body_samples(machine, BALL_VOXEL_M, unchecked=True), growth)
+    mesh = mesh_of(machine)
+    canvases: deque[NDArray[np.float32]] = deque()
+
+    def explain_one(n: int) -> NDArray[np.float32]:
+        view = views[n]
+        inverse, first, last = _spare_canvas(canvases, view)
+        kernels.draw(mesh, placed[n], view, inverse, first, last)
+        kernels.to_kind(view, inverse, first, last)
+        model = np.zeros((view.height, view.width), dtype=np.float32)
+        kernels.explain(view, images[n], inverse, first, last, tolerance_m, tolerance_sigmas, model)
+        canvases.append(inverse)
+        if near_body is not None:
+            near_body.mark(view, images[n], model, placed[n], cameras[n].world_from_camera)
+        return model
+
+    models = spread(explain_one, range(len(cameras)), threads)
+    return Explained(
+        model_depth={camera.name: model for camera, model in zip(cameras, models, strict=True)},
+        unexplained_words=None if near_body is None else near_body.words,
+    )
+
+
+class _Near:
+    """Collects unexplained returns near the body, on a plane for each thread."""
+
+    def __init__(self, grid: VoxelGrid, balls: BodySamples, growth_m: float) -> None:
+        self._grid = grid
+        self._balls = balls
+        voxel_diagonal = np.sqrt(3) * grid.voxel_size_m
+        self._radius = balls.cluster_radius + balls.cover_m + growth_m + voxel_diagonal + REACH_M
+        self._planes: list[Words] = []
+        self._spare: deque[Words] = deque()
+
+    def mark(
+        self,
+        view: View,
+        depth: NDArray[np.float32],
+        model: NDArray[np.float32],
+        camera_from_link: NDArray[np.float64],
+        world_from_camera: NDArray[np.float64],
+    ) -> None:
+        """Adds the returns of one image."""
+        tiles = (-(-view.height // TILE), -(-view.width // TILE))
+        near, far = np.full(tiles, np.inf), np.zeros(tiles)
+        balls = self._balls
+        kernels.mark_tiles(
+            balls.cluster_centre, balls.cluster_link, self._radius, camera_from_link, view, near, far
+        )
+        try:
+            words = self._spare.pop()
+        except IndexError:
+            words = bits.empty(self._grid)
+            self._planes.append(words)
+        cells = bits.lattice(self._grid)
+        kernels.mark_unexplained(
+            view, depth, model, near, far, RETURN_SIGMAS, world_from_camera, cells, words
+        )
+        self._spare.append(words)
+
+    @property
+    def words(self) -> Words:
+        """The plane of all images that were added."""
+        union = bits.empty(self._grid)
+        for plane in self._planes:
+            union |= plane
+        return union
+
+
+def _image(camera: DepthCamera, depth: NDArray[np.float32]) -> NDArray[np.float32]:
+    image = np.ascontiguousarray(depth, dtype=np.float32)
+    if image.shape != (camera.height, camera.width):
+        raise FrameError(
+            f"frame of {camera.name}: image has shape {image.shape}, the camera delivers "
+            f"{(camera.height, camera.width)}"
+        )
+    return image
+
+
+def _camera_from_links(
+    machine: Machine, cameras: Sequence[DepthCamera], joints_per_camera: Sequence[Joints]
+) -> NDArray[np.float64]:
+    """Where all links are for each camera at its frame's time, shape (cameras, links, 4, 4)."""
+    positions = [machine.positions(joints) for joints in joints_per_camera]
+    if any(row.ndim != 1 for row in positions):
+        raise MachineError("explain_frames takes one position for each joint and camera, got arrays")
+    columns = len(machine.joint_names)
+    placed = machine.world_from_link_array(np.reshape(positions, (len(cameras), columns)))
+    if not len(cameras):
+        return placed
+    return np.stack([camera.camera_from_world for camera in cameras])[:, None] @ placed
+
+
+def _spare_canvas(
+    canvases: deque[NDArray[np.float32]], view: View
+) -> tuple[NDArray[np.float32], NDArray[np.int64], NDArray[np.int64]]:
+    """An empty canvas, on the memory of one that was wiped if there is one of this size."""
+    try:
+        inverse = canvases.pop()
+    except IndexError:
+        return canvas(view.height, view.width)
+    if inverse.shape != (view.height, view.width):
+        return canvas(view.height, view.width)
+    return inverse, np.full(view.height, view.width, dtype=np.int64), np.full(view.height, -1, dtype=np.int64)

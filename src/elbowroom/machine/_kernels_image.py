@@ -1,0 +1,366 @@
+"""Draws triangles into depth images and compares them with measured ones: arrays in, arrays out."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from elbowroom.geometry._kernels import bit_of, word_of
+
+NEAR_M = 0.001
+EDGE_PX = 1e-7
+TILE = 16
+
+
+class View(NamedTuple):
+    """A pinhole camera as kernels take it: image, intrinsics [px], kind of depth, range [m], noise."""
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    radial: bool
+    min_depth: float
+    max_depth: float
+    constant: float
+    linear: float
+    quadratic: float
+    offset: float
+
+
+class Mesh(NamedTuple):
+    """Triangles of many links, one after the other; link l has vertices vertex_start[l] to vertex_start[l + 1].
+
+    All faces of a link refer to `vertices` as a whole. `centre`, `radius`: a sphere about each link, in its frame.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    vertex_start: np.ndarray
+    face_start: np.ndarray
+    centre: np.ndarray
+    radius: np.ndarray
+
+
+@njit(cache=True, nogil=True)
+def draw(mesh, camera_from_link, view, inverse, first, last):
+    """Draws links into an image of inverse planar depth; what is nearer wins.
+
+    Args:
+        mesh: the links.
+        camera_from_link: (links, 4, 4).
+        view: the camera.
+        inverse: (height, width) float32, 1 / planar depth [1/m], 0 where nothing is.
+        first, last: (height,) first and last column drawn in each row; rows without: width and -1.
+    """
+    seen = np.empty((mesh.vertices.shape[0], 3))
+    corners = np.empty((3, 3))
+    for l in range(mesh.radius.size):  # noqa: E741
+        if mesh.face_start[l + 1] == mesh.face_start[l]:
+            continue
+        pose = camera_from_link[l]
+        if not _sphere_in_view(pose, mesh.centre[l], mesh.radius[l], view):
+            continue
+        for p in range(mesh.vertex_start[l], mesh.vertex_start[l + 1]):
+            a, b, c = mesh.vertices[p, 0], mesh.vertices[p, 1], mesh.vertices[p, 2]
+            x = pose[0, 0] * a + pose[0, 1] * b + pose[0, 2] * c + pose[0, 3]
+            y = pose[1, 0] * a + pose[1, 1] * b + pose[1, 2] * c + pose[1, 3]
+            z = pose[2, 0] * a + pose[2, 1] * b + pose[2, 2] * c + pose[2, 3]
+            if z >= NEAR_M:
+                seen[p, 0], seen[p, 1], seen[p, 2] = (
+                    view.fx * x / z + view.cx,
+                    view.fy * y / z + view.cy,
+                    1.0 / z,
+                )
+            else:
+                # behind the near plane: kept as it is, for clipping; told apart by the sign
+                seen[p, 0], seen[p, 1], seen[p, 2] = x, y, min(z - NEAR_M, -1e-12)
+        for f in range(mesh.face_start[l], mesh.face_start[l + 1]):
+            a, b, c = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
+            behind = (seen[a, 2] < 0.0) + (seen[b, 2] < 0.0) + (seen[c, 2] < 0.0)
+            if behind == 0:
+                _fill(
+                    seen[a, 0], seen[a, 1], seen[a, 2], seen[b, 0], seen[b, 1], seen[b, 2],
+                    seen[c, 0], seen[c, 1], seen[c, 2], view, inverse, first, last,
+                )  # fmt: skip
+            elif behind < 3:
+                corners[0], corners[1], corners[2] = seen[a], seen[b], seen[c]
+                _clip_and_fill(corners, view, inverse, first, last)
+
+
+@njit(nogil=True)
+def _sphere_in_view(pose, centre, radius, view):
+    """Whether a sphere may meet the image: not beyond the near plane or a side of the view."""
+    a, b, c = centre[0], centre[1], centre[2]
+    x = pose[0, 0] * a + pose[0, 1] * b + pose[0, 2] * c + pose[0, 3]
+    y = pose[1, 0] * a + pose[1, 1] * b + pose[1, 2] * c + pose[1, 3]
+    z = pose[2, 0] * a + pose[2, 1] * b + pose[2, 2] * c + pose[2, 3]
+    if z + radius < NEAR_M:
+        return False
+    left, right = view.cx + 0.5, view.width - 0.5 - view.cx
+    above, below = view.cy + 0.5, view.height - 0.5 - view.cy
+    return (
+        view.fx * x + left * z >= -radius * math.hypot(view.fx, left)
+        and right * z - view.fx * x >= -radius * math.hypot(view.fx, right)
+        and view.fy * y + above * z >= -radius * math.hypot(view.fy, above)
+        and below * z - view.fy * y >= -radius * math.hypot(view.fy, below)
+    )
+
+
+@njit(nogil=True)
+def _clip_and_fill(corners, view, inverse, first, last):
+    """Cuts a triangle at the near plane and draws the one or two triangles that are left."""
+    points = np.empty((3, 3))
+    for p in range(3):
+        if corners[p, 2] < 0.0:
+            points[p, 0], points[p, 1], points[p, 2] = corners[p, 0], corners[p, 1], corners[p, 2] + NEAR_M
+        else:
+            z = 1.0 / corners[p, 2]
+            points[p, 0] = (corners[p, 0] - view.cx) * z / view.fx
+            points[p, 1] = (corners[p, 1] - view.cy) * z / view.fy
+            points[p, 2] = z
+    kept = np.empty((4, 3))
+    n = 0
+    for p in range(3):
+        q = (p + 1) % 3
+        inside, next_inside = corners[p, 2] > 0.0, corners[q, 2] > 0.0
+        if inside:
+            kept[n] = points[p]
+            n += 1
+        if inside != next_inside:
+            t = (NEAR_M - points[p, 2]) / (points[q, 2] - points[p, 2])
+            kept[n] = points[p] + t * (points[q] - points[p])
+            kept[n, 2] = NEAR_M
+            n += 1
+    for p in range(n):
+        z = kept[p, 2]
+        kept[p, 0], kept[p, 1] = view.fx * kept[p, 0] / z + view.cx, view.fy * kept[p, 1] / z + view.cy
+        kept[p, 2] = 1.0 / z
+    for p in range(1, n - 1):
+        _fill(
+            kept[0, 0], kept[0, 1], kept[0, 2], kept[p, 0], kept[p, 1], kept[p, 2],
+            kept[p + 1, 0], kept[p + 1, 1], kept[p + 1, 2], view, inverse, first, last,
+        )  # fmt: skip
+
+
+@njit(nogil=True)
+def _fill(ua, va, ia, ub, vb, ib, uc, vc, ic, view, inverse, first, last):
+    """Draws a triangle given by its corners' columns, rows and inverse depths.
+
+    Inverse depth is linear over the image. Rows are cut by the triangle's edges, each always taken from its upper end,
+    so that neighbours meet without gaps.
+    """
+    # corners from the top down
+    if vb < va:
+        ua, va, ia, ub, vb, ib = ub, vb, ib, ua, va, ia
+    if vc < va:
+        ua, va, ia, uc, vc, ic = uc, vc, ic, ua, va, ia
+    if vc < vb:
+        ub, vb, ib, uc, vc, ic = uc, vc, ic, ub, vb, ib
+    if not (va <= view.height - 1 + EDGE_PX and vc >= -EDGE_PX):
+        return
+    left, right = min(ua, ub, uc), max(ua, ub, uc)
+    if not (left <= view.width - 1 + EDGE_PX and right >= -EDGE_PX):
+        return
+    top, bottom = math.ceil(max(va - EDGE_PX, 0.0)), math.floor(min(vc + EDGE_PX, view.height - 1.0))
+    left, right = max(left - EDGE_PX, 0.0), min(right + EDGE_PX, view.width - 1.0)
+    if top > bottom or math.ceil(left) > math.floor(right):
+        return
+    area = (ub - ua) * (vc - va) - (uc - ua) * (vb - va)
+    if abs(area) < 1e-12:
+        return
+    along = ((ib - ia) * (vc - va) - (ic - ia) * (vb - va)) / area
+    down = ((ic - ia) * (ub - ua) - (ib - ia) * (uc - ua)) / area
+    least, most = min(ia, ib, ic), max(ia, ib, ic)
+    long_slope = (uc - ua) / (vc - va)
+    upper_slope = (ub - ua) / (vb - va) if vb > va else 0.0
+    lower_slope = (uc - ub) / (vc - vb) if vc > vb else 0.0
+    for row in range(top, bottom + 1):
+        v = min(max(float(row), va), vc)
+        one = ua + (v - va) * long_slope
+        if v < vb:
+            two = ua + (v - va) * upper_slope
+        elif v > vb or vc > vb:
+            two = ub + (v - vb) * lower_slope
+        else:
+            two = ub
+        x0 = math.ceil(max(min(one, two) - EDGE_PX, left))
+        x1 = math.floor(min(max(one, two) + EDGE_PX, right))
+        if x0 > x1:
+            continue
+        first[row], last[row] = min(first[row], x0), max(last[row], x1)
+        start = ia + down * (row - va) - along * ua
+        for x in range(x0, x1 + 1):
+            value = np.float32(min(max(start + along * x, least), most))
+            inverse[row, x] = max(inverse[row, x], value)
+
+
+@njit(cache=True, nogil=True)
+def to_kind(view, inverse, first, last):
+    """Turns inverse planar depth into inverse depth of the camera's kind, where something was drawn."""
+    if view.radial:
+        for v in range(view.height):
+            y = (v - view.cy) / view.fy
+            for u in range(first[v], last[v] + 1):
+                x = (u - view.cx) / view.fx
+                inverse[v, u] /= math.sqrt(1.0 + x * x + y * y)
+
+
+@njit(cache=True, nogil=True)
+def explain(view, depth, inverse, first, last, tolerance, sigmas, model):
+    """Fills `model` where a measured depth fits what was drawn in the 3 x 3 pixels about it; wipes `inverse`.
+
+    Args:
+        view: the camera.
+        depth: (height, width) float32, measured [m, the camera's kind].
+        inverse: (height, width) float32, from `draw` and `to_kind`; zeros afterwards.
+        first, last: (height,) columns drawn in each row.
+        tolerance, sigmas: a depth d fits if it lies within tolerance [m] + sigmas * sigma(d).
+        model: (height, width) float32 zeros; nearest depth drawn about a pixel that fits [m, the camera's kind].
+    """
+    height, width = view.height, view.width
+    left, right = width, -1
+    for v in range(height):
+        left, right = min(left, first[v]), max(right, last[v])
+    if right < 0:
+        return
+    left, right = max(0, left - 1), min(width - 1, right + 1)
+    # greatest and least inverse depth of three neighbours in each of three rows
+    most = np.zeros((3, width), dtype=np.float32)
+    least = np.full((3, width), np.inf, dtype=np.float32)
+    for v in range(-1, height):
+        _across(inverse, v + 1, first, last, left, right, most[(v + 1) % 3], least[(v + 1) % 3])
+        if v < 0:
+            continue
+        start, stop = width, -1
+        for row in range(max(0, v - 1), min(height, v + 2)):
+            start, stop = min(start, first[row]), max(stop, last[row])
+        for u in range(max(0, start - 1), min(width - 1, stop + 1) + 1):
+            nearest = max(most[0, u], most[1, u], most[2, u])
+            d = depth[v, u]
+            if nearest > 0.0 and d > 0.0 and view.min_depth <= d <= view.max_depth and d < np.inf:
+                farthest = min(least[0, u], least[1, u], least[2, u])
+                slack = tolerance + sigmas * _sigma(view, d)
+                if (d + slack) * nearest >= 1.0 and (d - slack) * farthest <= 1.0:
+                    model[v, u] = np.float32(1.0) / nearest
+    for v in range(height):
+        inverse[v, first[v] : last[v] + 1] = 0.0
+
+
+@njit(nogil=True)
+def _across(inverse, v, first, last, left, right, most, least):
+    """Greatest and least inverse depth of each pixel of row v and its two neighbours; 0 and infinity for none."""
+    most[left : right + 1] = 0.0
+    least[left : right + 1] = np.inf
+    if v >= inverse.shape[0]:
+        return
+    for u in range(first[v], last[v] + 1):
+        here = inverse[v, u]
+        if here > 0.0:
+            for w in range(max(u - 1, left), min(u + 1, right) + 1):
+                most[w] = max(most[w], here)
+                least[w] = min(least[w], here)
+
+
+@njit(nogil=True)
+def _sigma(view, d):
+    """Standard deviation at a measured depth (geometry.noise)."""
+    beyond = max(d - view.offset, 0.0)
+    return view.constant + view.linear * d + view.quadratic * beyond * beyond
+
+
+@njit(cache=True, nogil=True)
+def mark_tiles(balls, link, radius, camera_from_link, view, near, far):
+    """Per tile of 16 x 16 pixels, the least and greatest depth of the balls that may be seen in it.
+
+    Args:
+        balls: (n, 3) middles, in the frame of their `link`; `radius`: (n,) [m].
+        camera_from_link: (links, 4, 4).
+        view: the camera.
+        near, far: (rows, columns) of tiles, infinity and 0 before [m, the camera's kind].
+    """
+    for n in range(link.size):
+        pose, r = camera_from_link[link[n]], radius[n]
+        a, b, c = balls[n, 0], balls[n, 1], balls[n, 2]
+        x = pose[0, 0] * a + pose[0, 1] * b + pose[0, 2] * c + pose[0, 3]
+        y = pose[1, 0] * a + pose[1, 1] * b + pose[1, 2] * c + pose[1, 3]
+        z = pose[2, 0] * a + pose[2, 1] * b + pose[2, 2] * c + pose[2, 3]
+        if z + r <= 0.0:
+            continue
+        away = math.sqrt(x * x + y * y + z * z) if view.radial else z
+        u0, u1, v0, v1 = 0.0, view.width - 1.0, 0.0, view.height - 1.0
+        if z - r > NEAR_M:
+            u0 = max(u0, view.cx + view.fx * min((x - r) / (z - r), (x - r) / (z + r)))
+            u1 = min(u1, view.cx + view.fx * max((x + r) / (z - r), (x + r) / (z + r)))
+            v0 = max(v0, view.cy + view.fy * min((y - r) / (z - r), (y - r) / (z + r)))
+            v1 = min(v1, view.cy + view.fy * max((y + r) / (z - r), (y + r) / (z + r)))
+        if u0 > u1 or v0 > v1:
+            continue
+        for row in range(int(v0) // TILE, int(v1) // TILE + 1):
+            for column in range(int(u0) // TILE, int(u1) // TILE + 1):
+                near[row, column] = min(near[row, column], away - r)
+                far[row, column] = max(far[row, column], away + r)
+
+
+@njit(cache=True, nogil=True)
+def mark_unexplained(view, depth, model, near, far, sigmas, world_from_camera, cells, words):
+    """Sets the voxels that an unexplained return near the body may lie in.
+
+    That is those that the cube about the measured point meets whose half side is half a pixel at its range, moved
+    along the ray by up to sigmas * sigma.
+
+    Args:
+        view: the camera.
+        depth: (height, width) float32, measured [m, the camera's kind].
+        model: (height, width) float32, above 0 where explained.
+        near, far: from `mark_tiles`; other depths are not looked at.
+        sigmas: as above.
+        world_from_camera: (4, 4).
+        cells: the voxel grid.
+        words: the plane to set bits in.
+    """
+    for row in range(near.shape[0]):
+        for column in range(near.shape[1]):
+            low, high = max(near[row, column], view.min_depth), min(far[row, column], view.max_depth)
+            if low > high:
+                continue
+            for v in range(row * TILE, min(row * TILE + TILE, view.height)):
+                for u in range(column * TILE, min(column * TILE + TILE, view.width)):
+                    d = depth[v, u]
+                    if d >= low and d <= high and d > 0.0 and model[v, u] == 0.0:
+                        _mark_return(view, u, v, d, sigmas, world_from_camera, cells, words)
+
+
+@njit(nogil=True)
+def _mark_return(view, u, v, d, sigmas, world_from_camera, cells, words):
+    """Sets the voxels that one return may lie in."""
+    x, y = (u - view.cx) / view.fx, (v - view.cy) / view.fy
+    z = d / math.sqrt(1.0 + x * x + y * y) if view.radial else float(d)
+    half = 0.5 * z / min(view.fx, view.fy) / cells.edge
+    pose, scale = world_from_camera, 1.0 / cells.edge
+    # the ray in voxels from the grid's corner
+    ox, oy, oz = (
+        (pose[0, 3] - cells.x0) * scale,
+        (pose[1, 3] - cells.y0) * scale,
+        (pose[2, 3] - cells.z0) * scale,
+    )
+    rx = (pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]) * scale
+    ry = (pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]) * scale
+    rz = (pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]) * scale
+    spread = sigmas * _sigma(view, d) * z / d
+    # steps of at most half a voxel
+    steps = min(math.ceil(4.0 * spread / cells.edge), 1000)
+    for n in range(steps + 1):
+        away = z if steps == 0 else z + spread * (2.0 * n / steps - 1.0)
+        px, py, pz = ox + rx * away, oy + ry * away, oz + rz * away
+        if not (
+            -half <= px < cells.nx + half and -half <= py < cells.ny + half and -half <= pz < cells.nz + half
+        ):
+            continue
+        for i in range(max(0, math.floor(px - half)), min(cells.nx - 1, math.floor(px + half)) + 1):
+            for j in range(max(0, math.floor(py - half)), min(cells.ny - 1, math.floor(py + half)) + 1):
+                for k in range(max(0, math.floor(pz - half)), min(cells.nz - 1, math.floor(pz + half)) + 1):
+                    words[word_of(i, j, k, cells.cubes_y, cells.cubes_z)] |= bit_of(i, j, k)

@@ -1,0 +1,92 @@
+"""The machine as a depth camera would see it if nothing else were there."""
+
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import CameraError
+from elbowroom.geometry import DepthCamera
+from elbowroom.machine._kernels_image import Mesh, View, draw, to_kind
+from elbowroom.machine.machine import Joints, Machine
+
+_meshes: WeakKeyDictionary[Machine, Mesh] = WeakKeyDictionary()
+
+
+def rasterise(machine: Machine, camera: DepthCamera, joints: Joints) -> NDArray[np.float32]:
+    """Depth of the machine's surface along the ray through the centre of each pixel.
+
+    Args:
+        machine: what to draw; both sides of its triangles are seen.
+        camera: without distortion; range and noise are left out.
+        joints: one position for each joint, by name [m or rad].
+
+    Returns:
+        float32, shape (height, width) [m, the camera's kind]; infinity where the machine is not.
+
+    Raises:
+        CameraError: the camera has distortion.
+        MachineError: joints that are not possible.
+    """
+    view = view_of(camera)
+    world_from_link = machine.world_from_link_array(np.atleast_2d(machine.positions(joints)))[0]
+    inverse, first, last = canvas(camera.height, camera.width)
+    draw(mesh_of(machine), camera.camera_from_world @ world_from_link, view, inverse, first, last)
+    to_kind(view, inverse, first, last)
+    with np.errstate(divide="ignore"):
+        return np.float32(1.0) / inverse
+
+
+def view_of(camera: DepthCamera) -> View:
+    """The camera as kernels take it.
+
+    Raises:
+        CameraError: the camera has distortion.
+    """
+    if camera.intrinsics.is_distorted:
+        raise CameraError(f"camera {camera.name}: has distortion; bring image and camera to a pinhole first")
+    k, noise = camera.intrinsics, camera.noise
+    spread = (0.0, 0.0, 0.0, 0.0)
+    if noise is not None:
+        spread = (noise.constant_m, noise.linear, noise.quadratic, noise.offset_m)
+    return View(
+        int(camera.width),
+        int(camera.height),
+        float(k.fx),
+        float(k.fy),
+        float(k.cx),
+        float(k.cy),
+        camera.depth_kind == "radial",
+        float(camera.min_depth_m),
+        float(camera.max_depth_m),
+        *(float(part) for part in spread),
+    )
+
+
+def canvas(height: int, width: int) -> tuple[NDArray[np.float32], NDArray[np.int64], NDArray[np.int64]]:
+    """An empty image of inverse depth, and the first and last column drawn in each of its rows: none."""
+    inverse = np.zeros((height, width), dtype=np.float32)
+    return inverse, np.full(height, width, dtype=np.int64), np.full(height, -1, dtype=np.int64)
+
+
+def mesh_of(machine: Machine) -> Mesh:
+    """All triangles of the machine as kernels take them; made once."""
+    if machine not in _meshes:
+        links = machine.links
+        counts = np.cumsum([0] + [len(link.vertices) for link in links])
+        centre = np.zeros((len(links), 3))
+        radius = np.zeros(len(links))
+        for row, link in enumerate(links):
+            if link.has_geometry:
+                centre[row] = (link.vertices.min(axis=0) + link.vertices.max(axis=0)) / 2
+                radius[row] = np.linalg.norm(link.vertices - centre[row], axis=1).max()
+        faces = [link.faces.astype(np.int64) + first for link, first in zip(links, counts, strict=False)]
+        _meshes[machine] = Mesh(
+            vertices=np.concatenate([link.vertices for link in links]),
+            faces=np.concatenate(faces),
+            vertex_start=counts,
+            face_start=np.cumsum([0] + [len(link.faces) for link in links]),
+            centre=centre,
+            radius=radius,
+        )
+    return _meshes[machine]
