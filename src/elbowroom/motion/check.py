@@ -8,14 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import MachineError
-from elbowroom.geometry import bits
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
-from elbowroom.motion._kernels import Skin, Volume, explain_block, place_at
+from elbowroom.motion._kernels import Skin
+from elbowroom.motion._kernels_volume import Volume
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.course import Way, way_of
 from elbowroom.motion.motion import JointPath, Motion
-from elbowroom.motion.sweep import Block, blocked_volume, cluster_speeds, find_block, skin_of
+from elbowroom.motion.skin import skin_of
+from elbowroom.motion.sweep import cluster_speeds, find_block, volume_of
 from elbowroom.motion.verdict import Cause, Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
 
@@ -121,7 +122,7 @@ class _Scene:
             space,
             machine,
             skin_of(machine, space.grid.voxel_size_m),
-            blocked_volume(space.free_words, space.grid),
+            volume_of(space),
             machine.world_from_link_array(start[None])[0],
         )
 
@@ -130,27 +131,12 @@ class _Scene:
         block = find_block(self.machine, self.skin, speeds, way, self.volume, self.space.grid)
         if block is None:
             return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE)
-        cause, link, place = self._explain(block, speeds, way)
-        level = Level.at(block.travel, motion.braking_distance)
-        return Verdict(motion, level, block.travel, way.unit, link, place, cause)
-
-    def _explain(
-        self, block: Block, speeds: NDArray[np.float64], way: Way
-    ) -> tuple[Cause, str, tuple[float, float, float]]:
-        """What the block is, which link meets it, and where."""
-        placed = np.empty((1, len(self.machine.links), 4, 4))
-        middle = block.travel + block.half
-        place_at(self.machine.tree, self.machine.world_from_base, way.course, middle, placed)
-        kind, cluster, (x, y, z) = explain_block(
-            placed[0],
-            self.skin,
-            speeds,
-            block.half,
-            self.volume,
-            self.space.surface_words,
-            self.space.blind_words,
-            self.space.disputed_words,
-            bits.lattice(self.space.grid),
-            block.samples,
+        return Verdict(
+            motion,
+            Level.at(block.travel, motion.braking_distance),
+            block.travel,
+            way.unit,
+            self.machine.link_names[self.skin.link[block.cluster]],
+            tuple(block.place_in_world.tolist()),
+            CAUSES[block.kind],
         )
-        return CAUSES[kind], self.machine.link_names[self.skin.link[cluster]], (float(x), float(y), float(z))

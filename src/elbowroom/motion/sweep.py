@@ -1,7 +1,6 @@
 """How fast the machine's points move along a way, and where they first meet a block."""
 
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,9 +8,10 @@ from numpy.typing import NDArray
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.machine import Machine
 from elbowroom.machine._kernels import FIXED, SLIDES
-from elbowroom.machine.samples import BodySamples, body_samples
-from elbowroom.motion._kernels import Skin, Volume, block, bound_speeds, first_block
+from elbowroom.motion._kernels import Skin, bound_speeds, first_block
+from elbowroom.motion._kernels_volume import Volume, block
 from elbowroom.motion.course import Way
+from elbowroom.reconstruct.free_space import FreeSpace
 
 FINEST_STEP_IN_VOXELS = 1 / 16
 """The first block is found to within a travel in which no point moves farther than this [voxel edges]."""
@@ -21,50 +21,21 @@ MOST_HALVINGS = 40
 """No interval is cut more often: a travel of 10^12 finest steps."""
 
 
-_SKINS: WeakKeyDictionary[Machine, dict[float, Skin]] = WeakKeyDictionary()
-
-
 class Block(NamedTuple):
-    """The first interval in which samples meet a block: its start, half its length [travel], the samples."""
+    """The first block on a way: its travel, its kind (a kernel's number), the cluster that meets it, where."""
 
     travel: float
-    half: float
-    samples: NDArray[np.int32]
+    kind: int
+    cluster: int
+    place_in_world: NDArray[np.float64]
 
 
-def blocked_volume(free_words: bits.Words, grid: VoxelGrid) -> Volume:
-    """The blocked voxels of a grid, with a mark for each cube that holds one.
-
-    Args:
-        free_words: plane of the free voxels.
-        grid: its grid.
-    """
-    words = np.empty_like(free_words)
-    cubes = np.empty(free_words.size // 64, dtype=np.bool_)
-    block(free_words, bits.lattice(grid), words, cubes)
-    return Volume(words, cubes)
-
-
-def skin_of(machine: Machine, voxel_size_m: float) -> Skin:
-    """Surface samples of a machine's checked links as the kernels take them; made once and kept."""
-    kept = _SKINS.setdefault(machine, {})
-    if voxel_size_m not in kept:
-        kept[voxel_size_m] = _skin(body_samples(machine, voxel_size_m))
-    return kept[voxel_size_m]
-
-
-def _skin(samples: BodySamples) -> Skin:
-    counts = samples.cluster_stop - samples.cluster_start
-    return Skin(
-        samples.points,
-        np.repeat(np.arange(counts.size, dtype=np.int32), counts),
-        samples.cluster_start,
-        samples.cluster_stop,
-        samples.cluster_link,
-        samples.cluster_centre,
-        samples.cluster_radius,
-        samples.cover_m,
-    )
+def volume_of(space: FreeSpace) -> Volume:
+    """The blocked voxels of a space as the kernels take them."""
+    words = np.empty_like(space.free_words)
+    cubes = np.empty(words.size // 64, dtype=np.bool_)
+    block(space.free_words, bits.lattice(space.grid), words, cubes)
+    return Volume(words, cubes, space.surface_words, space.blind_words, space.disputed_words)
 
 
 def cluster_speeds(
@@ -105,7 +76,7 @@ def find_block(
     Args:
         machine, skin, way: what moves, and where to.
         speeds: of `cluster_speeds`.
-        volume: of `blocked_volume`.
+        volume: of `volume_of`.
         grid: the volume's grid.
     """
     moving = np.flatnonzero(speeds > 0).astype(np.int32)
@@ -113,7 +84,7 @@ def find_block(
         return None
     finest = grid.voxel_size_m * FINEST_STEP_IN_VOXELS
     halvings = int(np.clip(np.ceil(np.log2(way.length * speeds.max() / finest)), 0, MOST_HALVINGS))
-    index, samples = first_block(
+    index, kind, cluster, place = first_block(
         machine.tree,
         machine.world_from_base,
         way.course,
@@ -128,8 +99,7 @@ def find_block(
     )
     if index < 0:
         return None
-    interval = way.length / 2.0**halvings
-    return Block(index * interval, interval / 2, samples)
+    return Block(index * way.length / 2.0**halvings, kind, cluster, place)
 
 
 def _link_lengths(machine: Machine, way: Way) -> NDArray[np.float64]:
