@@ -12,13 +12,13 @@ EXAMPLES = PROJECT / "examples"
 
 @pytest.fixture(scope="session")
 def data_root() -> Path:
-    """The folder of real recordings: ELBOWROOM_DATA, or ../shared/data from the project root; may be absent."""
+    """Where real recordings lie: ELBOWROOM_DATA, or ../shared/data from the project root; may be absent."""
     return Path(os.environ.get("ELBOWROOM_DATA", PROJECT.parent / "shared" / "data")).resolve()
 
 
 @pytest.fixture(scope="session")
 def data_folder(data_root: Path) -> Callable[[str], Path]:
-    """data_folder("sevenscenes") is that recording's folder; where it is absent the test is skipped and says so."""
+    """data_folder("sevenscenes") is that recording's folder; where it is absent the test is skipped."""
 
     def folder(name: str) -> Path:
         path = data_root / name
@@ -31,7 +31,7 @@ def data_folder(data_root: Path) -> Callable[[str], Path]:
 
 @pytest.fixture
 def example_site(data_root: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Path]:
-    """example_site("sevenscenes") is the path of that site file in examples/, skipped where its data is absent."""
+    """example_site("sevenscenes") is that site file in examples/; skipped where its data is absent."""
 
     def path(name: str) -> Path:
         if not (data_root / name).is_dir():

@@ -6,7 +6,7 @@ from elbowroom.sensing.distortion import distorted
 
 
 def contributors(intrinsics, width, height, u, v, samples=25):
-    """Raw pixels, as a set of (row, column), that meet densely sampled points of the square of pinhole pixel (u, v)."""
+    """The raw pixels, as (row, column), that densely sampled points of pinhole pixel (u, v) fall into."""
     steps = np.linspace(-0.5, 0.5, samples)
     x = (u + steps[:, None] - intrinsics.cx) / intrinsics.fx
     y = (v + steps[None, :] - intrinsics.cy) / intrinsics.fy
@@ -25,7 +25,7 @@ def bounds(raw, index_map, shallowest, deepest):
             if first_u < 0:
                 continue
             patch = raw[first_v : last_v + 1, first_u : last_u + 1]
-            if np.isfinite(patch).all() and (patch > 0).all():
-                if (patch >= shallowest).all() and (patch <= deepest).all():
-                    least[v, u], greatest[v, u] = patch.min(), patch.max()
+            valid = np.isfinite(patch) & (patch > 0) & (patch >= shallowest) & (patch <= deepest)
+            if valid.all():
+                least[v, u], greatest[v, u] = patch.min(), patch.max()
     return least, greatest

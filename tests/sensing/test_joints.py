@@ -50,7 +50,7 @@ def test_a_gap_too_wide_is_not_bridged(record):
     record = JointRecord(record.stamps_ns, record.positions, max_gap_ns=150)
     assert record.at(NOW + 50)["long"] == 0.5
     assert record.at(NOW + 300)["long"] == 5.0
-    with pytest.raises(SiteError, match="gap of 0.0002 ms"):
+    with pytest.raises(SiteError, match=r"gap of 0\.0002 ms"):
         record.at(NOW + 200)
 
 

@@ -94,7 +94,7 @@ def test_most_of_the_image_survives_and_contributors_are_few(distortion):
     seed=st.integers(0, 2**32 - 1), lens=st.sampled_from(LENSES), kind=st.sampled_from(["planar", "radial"])
 )
 def test_never_farther_than_what_was_measured_nearby(seed, lens, kind):
-    """Wherever a raw pixel measured something near, the pinhole pixel that looks there is as near or no return."""
+    """Where a raw pixel measured something, the pinhole pixel that looks there is as near, or no return."""
     random = np.random.default_rng(seed)
     camera = camera_with(lens, depth_kind=kind)
     depth = random.uniform(0.5, 4.0, (HEIGHT, WIDTH)).astype(np.float32)
@@ -152,7 +152,7 @@ def test_kernel_equals_its_naive_twin(distortion):
 
 
 def test_where_the_model_folds_back_there_is_no_pixel():
-    """A strong barrel polynomial turns round inside the image; beyond its turn it would show the wrong directions."""
+    """A strong barrel polynomial turns round inside the image; beyond that it shows wrong directions."""
     intrinsics = Intrinsics(fx=30.0, fy=30.0, cx=39.5, cy=29.5, distortion=(-0.6, 0.0, 0.0, 0.0, 0.0))
     turn = 1 / np.sqrt(3 * 0.6)
     assert turn - 0.01 < usable_radius(intrinsics, 2.0) < turn

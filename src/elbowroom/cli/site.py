@@ -29,7 +29,9 @@ def new(
         raise SiteError(f"{path}: is there already; choose another name, or --force to replace it")
     with whole_file(path) as unfinished:
         unfinished.write_text(NEW_SITE.read_text(encoding="utf-8"), encoding="utf-8")
-    print(f"{path} written; change what differs in your room, then: elbowroom site check {path} --out room.png")
+    print(
+        f"{path} written; change what differs in your room, then: elbowroom site check {path} --out room.png"
+    )
 
 
 @site_app.command(epilog="Example: elbowroom site check my_room.yaml --out room.png")
@@ -109,14 +111,17 @@ def _say(row: dict[str, Any]) -> None:
     lines = {
         "site": f"{row['site']} is valid: {row['name']}",
         "grid": f"{shape} voxels of {row['voxel_size_m'] * 100:g} cm from {list(row['origin_m'])} m",
-        "cameras": f"{row['cameras']} of {', '.join(row['sizes_px'])} px; of the grid {row['seen_by_one_pct']:.0f} % "
-        f"lie in the view of one or more, {row['seen_by_three_pct']:.0f} % of three or more, if nothing stood there",
+        "cameras": f"{row['cameras']} of {', '.join(row['sizes_px'])} px; if nothing stood there, one would see "
+        f"{row['seen_by_one_pct']:.0f} % of the grid, three or more {row['seen_by_three_pct']:.0f} %",
         "machine": f"{row['machine']}, {row['motions']} motions to check" if row["machine"] else "none",
         "decision": f"rule {row['rule']}, detail {row['detail']}",
-        "recording": f"{row['images']} images of {row['moments']} moments, headers checked" if row["images"] else "none",
+        "recording": f"{row['images']} images of {row['moments']} moments, headers checked"
+        if row["images"]
+        else "none",
         "memory": f"about {row['memory_bytes'] / 1e6:.0f} MB: planes {row['planes_bytes'] / 1e6:.1f} "
         f"(one bit a voxel, {row['plane_bytes'] / 1e3:.0f} kB each), frames {row['frames_bytes'] / 1e6:.1f}, "
-        f"pyramids {row['pyramids_bytes'] / 1e6:.1f}, lens maps {row['maps_bytes'] / 1e6:.1f}, program the rest",
+        f"pyramids {row['pyramids_bytes'] / 1e6:.1f}, lens maps {row['maps_bytes'] / 1e6:.1f}, "
+        "program the rest",
     }
     for key, text in lines.items():
         print(f"{key:9} {text}")

@@ -6,11 +6,12 @@ from numba import njit
 
 @njit(cache=True, nogil=True)
 def bounds_of_contributors(raw, first_u, last_u, first_v, last_v, shallowest, deepest, least, greatest):
-    """Per pinhole pixel the nearest and farthest of the raw pixels first..last; 0 in both unless all are valid.
+    """Per pinhole pixel the nearest and farthest raw pixel of a rectangle; 0 in both unless all are valid.
 
     Args:
         raw: shape (h, w), float32 [m].
-        first_u, last_u, first_v, last_v: shape (h, w), int16; first_u below 0 marks a pixel without contributors.
+        first_u, last_u, first_v, last_v: shape (h, w), int16; first_u below 0 marks a pixel without
+            contributors.
         shallowest, deepest: range in which a depth is a return [m].
         least, greatest: shape (h, w), float32 [m]; written.
     """

@@ -10,14 +10,15 @@ RADIUS_STEPS = 4096
 
 
 def distorted(intrinsics: Intrinsics, x: Array, y: Array) -> tuple[Array, Array]:
-    """The raw pixel that sees a direction, by OpenCV's model of 5 or 8 coefficients (calib3d, "Detailed description").
+    """The raw pixel that sees a direction, by OpenCV's model (calib3d, "Detailed description").
 
     Args:
         intrinsics: pinhole and distortion.
         x, y: X/Z and Y/Z of the direction, any shape.
 
     Returns:
-        u, v in the raw image [px], the shape of x. Meaningless beyond `usable_radius`, where the model folds back.
+        u, v in the raw image [px], the shape of x. Meaningless beyond `usable_radius`, where the model folds
+        back.
     """
     k1, k2, p1, p2, k3, k4, k5, k6 = (*intrinsics.distortion, *(0.0,) * 8)[:8]
     square = x * x + y * y
@@ -32,8 +33,8 @@ def distorted(intrinsics: Intrinsics, x: Array, y: Array) -> tuple[Array, Array]
 def usable_radius(intrinsics: Intrinsics, widest: float) -> float:
     """Radius sqrt(x^2 + y^2) up to which the radial model grows, so that no two directions share a raw pixel.
 
-    Polynomials fitted to the middle of a lens turn back farther out. A direction out there would be looked up in a
-    part of the image that shows something else.
+    Polynomials fitted to the middle of a lens turn back farther out. A direction out there would be looked up
+    in a part of the image that shows something else.
 
     Args:
         intrinsics: pinhole and distortion.

@@ -15,7 +15,8 @@ class DepthFrame:
     Args:
         camera: name of the camera.
         stamp_ns: time of exposure [ns, the clock of the room]; None: unknown, such a frame has no age.
-        depth_m: shape (height, width), floating [m], in the camera's kind of depth. Kept as float32, read-only.
+        depth_m: shape (height, width), floating [m], in the camera's kind of depth. Kept as float32,
+            read-only.
 
     Raises:
         FrameError: not a two-dimensional floating image.
@@ -29,8 +30,8 @@ class DepthFrame:
         depth = np.asarray(self.depth_m)
         if depth.ndim != 2 or depth.dtype.kind != "f":
             raise FrameError(
-                f"frame of {self.camera}: expected a floating image (height, width) in metres, got {depth.dtype} "
-                f"{depth.shape}; whole numbers go through DepthFrame.from_raw with their scale"
+                f"frame of {self.camera}: expected a floating image (height, width) in metres, got "
+                f"{depth.dtype} {depth.shape}; whole numbers go through DepthFrame.from_raw with their scale"
             )
         depth = np.ascontiguousarray(depth, dtype=np.float32).view()
         depth.setflags(write=False)

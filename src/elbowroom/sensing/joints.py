@@ -1,7 +1,7 @@
 """A machine's joint positions over time, to be asked at each frame's time of exposure."""
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,12 +21,15 @@ class JointRecord:
     """Joint positions at rising times.
 
     Args:
-        stamps_ns: times [ns, the clock of the frames], shape (n,), whole numbers, strictly increasing, n at least 1.
+        stamps_ns: times [ns, the clock of the frames], shape (n,), whole numbers, strictly increasing, n at
+            least 1.
         positions: per joint its positions [m or rad], shape (n,).
-        max_gap_ns: rows farther apart than this have nothing known between them; None: any two rows are joined.
+        max_gap_ns: rows farther apart than this have nothing known between them; None: any two rows are
+            joined.
 
     Raises:
-        SiteError: no rows, no joints, lengths that differ, stamps that do not rise, numbers that are not finite.
+        SiteError: no rows, no joints, lengths that differ, stamps that do not rise, numbers that are not
+            finite.
     """
 
     stamps_ns: NDArray[np.int64]
@@ -44,7 +47,8 @@ class JointRecord:
         if (np.diff(stamps) <= 0).any():
             row = int(np.argmax(np.diff(stamps) <= 0)) + 1
             raise SiteError(
-                f"joint record: stamps_ns[{row}] is {stamps[row]} after {stamps[row - 1]}; stamps must strictly rise"
+                f"joint record: stamps_ns[{row}] is {stamps[row]} after {stamps[row - 1]}; "
+                "stamps must strictly rise"
             )
         if not self.positions:
             raise SiteError("joint record: no joints; at least one is needed")
@@ -81,8 +85,8 @@ class JointRecord:
             Position by joint [m or rad].
 
         Raises:
-            SiteError: the time lies more than `END_SLACK_NS` outside the record, or in a gap above `max_gap_ns`:
-                where the machine was is not known then, and is not invented.
+            SiteError: the time lies more than `END_SLACK_NS` outside the record, or in a gap above
+                `max_gap_ns`: where the machine was is not known then, and is not invented.
         """
         stamps = self.stamps_ns
         first, last = int(stamps[0]), int(stamps[-1])
@@ -118,7 +122,8 @@ class JointRecord:
             max_gap_ns: as of the class.
 
         Raises:
-            SiteError: the file is missing, is no such file, or has a row that is not usable; names file and line.
+            SiteError: the file is missing, is no such file, or has a row that is not usable; names file and
+                line.
         """
         path = Path(path)
         if not path.is_file():
@@ -129,14 +134,17 @@ class JointRecord:
             raise SiteError(f"{path}: {path.stat().st_size:,} bytes, at most {MAX_CSV_BYTES:,} are read")
         try:
             with path.open(newline="", encoding="utf-8-sig") as file:
-                names, stamps, rows = _read_rows(path, csv.reader(file))
+                reader = csv.reader(file)
+                names, stamps, rows = _read_rows(path, reader, lambda: reader.line_num)
         except (csv.Error, UnicodeDecodeError) as error:
             raise SiteError(f"{path}: not a CSV file in UTF-8 ({error})") from None
         columns = np.array(rows, dtype=np.float64).T
         return cls(np.array(stamps, dtype=np.int64), dict(zip(names, columns, strict=True)), max_gap_ns)
 
 
-def _read_rows(path: Path, reader: "csv._reader") -> tuple[list[str], list[int], list[list[float]]]:
+def _read_rows(
+    path: Path, reader: Iterator[list[str]], line_number: Callable[[], int]
+) -> tuple[list[str], list[int], list[list[float]]]:
     """Names of the joints, stamps, and positions row by row."""
     header = [name.strip() for name in next(reader, [])]
     if len(header) < 2 or header[0] != STAMP_COLUMN:
@@ -150,7 +158,7 @@ def _read_rows(path: Path, reader: "csv._reader") -> tuple[list[str], list[int],
     for row in reader:
         if not row:
             continue
-        where = f"{path}: line {reader.line_num}"
+        where = f"{path}: line {line_number()}"
         if len(row) != len(header):
             raise SiteError(f"{where}: {len(row)} values, the header names {len(header)} columns")
         stamp = _whole(row[0], where)

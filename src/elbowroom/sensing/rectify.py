@@ -31,25 +31,26 @@ class IndexMap(NamedTuple):
 
 
 def rectified(camera: DepthCamera) -> DepthCamera:
-    """The pinhole twin of a camera: same name, size, pose, focal lengths and principal point, no distortion."""
+    """The pinhole twin of a camera: the same name, size, pose and focal lengths, no distortion."""
     k = camera.intrinsics
     return replace(camera, intrinsics=Intrinsics(fx=k.fx, fy=k.fy, cx=k.cx, cy=k.cy))
 
 
 def rectify(camera: DepthCamera, frame: DepthFrame) -> tuple[DepthCamera, Depth, Depth]:
-    """The nearest and the farthest that a pinhole camera in the place of this one could have measured, per pixel.
+    """The nearest and farthest that a pinhole camera in this place could have measured, per pixel.
 
-    Every raw pixel whose cone overlaps a pinhole pixel's cone contributes to it. A pixel with a contributor that has
-    no return, lies outside the camera's range of depth or outside the raw image is no return. Without distortion the
-    two are the same image. Depth keeps its kind: planar stays planar, radial stays radial.
+    Every raw pixel whose cone overlaps a pinhole pixel's cone contributes to it. A pixel with a contributor
+    that has no return, lies outside the camera's range of depth or outside the raw image is no return.
+    Without distortion the two are the same image. Depth keeps its kind: planar stays planar, radial stays
+    radial.
 
     Args:
         camera: the camera that took the frame.
         frame: its depth image.
 
     Returns:
-        The pinhole camera; least and greatest depth, shape (height, width), float32 [m, the camera's kind of depth],
-        0 in both where there is no return.
+        The pinhole camera; least and greatest depth, shape (height, width), float32 [m, the camera's kind of
+        depth], 0 in both where there is no return.
 
     Raises:
         FrameError: the frame is of another camera, or of another size than the camera's.
@@ -79,8 +80,9 @@ def _valid_only(depth_m: Depth, shallowest_m: float, deepest_m: float) -> Depth:
 def index_map_of(intrinsics: Intrinsics, width: int, height: int) -> IndexMap:
     """The raw pixels behind each pinhole pixel; computed once per intrinsics and size.
 
-    Each pixel's square is mapped at its corners, the middles of its edges and its centre. The bounding rectangle of
-    these is widened by twice the edges' greatest bend, which bounds what a smooth edge does between them.
+    Each pixel's square is mapped at its corners, the middles of its edges and its centre. The bounding
+    rectangle of these is widened by twice the edges' greatest bend, which bounds what a smooth edge does
+    between them.
 
     Args:
         intrinsics: with distortion.
@@ -135,4 +137,4 @@ def _keeps_orientation(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArra
     """Where the mapping neither folds nor mirrors: its Jacobian's determinant is above zero."""
     u_down, u_right = np.gradient(u)
     v_down, v_right = np.gradient(v)
-    return u_right * v_down - u_down * v_right > 0
+    return np.asarray(u_right * v_down - u_down * v_right > 0)

@@ -34,7 +34,9 @@ def _noise(given: Any) -> Any:
     if given == "exact":
         return None
     if given not in NOISE_PRESETS:
-        raise ValueError(f"exact, {', '.join(NOISE_PRESETS)}, or coefficients constant_m, linear, quadratic, offset_m")
+        raise ValueError(
+            f"exact, {', '.join(NOISE_PRESETS)}, or coefficients constant_m, linear, quadratic, offset_m"
+        )
     model = NOISE_PRESETS[given]
     return {name: getattr(model, name) for name in NoiseEntry.model_fields}
 
@@ -42,9 +44,9 @@ def _noise(given: Any) -> Any:
 class MarginEntry(Entry):
     """What a pixel is not trusted to; what is left out has the defaults of `Margin`."""
 
-    sigmas: NotNegative = Margin.__dataclass_fields__["sigmas"].default
+    sigmas: NotNegative = 3.0
     bias_m: NotNegative = 0.0
-    lateral_px: NotNegative = Margin.__dataclass_fields__["lateral_px"].default
+    lateral_px: NotNegative = 0.5
     range_linear: NotNegative = 0.0
     range_quadratic: NotNegative = 0.0
 
@@ -77,7 +79,9 @@ class CameraSettings(Entry):
         if self.intrinsics_file and any(getattr(self, key) is not None for key in PINHOLE):
             raise ValueError("either intrinsics_file or fx, fy, cx, cy, not both")
         if len(self.distortion) not in (0, 5, 8):
-            raise ValueError("distortion of no coefficient, 5 (k1 k2 p1 p2 k3) or 8 (k1 k2 p1 p2 k3 k4 k5 k6)")
+            raise ValueError(
+                "distortion of no coefficient, 5 (k1 k2 p1 p2 k3) or 8 (k1 k2 p1 p2 k3 k4 k5 k6)"
+            )
         return self
 
     def over(self, defaults: "CameraSettings") -> dict[str, Any]:
@@ -135,7 +139,9 @@ def looking_at(position_m: Any, look_at_m: Any, up: Any = (0.0, 0.0, 1.0)) -> ND
     """
     forward = np.asarray(look_at_m, dtype=float) - np.asarray(position_m, dtype=float)
     if np.linalg.norm(forward) < 1e-9 or np.linalg.norm(up) < 1e-9:
-        raise SiteError(f"position_m {position_m} and look_at_m {look_at_m} give no direction; they must differ")
+        raise SiteError(
+            f"position_m {position_m} and look_at_m {look_at_m} give no direction; they must differ"
+        )
     forward /= np.linalg.norm(forward)
     right = np.cross(forward, up)
     if np.linalg.norm(right) < 1e-6 * np.linalg.norm(up):
@@ -172,7 +178,7 @@ def build_camera(
         path = expand(settings["intrinsics_file"], beside)
         intrinsics = Intrinsics.from_matrix(read_matrix(path, (3, 3), "camera matrix"), distortion)
     else:
-        intrinsics = Intrinsics(*(settings[key] for key in PINHOLE), distortion=distortion)
+        intrinsics = Intrinsics(**{key: settings[key] for key in PINHOLE}, distortion=distortion)
     noise, margin = settings.get("noise"), settings.get("margin")
     deepest = settings.get("max_depth_m")
     return DepthCamera(

@@ -25,7 +25,9 @@ def read_matrix(path: Path, shape: tuple[int, int], what: str) -> NDArray[np.flo
     if not path.is_file():
         raise SiteError(f"{path}: no such file; expected the {what} as {rows} rows of {columns} numbers")
     if path.stat().st_size > MAX_MATRIX_BYTES:
-        raise SiteError(f"{path}: {path.stat().st_size:,} bytes, a {what} has {rows} rows of {columns} numbers")
+        raise SiteError(
+            f"{path}: {path.stat().st_size:,} bytes, a {what} has {rows} rows of {columns} numbers"
+        )
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
         table = [[float(word) for word in line.replace(",", " ").split()] for line in lines if line.strip()]

@@ -9,8 +9,8 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.bits import word_count
 
 PLANES = 12
-"""Planes alive at once: one, two, three, disputed, surface, blind, unexplained, two of the body, free, and two that
-are being computed."""
+"""Planes alive at once: one, two, three, disputed, surface, blind, unexplained, free, two of the body, and
+two that are being computed."""
 SHARED_BYTES = 250_000_000
 """Python, NumPy, Numba and their compiled kernels."""
 

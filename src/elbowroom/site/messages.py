@@ -53,8 +53,8 @@ def _said(first: ErrorDetails, model: type[BaseModel], location: Sequence[Any]) 
         return f"found {found}, allowed: a key layout with {', '.join(LAYOUTS)}"
     if "expected" in context:
         return f"found {found}, allowed: {context['expected']}"
-    allowed = first["msg"].removeprefix("Input should be ")
-    return f"found {found}, allowed: {allowed[0].lower()}{allowed[1:]}"
+    wanted = first["msg"].removeprefix("Input should be ")
+    return f"found {found}, allowed: {wanted[0].lower()}{wanted[1:]}"
 
 
 def _short(value: Any) -> str:

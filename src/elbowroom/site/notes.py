@@ -22,7 +22,9 @@ def notes_of(site: "Site") -> tuple[str, ...]:
     if entry.rule in ("veto", "any"):
         notes.append(f"rule {entry.rule}: less evidence may add free space; three and majority never do that")
     if entry.detail == "point":
-        notes.append("detail point, the thesis' test of voxel centres, is for comparison: it frees occupied voxels")
+        notes.append(
+            "detail point, the thesis' test of voxel centres, is for comparison: it frees occupied voxels"
+        )
     machine = site.machine()
     if machine is not None:
         if machine.unchecked_links:
@@ -43,5 +45,6 @@ def mended_poses(warnings: Sequence[str]) -> tuple[str, ...]:
         return tuple(warnings)
     deviations = [float(found[1]) for text in warnings if (found := re.search(r"by ([0-9.e+-]+),", text))]
     return (
-        f"{len(warnings)} poses were off a rotation by up to {max(deviations):.1e} and were brought to the nearest one",
+        f"{len(warnings)} poses were off a rotation by up to {max(deviations):.1e}, "
+        "each was brought to the nearest one",
     )

@@ -12,8 +12,9 @@ _VARIABLE = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)(?::-([^}]*))?\}")
 def expand(text: str, beside: Path) -> Path:
     """The path that a site file means.
 
-    `${NAME}` stands for a variable of the environment, `${NAME:-otherwise}` for it or else for the text given.
-    What is relative lies beside the site file; a variable's own relative value, in the working directory.
+    `${NAME}` stands for a variable of the environment, `${NAME:-otherwise}` for it or else for the text
+    given. What is relative lies beside the site file; a variable's own relative value, in the working
+    directory.
 
     Args:
         text: as written.
@@ -59,5 +60,7 @@ def inside(folder: Path, text: str) -> str:
         SiteError: it is absolute or climbs out.
     """
     if not text or Path(text).is_absolute() or ".." in Path(text).parts or "\\" in text:
-        raise SiteError(f"{text!r} does not stay inside {folder}; give a path relative to that folder, without ..")
+        raise SiteError(
+            f"{text!r} does not stay inside {folder}; give a path relative to that folder, without .."
+        )
     return text

@@ -12,7 +12,12 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 
 VIEW_PX, EDGE_PX, TITLE_PX = 720, 60, 64
 PAPER, INK, SOFT = (250, 250, 248, 255), (30, 34, 40, 255), (110, 116, 124, 255)
-GRID_FILL, FAN_FILL, FAN_EDGE, DOT = (222, 239, 248, 255), (0, 114, 178, 22), (0, 114, 178, 120), (213, 94, 0, 255)
+GRID_FILL, FAN_FILL, FAN_EDGE, DOT = (
+    (222, 239, 248, 255),
+    (0, 114, 178, 22),
+    (0, 114, 178, 120),
+    (213, 94, 0, 255),
+)
 NAME_WIDTH_PX, NAME_HEIGHT_PX = 64, 15
 """A name that would lie on another within this distance is left out."""
 FEW_CAMERAS = 4
@@ -64,7 +69,7 @@ def draw_site(name: str, grid: VoxelGrid, cameras: Sequence[DepthCamera]) -> Ima
 
 
 def frustum_in_world(camera: DepthCamera, depth_m: float) -> NDArray[np.float64]:
-    """Camera centre and the four corners of its image at a depth along the axis, shape (5, 3), world frame [m].
+    """Camera centre and the corners of its image at a depth, shape (5, 3), world frame [m].
 
     Args:
         camera: its distortion is left out.
@@ -114,7 +119,11 @@ def _draw_scale(draw: ImageDraw.ImageDraw, view: _View, upper_m: NDArray[np.floa
         first = np.ceil(view.lower_m[axis] / step) * step
         for value in np.arange(first, upper_m[view.axes[axis]] + 1e-9, step):
             offset = (value - view.lower_m[axis]) * view.px_per_m
-            at = (view.left_px + offset, base) if axis == 0 else (view.left_px - 30, TITLE_PX + VIEW_PX - offset)
+            at = (
+                (view.left_px + offset, base)
+                if axis == 0
+                else (view.left_px - 30, TITLE_PX + VIEW_PX - offset)
+            )
             draw.text(at, f"{value + 0.0:g}", SOFT, font=_font(12), anchor="mm")
         name = "xyz"[view.axes[axis]]
         at = (view.left_px + VIEW_PX - 10, base + 18) if axis == 0 else (view.left_px - 30, TITLE_PX - 14)

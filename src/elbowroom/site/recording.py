@@ -9,7 +9,6 @@ from typing import NamedTuple
 from elbowroom.errors import FrameError, SiteError
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import DepthFrame, JointRecord
-from elbowroom.site import seven_scenes
 from elbowroom.site.depth_png import check_depth_png, read_depth_png
 from elbowroom.site.paths import inside
 from elbowroom.site.recording_entry import SevenScenes, StampedFolder, StamplessFolder
@@ -61,22 +60,24 @@ class RecordedMoment:
 def moments(site: Site, joints: Positions | JointRecord | None = None) -> Iterator[RecordedMoment]:
     """The moments of a site's recording, in order; images are read one moment at a time.
 
-    Frames of layout `folder` gather around those of the camera that has most: per other camera the nearest in time,
-    within `max_skew_ms`.
+    Frames of layout `folder` gather around those of the camera that has most: per other camera the nearest in
+    time, within `max_skew_ms`.
 
     Args:
         site: with a recording.
         joints: positions that hold throughout, or a record; None: the recording's own, if it has any.
 
     Raises:
-        SiteError: no recording, its folder is absent or not laid out as the site says, or the machine's joints are
-            not known.
+        SiteError: no recording, its folder is absent or not laid out as the site says, or the machine's
+            joints are not known.
         FrameError: an image is not what its camera delivers.
     """
     groups = image_groups(site)
     known = joints if joints is not None else _own_joints(site)
     if site.entry.machine is not None and known is None:
-        raise SiteError(f"{site.path}: joints of the machine are not recorded; give them with --joints name=value,...")
+        raise SiteError(
+            f"{site.path}: joints of the machine are not recorded; give them with --joints name=value,..."
+        )
     return (_moment(group, known) for group in groups)
 
 
@@ -138,7 +139,9 @@ def _at(joints: Positions | JointRecord, stamp_ns: int | None) -> Positions:
     if not isinstance(joints, JointRecord):
         return joints
     if stamp_ns is None:
-        raise SiteError("frames have no times, so a record of joints cannot be asked; give positions that hold throughout")
+        raise SiteError(
+            "frames have no times, so a record of joints cannot be asked; give positions that hold throughout"
+        )
     return joints.at(stamp_ns)
 
 
@@ -176,7 +179,9 @@ def _by_order(site: Site, recording: StamplessFolder, folder: Path) -> list[list
     counts = [len(row) for row in rows]
     if len(set(counts)) != 1:
         found = ", ".join(f"{name} {count}" for name, count in zip(known, counts, strict=True))
-        raise SiteError(f"{site.path}: recording: frames per camera are {found}; without times they must be as many")
+        raise SiteError(
+            f"{site.path}: recording: frames per camera are {found}; without times they must be as many"
+        )
     return [list(group) for group in zip(*rows, strict=True)]
 
 
@@ -211,7 +216,12 @@ def _by_time(site: Site, recording: StampedFolder, folder: Path) -> list[list[Im
 
 def _refuse_unknown(site: Site, recording: StampedFolder, folder: Path, known: set[str]) -> None:
     for path in sorted(folder.iterdir()):
-        if path.is_dir() and path.name not in known and path.name not in recording.ignore and any(path.glob("*.png")):
+        if (
+            path.is_dir()
+            and path.name not in known
+            and path.name not in recording.ignore
+            and any(path.glob("*.png"))
+        ):
             raise SiteError(
                 f"{path}: images of an unknown camera; cameras are {', '.join(sorted(known))}, "
                 "others are named in recording.ignore"
@@ -223,10 +233,15 @@ def _stamped(site: Site, camera: DepthCamera, folder: Path) -> list[Image]:
     images: dict[int, Image] = {}
     for path in sorted(folder.glob("*.png")):
         if not (path.stem.isdecimal() and path.stem.isascii() and len(path.stem) <= 19):
-            raise FrameError(f"{path}: name must be the time of exposure in whole nanoseconds, <stamp_ns>.png")
+            raise FrameError(
+                f"{path}: name must be the time of exposure in whole nanoseconds, <stamp_ns>.png"
+            )
         stamp = int(path.stem)
         if stamp in images:
-            raise FrameError(f"{path}: two frames of camera {camera.name} at {stamp} ns, the other is {images[stamp].path.name}")
+            raise FrameError(
+                f"{path}: two frames of camera {camera.name} at {stamp} ns, "
+                f"the other is {images[stamp].path.name}"
+            )
         images[stamp] = _image(site, camera, stamp, path)
     return [images[stamp] for stamp in sorted(images)]
 
@@ -235,5 +250,9 @@ def _nearest(row: list[Image], stamp_ns: int, within_ns: int) -> Image | None:
     stamps = [image.stamp_ns or 0 for image in row]
     after = bisect_left(stamps, stamp_ns)
     # the earlier of two that are equally near
-    near = min(row[max(after - 1, 0) : after + 1], key=lambda image: abs((image.stamp_ns or 0) - stamp_ns), default=None)
+    near = min(
+        row[max(after - 1, 0) : after + 1],
+        key=lambda image: abs((image.stamp_ns or 0) - stamp_ns),
+        default=None,
+    )
     return near if near is not None and abs((near.stamp_ns or 0) - stamp_ns) <= within_ns else None

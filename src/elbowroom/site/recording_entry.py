@@ -11,8 +11,8 @@ class StampedFolder(Entry):
     """`<folder>/<camera>/<stamp_ns>.png` and, for a machine, a CSV of joints.
 
     Frames of different cameras make one moment if they lie within `max_skew_ms` of each other. Rows of joints
-    farther apart than `max_joint_gap_ms` have nothing known between them. `ignore` names sub-folders of images that
-    belong to no camera.
+    farther apart than `max_joint_gap_ms` have nothing known between them. `ignore` names sub-folders of
+    images that belong to no camera.
     """
 
     layout: Literal["folder"]
@@ -26,7 +26,8 @@ class StampedFolder(Entry):
 class StamplessFolder(Entry):
     """Images without times: the n-th of each camera, in order of names, make the n-th moment.
 
-    `files` gives per camera a pattern or a list of paths below the folder; what it leaves out is `<camera>/*.png`.
+    `files` gives per camera a pattern or a list of paths below the folder; what it leaves out is
+    `<camera>/*.png`.
     """
 
     layout: Literal["stampless"]
@@ -38,8 +39,8 @@ class SevenScenes(Entry):
     """The layout of 7-Scenes and TSDF-fusion: `frame-NNNNNN.depth.png` and `.pose.txt`, one static room.
 
     Each frame is a camera of its own; all of them together are one moment. The camera matrix is
-    `camera-intrinsics.txt` unless `camera_defaults` says otherwise. `include` (all, if left out) and `exclude` name
-    frames by number.
+    `camera-intrinsics.txt` unless `camera_defaults` says otherwise. `include` (all, if left out) and
+    `exclude` name frames by number.
     """
 
     layout: Literal["seven_scenes"]

@@ -60,7 +60,7 @@ class JointEntry(Entry):
 
 
 class SimulatedEntry(Entry):
-    """The simulated intervention room: cameras evenly along its four walls, people who walk, a C-arm that moves."""
+    """The simulated intervention room: cameras along its walls, people who walk, a C-arm that moves."""
 
     cameras: Annotated[Whole, Field(ge=1, le=200)] = 21
     camera_height_m: Annotated[Number, Field(gt=0, le=2.9)] = 2.4
@@ -111,7 +111,9 @@ class SiteEntry(Entry):
         if self.simulated is not None:
             beyond = sorted(self.camera_defaults.model_fields_set - set(SIMULATED_SETTINGS))
             if beyond:
-                raise ValueError(f"camera_defaults of a simulated room: {', '.join(SIMULATED_SETTINGS)}; not {beyond[0]}")
+                raise ValueError(
+                    f"camera_defaults of a simulated room: {', '.join(SIMULATED_SETTINGS)}; not {beyond[0]}"
+                )
         if self.joints and self.machine is None:
             raise ValueError("joints only with a machine")
         return self

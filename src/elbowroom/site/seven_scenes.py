@@ -1,7 +1,8 @@
 """The layout of 7-Scenes and TSDF-fusion: a depth PNG and a pose text per frame, one camera matrix.
 
-Names as in Glocker et al., "7-Scenes" (2013), and in Zeng's tsdf-fusion: `frame-000000.depth.png` in millimetres,
-0 and 65535 without return; `frame-000000.pose.txt`, 4x4, camera to world, metres.
+Names as in the data set "7-Scenes" (Shotton et al. and Glocker et al. 2013) and in Zeng's tsdf-fusion:
+`frame-000000.depth.png` in millimetres, 0 and 65535 without return; `frame-000000.pose.txt`, 4x4, camera to
+world, metres.
 """
 
 import re

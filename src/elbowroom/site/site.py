@@ -55,8 +55,8 @@ class Site:
         """Reads and validates a site file.
 
         Raises:
-            SiteError: missing, no YAML, an unknown key, a value that is not allowed; one line that names file, key,
-                what was found and what is allowed.
+            SiteError: missing, no YAML, an unknown key, a value that is not allowed; one line that names
+                file, key, what was found and what is allowed.
         """
         path = Path(path)
         try:
@@ -138,17 +138,17 @@ class Site:
             raise SiteError(f"{self.path}: {error}") from None
 
     def cameras(self) -> tuple[DepthCamera, ...]:
-        """All cameras, in the order of the file; for layout `seven_scenes` one per frame that is not excluded.
+        """All cameras, in the order of the file; for layout `seven_scenes` one per frame that it takes.
 
         Raises:
-            SiteError: a camera that none can be, or a file of it that is not usable; or the room is simulated, whose
-                cameras the simulator makes (`simulated_cameras`).
+            SiteError: a camera that none can be, or a file of it that is not usable; or the room is
+                simulated, whose cameras the simulator makes (`simulated_cameras`).
         """
         return self._cameras_and_notes[0]
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a user should know of this site: poses that were mended, frames without times, links not checked."""
+        """What a user should know: poses that were mended, frames without times, links not checked."""
         return (*notes_of(self), *(self._cameras_and_notes[1] if self.simulated is None else ()))
 
     @cached_property
@@ -159,7 +159,9 @@ class Site:
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", PoseWarning)
             if isinstance(self.entry.recording, SevenScenes):
-                cameras = self._seven_scenes_cameras(seven_scenes.chosen(self.recording_folder(), self.entry.recording))
+                cameras = self._seven_scenes_cameras(
+                    seven_scenes.chosen(self.recording_folder(), self.entry.recording)
+                )
             else:
                 cameras = tuple(self._listed_camera(index) for index in range(len(self.entry.cameras)))
         return cameras, mended_poses([str(warning.message) for warning in caught])
@@ -182,14 +184,17 @@ class Site:
             self._blame(
                 f"frame {number}",
                 lambda number=number: build_camera(  # type: ignore[misc]
-                    seven_scenes.name_of(number), settings, seven_scenes.pose(folder, number), self.path.parent
+                    seven_scenes.name_of(number),
+                    settings,
+                    seven_scenes.pose(folder, number),
+                    self.path.parent,
                 ),
             )
             for number in numbers
         )
 
     def excluded_cameras(self) -> tuple[DepthCamera, ...]:
-        """For layout `seven_scenes`, a camera for each excluded frame: views to check with. Otherwise none."""
+        """For layout `seven_scenes`, a camera for each excluded frame, to check with; otherwise none."""
         recording = self.entry.recording
         if not isinstance(recording, SevenScenes):
             return ()
@@ -261,29 +266,32 @@ class Site:
         )
 
     def motions(self, machine: Machine) -> tuple[Motion, ...]:
-        """Each joint that has a speed in the file, in both directions, with its braking distance at full speed.
+        """Each joint that has a speed, in both directions, with its braking distance at full speed.
 
         Args:
             machine: the machine of this site.
 
         Raises:
-            SiteError: a joint that the machine does not have, or a speed in the unit of another kind of joint.
+            SiteError: a joint that the machine does not have, or a speed in the unit of another kind of
+                joint.
         """
         for name, given in self.entry.joints.items():
             if name not in machine.joint_names:
                 known = ", ".join(machine.joint_names) or "none"
-                raise SiteError(f"{self.path}: joints.{name}: unknown joint; joints of {machine.name} are {known}")
+                raise SiteError(
+                    f"{self.path}: joints.{name}: unknown joint; joints of {machine.name} are {known}"
+                )
             slides = machine.joint(name).unit == "m"
             if slides != (given.max_speed_m_s is not None):
                 kind, key = ("slides", "max_speed_m_s") if slides else ("turns", "max_speed_deg_s")
                 raise SiteError(f"{self.path}: joints.{name}: {name} {kind}, its speed is written {key}")
         motions = []
         for name in machine.joint_names:
-            given = self.entry.joints.get(name)
-            if given is None:
+            if name not in self.entry.joints:
                 continue
-            speed = given.max_speed_m_s or math.radians(given.max_speed_deg_s or 0.0)
-            distance = braking_distance(speed, given.braking_time_s)
+            joint = self.entry.joints[name]
+            speed = joint.max_speed_m_s or math.radians(joint.max_speed_deg_s or 0.0)
+            distance = braking_distance(speed, joint.braking_time_s)
             motions += [Motion(name, direction, distance) for direction in (+1, -1)]
         return tuple(motions)
 
@@ -293,11 +301,10 @@ class Site:
         Raises:
             SiteError: the site names none, or it is absent.
         """
-        if self.entry.recording is None:
+        recording = self.entry.recording
+        if recording is None:
             raise SiteError(f"{self.path}: recording: missing; this command reads one")
-        return self._blame(
-            "recording.folder", lambda: existing_folder(self.entry.recording.folder, self.path.parent)
-        )
+        return self._blame("recording.folder", lambda: existing_folder(recording.folder, self.path.parent))
 
     def _blame(self, key: str, make: Callable[[], Value]) -> Value:
         """What `make` returns; its errors name the file and the key."""

@@ -18,7 +18,10 @@ class _Loader(yaml.SafeLoader):
         if self.check_event(yaml.AliasEvent):
             event = self.peek_event()
             raise yaml.constructor.ConstructorError(
-                None, None, f"alias *{event.anchor}; write the value out, or use camera_defaults", event.start_mark
+                None,
+                None,
+                f"alias *{event.anchor}; write the value out, or use camera_defaults",
+                event.start_mark,
             )
         return super().compose_node(parent, index)
 
@@ -28,7 +31,9 @@ class _Loader(yaml.SafeLoader):
             key = self.construct_object(key_node, deep=True)
             if not isinstance(key, str | int | float | bool) or key in seen:
                 problem = "is there twice" if isinstance(key, str | int | float | bool) else "is not a word"
-                raise yaml.constructor.ConstructorError(None, None, f"key {key!r} {problem}", key_node.start_mark)
+                raise yaml.constructor.ConstructorError(
+                    None, None, f"key {key!r} {problem}", key_node.start_mark
+                )
             seen.add(key)
         return super().construct_mapping(node, deep)
 
@@ -55,7 +60,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
     if size > MAX_YAML_BYTES:
         raise SiteError(f"{path}: {size:,} bytes, at most {MAX_YAML_BYTES:,} are read; is this a site file?")
     try:
-        content = yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)  # noqa: S506, a SafeLoader
+        content = yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         where = f"line {mark.line + 1}: " if mark else ""
