@@ -4,7 +4,7 @@ import pytest
 
 from elbowroom.errors import InputError
 from elbowroom.sensing import JointRecord
-from elbowroom.site import Site, check_images, excluded_frames, moments
+from elbowroom.site import Site, check_images, excluded_frames, moments, silent_cameras
 
 MS = 1_000_000
 
@@ -47,7 +47,9 @@ def test_a_moment_is_as_late_as_its_latest_frame(folder, stamped):
 
 def test_a_camera_without_a_folder_gave_nothing(folder, stamped):
     stamped["cameras"].append({"name": "west", "position_m": [0, 1, 1], "look_at_m": [0, 0, 0]})
-    found = list(moments(Site.load(folder.write(stamped))))
+    site = Site.load(folder.write(stamped))
+    found = list(moments(site))
+    assert silent_cameras(site) == ("west",)
     assert all("west" not in [frame.camera for frame in moment.frames] for moment in found)
 
 

@@ -23,7 +23,7 @@ def test_a_plain_site_is_its_values(folder, plain):
     assert site.margin() == Margin()
     assert (site.rule, site.detail) == ("three", "pixel")
     assert site.depth_scale_m("north") == 0.001
-    assert site.notes == ()
+    assert site.notes == ("max_frame_age_ms is not given: frames of any age count",)
 
 
 def test_a_cameras_own_keys_go_before_the_shared_ones(folder, plain):
@@ -133,6 +133,7 @@ def test_a_machine_with_braking_distances_of_its_joints(folder, plain, arm_urdf)
 def test_joints_without_a_speed_are_named(folder, plain, arm_urdf):
     plain["machine"] = {"urdf": arm_urdf.name}
     plain["joints"] = {"slide": {"max_speed_m_s": 0.2, "braking_time_s": 0.5}}
+    plain["max_frame_age_ms"] = 100
     site = Site.load(folder.write(plain))
     assert len(site.motions(site.machine())) == 2
     assert site.notes == ("joints without a speed, whose motions are not checked: turn",)
@@ -140,7 +141,9 @@ def test_joints_without_a_speed_are_named(folder, plain, arm_urdf):
 
 def test_a_pose_a_little_off_is_mended_and_noted(folder, plain):
     plain["cameras"][0]["world_from_camera"] = (np.diag([1.0005, 1, 1, 1])).tolist()
+    plain["max_frame_age_ms"] = 100
     site = Site.load(folder.write(plain))
+    assert site.max_age_ns == 100_000_000
     rotation = site.cameras()[0].world_from_camera[:3, :3]
     np.testing.assert_allclose(rotation, np.eye(3), atol=1e-12)
     assert len(site.notes) == 1 and "north: world_from_camera: off a rotation by 5.0e-04" in site.notes[0]

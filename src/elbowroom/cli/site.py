@@ -72,12 +72,18 @@ def _findings(site: "Site") -> dict[str, Any]:
     """All that can be said of a site without carving; raises on whatever is wrong with it."""
     import numpy as np
 
-    from elbowroom.site import check_images, memory_of
+    from elbowroom.site import check_images, memory_of, silent_cameras
     from elbowroom.site.coverage import views_per_voxel
 
     grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
     motions = site.motions(machine) if machine is not None else ()
-    moments, images = check_images(site) if site.entry.recording is not None else (None, None)
+    moments = images = None
+    notes = list(site.notes)
+    if site.entry.recording is not None:
+        moments, images = check_images(site)
+        notes += [
+            f"camera {name} has no image: it disputes all that it looks at" for name in silent_cameras(site)
+        ]
     views = views_per_voxel(grid, cameras)
     memory = memory_of(grid, cameras)
     return {
@@ -102,7 +108,7 @@ def _findings(site: "Site") -> dict[str, Any]:
         "pyramids_bytes": memory.pyramids_bytes,
         "maps_bytes": memory.maps_bytes,
         "memory_bytes": memory.total_bytes,
-        "notes": site.notes,
+        "notes": notes,
     }
 
 
@@ -111,7 +117,7 @@ def _say(row: dict[str, Any]) -> None:
     lines = {
         "site": f"{row['site']} is valid: {row['name']}",
         "grid": f"{shape} voxels of {row['voxel_size_m'] * 100:g} cm from {list(row['origin_m'])} m",
-        "cameras": f"{row['cameras']} of {', '.join(row['sizes_px'])} px; if nothing stood there, one would see "
+        "cameras": f"{row['cameras']} of {', '.join(row['sizes_px'])} px; with nothing in the way one sees "
         f"{row['seen_by_one_pct']:.0f} % of the grid, three or more {row['seen_by_three_pct']:.0f} %",
         "machine": f"{row['machine']}, {row['motions']} motions to check" if row["machine"] else "none",
         "decision": f"rule {row['rule']}, detail {row['detail']}",

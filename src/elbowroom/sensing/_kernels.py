@@ -28,9 +28,8 @@ def bounds_of_contributors(raw, first_u, last_u, first_v, last_v, shallowest, de
             for row in range(first_v[v, u], last_v[v, u] + 1):
                 for column in range(first_u[v, u], last_u[v, u] + 1):
                     depth = raw[row, column]
-                    # written so that NaN fails it
-                    if not (depth > 0.0 and depth >= shallowest and depth <= deepest and depth < np.inf):
-                        valid = False
+                    # a comparison with NaN is false, so NaN makes the pixel invalid
+                    valid &= (depth > 0.0) & (depth >= shallowest) & (depth <= deepest) & (depth < np.inf)
                     low = min(low, depth)
                     high = max(high, depth)
             if valid:

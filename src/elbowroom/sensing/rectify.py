@@ -1,7 +1,7 @@
 """A distorted image brought to a pinhole image, so that nothing near is lost and nothing far is invented."""
 
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -117,16 +117,16 @@ def _samples(lattice: NDArray) -> list[list[NDArray]]:
     return [[lattice[r : r + rows : 2, c : c + columns : 2] for c in range(3)] for r in range(3)]
 
 
-def _over_squares(lattice: NDArray, reduce: np.ufunc) -> NDArray:
+def _over_squares(lattice: NDArray, combine: np.ufunc) -> NDArray:
     """One value per pixel from the nine samples of its square."""
-    return reduce.reduce([sample for row in _samples(lattice) for sample in row])
+    return reduce(combine, [sample for row in _samples(lattice) for sample in row])
 
 
 def _span(lattice: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """First and last raw pixel, per pinhole pixel along one axis, whose +-0.5 meets the mapped square."""
     s = _samples(lattice)
     lines = [*s, *([s[0][c], s[1][c], s[2][c]] for c in range(3))]
-    bend = np.maximum.reduce([np.abs(middle - (a + b) / 2) for a, middle, b in lines])
+    bend = reduce(np.maximum, (np.abs(middle - (a + b) / 2) for a, middle, b in lines))
     slack = 2 * bend + SLACK_PX
     first = np.floor(_over_squares(lattice, np.minimum) - slack + 0.5)
     last = np.ceil(_over_squares(lattice, np.maximum) + slack - 0.5)

@@ -2,7 +2,7 @@
 
 from elbowroom.site.depth_png import read_depth_png
 from elbowroom.site.memory import Memory, memory_of
-from elbowroom.site.recording import RecordedMoment, check_images, excluded_frames, moments
+from elbowroom.site.recording import RecordedMoment, check_images, excluded_frames, moments, silent_cameras
 from elbowroom.site.site import SIMULATED_ROOM, Site
 
 __all__ = [
@@ -15,4 +15,5 @@ __all__ = [
     "memory_of",
     "moments",
     "read_depth_png",
+    "silent_cameras",
 ]

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 def notes_of(site: "Site") -> tuple[str, ...]:
     """Notes that follow from the file and its machine."""
     entry, notes = site.entry, []
-    if entry.recording is not None and not site.has_stamps:
+    if not site.has_stamps:
         notes.append("frames have no times: no limit on their age")
         if entry.max_frame_age_ms is not None:
             notes.append("max_frame_age_ms has no effect on frames without times")
-    elif entry.max_frame_age_ms is None and site.has_stamps:
+    elif entry.max_frame_age_ms is None:
         notes.append("max_frame_age_ms is not given: frames of any age count")
     if entry.rule in ("veto", "any"):
         notes.append(f"rule {entry.rule}: less evidence may add free space; three and majority never do that")

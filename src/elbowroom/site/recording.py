@@ -97,6 +97,16 @@ def check_images(site: Site) -> tuple[int, int]:
     return len(groups), len({image.path for group in groups for image in group})
 
 
+def silent_cameras(site: Site) -> tuple[str, ...]:
+    """Names of the cameras that no moment has an image of: as if lost, they dispute all that they look at.
+
+    Raises:
+        SiteError: as `moments`.
+    """
+    heard = {image.camera.name for group in image_groups(site) for image in group}
+    return tuple(camera.name for camera in site.cameras() if camera.name not in heard)
+
+
 def excluded_frames(site: Site) -> tuple[tuple[DepthCamera, DepthFrame], ...]:
     """For layout `seven_scenes`, the views that the site leaves out, to check with; otherwise none.
 

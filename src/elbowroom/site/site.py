@@ -23,7 +23,7 @@ from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.messages import one_line
 from elbowroom.site.notes import mended_poses, notes_of
 from elbowroom.site.paths import existing_folder, expand
-from elbowroom.site.recording_entry import SevenScenes, StampedFolder
+from elbowroom.site.recording_entry import SevenScenes, StamplessFolder
 from elbowroom.site.schema import SimulatedEntry, SiteEntry
 from elbowroom.site.yaml_file import read_yaml
 
@@ -95,8 +95,8 @@ class Site:
 
     @property
     def has_stamps(self) -> bool:
-        """Whether its frames have times: simulated ones and those of layout `folder` do."""
-        return self.simulated is not None or isinstance(self.entry.recording, StampedFolder)
+        """Whether its frames have times: all but those of recordings that were laid out without."""
+        return not isinstance(self.entry.recording, StamplessFolder | SevenScenes)
 
     @property
     def max_age_ns(self) -> int | None:
