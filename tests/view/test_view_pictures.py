@@ -86,7 +86,7 @@ def test_unknown_axis_is_refused():
 def test_five_sections_are_saved_and_nothing_else(tmp_path):
     paths = save_sections(a_space(), tmp_path / "new")
     assert sorted(paths) == sorted((tmp_path / "new").iterdir())
-    assert [path.name[10:15] for path in paths] == ["z_0.8", "z_1.6", "z_2.3", "y_3.5", "x_0.0"]
+    assert [path.stem for path in paths] == [f"section_{name}" for name in ("z1", "z2", "z3", "y", "x")]
 
 
 def test_a_low_grid_still_gives_five_pictures(tmp_path):

@@ -66,10 +66,10 @@ def save_sections(
     joints: Mapping[str, float] | None = None,
     cameras: Sequence[DepthCamera] = (),
 ) -> list[Path]:
-    """Writes three horizontal and two vertical sections as PNG, and returns their paths.
+    """Writes section_z1.png, _z2, _z3, _y and _x, and returns their paths.
 
-    The horizontal ones lie 0.3, 1.1 and 1.8 m above the grid's floor, or at fractions of a lower grid;
-    the vertical ones go through the machine's middle, or the grid's.
+    The three horizontal ones lie 0.3, 1.1 and 1.8 m above the grid's floor, or at fractions of a lower grid;
+    the vertical ones go through the machine's middle, or the grid's. Pictures that are there are replaced.
 
     Args:
         space: what to show.
@@ -85,16 +85,17 @@ def save_sections(
     volume = labels(space)
     triangles = None if machine is None else _triangles(machine, joints or {})
     paths = []
-    for number, (axis, at_m) in enumerate(_places(space, triangles), start=1):
-        picture = _section(space, volume, axis, at_m, triangles, cameras)
-        path = out_dir / f"section_{number}_{axis}_{at_m:.2f}m.png"
+    for name, at_m in _places(space, triangles).items():
+        picture = _section(space, volume, name[0], at_m, triangles, cameras)
+        path = out_dir / f"section_{name}.png"
         with whole_file(path) as unfinished:
             picture.save(unfinished, format="PNG")
         paths.append(path)
     return paths
 
 
-def _places(space: FreeSpace, triangles: NDArray[np.float64] | None) -> list[tuple[str, float]]:
+def _places(space: FreeSpace, triangles: NDArray[np.float64] | None) -> dict[str, float]:
+    """Where to cut [m], by the picture's name, which begins with the axis that is cut."""
     lower, upper = space.grid.lower_m, space.grid.upper_m
     heights = lower[2] + np.array(DEFAULT_HEIGHTS_M)
     if heights[-1] >= upper[2]:
@@ -103,8 +104,8 @@ def _places(space: FreeSpace, triangles: NDArray[np.float64] | None) -> list[tup
     if triangles is not None and triangles.size:
         centre = (triangles.min(axis=(0, 1)) + triangles.max(axis=(0, 1))) / 2
         middle = np.where((centre > lower) & (centre < upper), centre, middle)
-    places = [*(("z", z) for z in heights), ("y", middle[1]), ("x", middle[0])]
-    return [(axis, round(float(at_m), 3) + 0.0) for axis, at_m in places]
+    places = dict(zip(("z1", "z2", "z3", "y", "x"), (*heights, middle[1], middle[0]), strict=True))
+    return {name: round(float(at_m), 3) + 0.0 for name, at_m in places.items()}
 
 
 def _section(
