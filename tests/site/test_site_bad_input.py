@@ -167,7 +167,7 @@ def test_a_grid_larger_than_memory():
 
 
 def test_a_sites_grid_is_held_against_this_computers_memory(folder, plain, monkeypatch):
-    monkeypatch.setattr("elbowroom.site.site.physical_memory_bytes", lambda: 1000)
+    monkeypatch.setattr("elbowroom.site.schema.physical_memory_bytes", lambda: 1000)
     assert "this computer has 0.0 GB; choose larger voxels" in refusal(folder.write(plain))
 
 

@@ -26,6 +26,10 @@ class NoiseEntry(Entry):
     quadratic: NotNegative = 0.0
     offset_m: NotNegative = 0.0
 
+    def build(self) -> NoiseModel:
+        """The noise model."""
+        return NoiseModel(**self.model_dump())
+
 
 def _noise(given: Any) -> Any:
     """A preset's name as its coefficients; "exact" is a sensor without noise."""
@@ -188,7 +192,7 @@ def build_camera(
         world_from_camera=world_from_camera,
         intrinsics=intrinsics,
         depth_kind=settings.get("depth_kind", "planar"),
-        noise=None if noise is None else NoiseModel(**noise.model_dump()),
+        noise=None if noise is None else noise.build(),
         margin=None if margin is None else margin.build(),
         min_depth_m=settings.get("min_depth_m", 0.0),
         max_depth_m=float("inf") if deepest is None else deepest,

@@ -1,11 +1,15 @@
 """What a site file may say, key by key."""
 
-from typing import Annotated, Literal
+import math
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from elbowroom.geometry import VoxelGrid
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
-from elbowroom.site.entry import Count, Entry, Matrix, Number, Point, Positive, Text, Whole
+from elbowroom.site.entry import Count, Entry, Number, Point, Positive, Text, Whole
+from elbowroom.site.machine_entry import JointEntry, MachineEntry
+from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.recording_entry import RecordingEntry, SevenScenes
 
 Fov = Annotated[Number, Field(gt=10, lt=170)]
@@ -25,38 +29,23 @@ class GridEntry(Entry):
             raise ValueError("exactly one of upper_m and shape")
         return self
 
+    def build(self, voxel_size_m: float | None = None) -> VoxelGrid:
+        """The grid.
 
-class MachineEntry(Entry):
-    """The machine: one that ships with the package, or a URDF; where its base stands; links not to check.
+        Args:
+            voxel_size_m: another edge of a voxel for the same box [m]; None: the file's.
 
-    `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself.
-    """
-
-    builtin: Literal["ceiling_c_arm"] | None = None
-    urdf: Text | None = None
-    world_from_base: Matrix | None = None
-    unchecked_links: tuple[Text, ...] = ()
-    explain_tolerance_m: Positive | None = None
-
-    @model_validator(mode="after")
-    def _one_source(self) -> "MachineEntry":
-        if (self.builtin is None) == (self.urdf is None):
-            raise ValueError("exactly one of builtin and urdf")
-        return self
-
-
-class JointEntry(Entry):
-    """Full speed of a joint, in metres or degrees a second, and the time in which it brakes from it."""
-
-    max_speed_m_s: Positive | None = None
-    max_speed_deg_s: Positive | None = None
-    braking_time_s: Positive
-
-    @model_validator(mode="after")
-    def _one_speed(self) -> "JointEntry":
-        if (self.max_speed_m_s is None) == (self.max_speed_deg_s is None):
-            raise ValueError("exactly one of max_speed_m_s (prismatic) and max_speed_deg_s (revolute)")
-        return self
+        Raises:
+            GridError: empty, or more voxels than this computer's memory holds.
+        """
+        if self.shape is not None:
+            grid = VoxelGrid(self.origin_m, self.shape, self.voxel_size_m)
+        else:
+            grid = VoxelGrid.covering(self.origin_m, self.upper_m or (), self.voxel_size_m)
+        if voxel_size_m is not None:
+            grid = VoxelGrid.covering(grid.lower_m, self.upper_m or grid.upper_m, voxel_size_m)
+        require_memory(grid, physical_memory_bytes())
+        return grid
 
 
 class SimulatedEntry(Entry):
@@ -68,11 +57,24 @@ class SimulatedEntry(Entry):
     field_of_view_deg: Fov = 90.0
     seed: Annotated[Whole, Field(ge=0)] = 1
 
-    @property
-    def size_px(self) -> tuple[int, int]:
-        """Width and height of each image [px]."""
+    def camera_arguments(self, shared: CameraSettings) -> dict[str, Any]:
+        """Arguments for the simulator's `wall_cameras`.
+
+        Args:
+            shared: the site's `camera_defaults`.
+        """
         width, height = (int(side) for side in self.resolution.split("x"))
-        return width, height
+        return {
+            "count": self.cameras,
+            "height_m": self.camera_height_m,
+            "width": width,
+            "height": height,
+            "hfov_deg": self.field_of_view_deg,
+            "depth_kind": shared.depth_kind,
+            "noise": None if shared.noise is None else shared.noise.build(),
+            "min_depth_m": shared.min_depth_m,
+            "max_depth_m": math.inf if shared.max_depth_m is None else shared.max_depth_m,
+        }
 
 
 SIMULATED_SETTINGS = ("depth_kind", "noise", "min_depth_m", "max_depth_m")

@@ -1,28 +1,25 @@
 """One file that says all of a room: grid, cameras, machine, speeds, rule, recording."""
 
-import math
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
 from pydantic import ValidationError
 
 from elbowroom.errors import CameraError, GridError, InputError, PoseWarning, SiteError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
-from elbowroom.machine.c_arm import ceiling_c_arm
-from elbowroom.motion import Motion, braking_distance
-from elbowroom.sensing import Margin, NoiseModel
+from elbowroom.motion import Motion
+from elbowroom.sensing import Margin
 from elbowroom.site import seven_scenes
 from elbowroom.site.camera_entry import CameraSettings, build_camera
-from elbowroom.site.memory import physical_memory_bytes, require_memory
+from elbowroom.site.machine_entry import motions_of
 from elbowroom.site.messages import one_line
 from elbowroom.site.notes import mended_poses, notes_of
-from elbowroom.site.paths import existing_folder, expand
+from elbowroom.site.paths import existing_folder
 from elbowroom.site.recording_entry import SevenScenes, StamplessFolder
 from elbowroom.site.schema import SimulatedEntry, SiteEntry
 from elbowroom.site.yaml_file import read_yaml
@@ -124,18 +121,7 @@ class Site:
         Raises:
             SiteError: empty, or more voxels than this computer's memory holds.
         """
-        given = self.entry.grid
-        try:
-            if given.shape is not None:
-                grid = VoxelGrid(given.origin_m, given.shape, given.voxel_size_m)
-            else:
-                grid = VoxelGrid.covering(given.origin_m, given.upper_m or (), given.voxel_size_m)
-            if voxel_size_m is not None:
-                grid = VoxelGrid.covering(grid.lower_m, given.upper_m or grid.upper_m, voxel_size_m)
-            require_memory(grid, physical_memory_bytes())
-            return grid
-        except GridError as error:
-            raise SiteError(f"{self.path}: {error}") from None
+        return self._blame(None, lambda: self.entry.grid.build(voxel_size_m))
 
     def cameras(self) -> tuple[DepthCamera, ...]:
         """All cameras, in the order of the file; for layout `seven_scenes` one per frame that it takes.
@@ -228,20 +214,7 @@ class Site:
         """
         if self.simulated is None:
             raise SiteError(f"{self.path}: not a simulated room; it has no key simulated")
-        settings = CameraSettings().over(self.entry.camera_defaults)
-        noise, deepest = settings.get("noise"), settings.get("max_depth_m")
-        width, height = self.simulated.size_px
-        return {
-            "count": self.simulated.cameras,
-            "height_m": self.simulated.camera_height_m,
-            "width": width,
-            "height": height,
-            "hfov_deg": self.simulated.field_of_view_deg,
-            "depth_kind": settings.get("depth_kind", "planar"),
-            "noise": None if noise is None else NoiseModel(**noise.model_dump()),
-            "min_depth_m": settings.get("min_depth_m", 0.0),
-            "max_depth_m": math.inf if deepest is None else deepest,
-        }
+        return self.simulated.camera_arguments(self.entry.camera_defaults)
 
     def machine(self) -> Machine | None:
         """The machine at its place; None if the file names none.
@@ -254,16 +227,7 @@ class Site:
     @cached_property
     def _machine(self) -> Machine | None:
         given = self.entry.machine
-        if given is None:
-            return None
-        base = None if given.world_from_base is None else np.array(given.world_from_base)
-        if given.builtin is not None:
-            return self._blame("machine", lambda: _with_unchecked(ceiling_c_arm(base), given.unchecked_links))
-        urdf = expand(str(given.urdf), self.path.parent)
-        return self._blame(
-            "machine",
-            lambda: Machine.from_urdf(urdf, world_from_base=base, unchecked_links=given.unchecked_links),
-        )
+        return None if given is None else self._blame("machine", lambda: given.build(self.path.parent))
 
     def motions(self, machine: Machine) -> tuple[Motion, ...]:
         """Each joint that has a speed, in both directions, with its braking distance at full speed.
@@ -275,25 +239,7 @@ class Site:
             SiteError: a joint that the machine does not have, or a speed in the unit of another kind of
                 joint.
         """
-        for name, given in self.entry.joints.items():
-            if name not in machine.joint_names:
-                known = ", ".join(machine.joint_names) or "none"
-                raise SiteError(
-                    f"{self.path}: joints.{name}: unknown joint; joints of {machine.name} are {known}"
-                )
-            slides = machine.joint(name).unit == "m"
-            if slides != (given.max_speed_m_s is not None):
-                kind, key = ("slides", "max_speed_m_s") if slides else ("turns", "max_speed_deg_s")
-                raise SiteError(f"{self.path}: joints.{name}: {name} {kind}, its speed is written {key}")
-        motions = []
-        for name in machine.joint_names:
-            if name not in self.entry.joints:
-                continue
-            joint = self.entry.joints[name]
-            speed = joint.max_speed_m_s or math.radians(joint.max_speed_deg_s or 0.0)
-            distance = braking_distance(speed, joint.braking_time_s)
-            motions += [Motion(name, direction, distance) for direction in (+1, -1)]
-        return tuple(motions)
+        return self._blame(None, lambda: motions_of(machine, self.entry.joints))
 
     def recording_folder(self) -> Path:
         """The folder of the recording.
@@ -306,16 +252,12 @@ class Site:
             raise SiteError(f"{self.path}: recording: missing; this command reads one")
         return self._blame("recording.folder", lambda: existing_folder(recording.folder, self.path.parent))
 
-    def _blame(self, key: str, make: Callable[[], Value]) -> Value:
+    def _blame(self, key: str | None, make: Callable[[], Value]) -> Value:
         """What `make` returns; its errors name the file and the key."""
+        where = f"{self.path}: {key}" if key else str(self.path)
         try:
             return make()
-        except (SiteError, CameraError) as error:
-            raise SiteError(f"{self.path}: {key}: {error}") from None
+        except (SiteError, CameraError, GridError) as error:
+            raise SiteError(f"{where}: {error}") from None
         except InputError as error:
-            raise type(error)(f"{self.path}: {key}: {error}") from None
-
-
-def _with_unchecked(machine: Machine, links: tuple[str, ...]) -> Machine:
-    """The same machine with more links that are not checked."""
-    return replace(machine, unchecked_links=tuple(dict.fromkeys((*machine.unchecked_links, *links))))
+            raise type(error)(f"{where}: {error}") from None
