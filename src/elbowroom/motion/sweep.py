@@ -22,7 +22,7 @@ MOST_HALVINGS = 40
 
 
 class Block(NamedTuple):
-    """The first block on a way: its travel, its kind (a kernel's number), the cluster that meets it, where."""
+    """The first block on a way: its travel, its kind (as kernels number it), the cluster that meets it."""
 
     travel: float
     kind: int
