@@ -65,7 +65,10 @@ def wall_cameras(
     if size not in SIZES:
         raise CameraError(f"wall_cameras: size is {size!r}, known are {', '.join(SIZES)}")
     usual_width, usual_height, usual_kind = SIZES[size]
-    width, height = width or usual_width, height or usual_height
+    width = usual_width if width is None else width
+    height = usual_height if height is None else height
+    if min(width, height) < 1:
+        raise CameraError(f"wall_cameras: image of {width} x {height} pixels, must be at least 1 x 1")
     focal_px = width / 2 / math.tan(math.radians(hfov_deg) / 2)
     intrinsics = Intrinsics(fx=focal_px, fy=focal_px, cx=(width - 1) / 2, cy=(height - 1) / 2)
     digits = max(2, len(str(count - 1)))

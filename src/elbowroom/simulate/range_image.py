@@ -45,7 +45,7 @@ def range_image(camera: DepthCamera, moment: Moment) -> RangeImage:
         moment: the solids.
 
     Raises:
-        CameraError: the lens model folds over within the image.
+        CameraError: the lens model folds back within the image.
     """
     still = _static_image(camera, moment.static_solids)
     image = RangeImage(still.depth.copy(), still.dark.copy(), still.rays)

@@ -7,10 +7,14 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError
 from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.sensing.distortion import distorted, usable_radius
 
-NEWTON_STEPS = 20
-ACCURACY = 1e-10
-"""How exactly a ray must distort to its pixel again [in units of X/Z]."""
+NEWTON_STEPS = 30
+LONGEST_STEP = 0.3
+STEP = 1e-6
+"""Derivatives are taken over this, steps are no longer than that [in X/Z]."""
+ACCURACY_PX = 1e-6
+"""How exactly a ray must come back to its pixel [px]."""
 
 
 class PixelRays(NamedTuple):
@@ -32,11 +36,12 @@ def pixel_rays(camera: DepthCamera) -> PixelRays:
     """The rays of all pixel centres.
 
     Raises:
-        CameraError: the lens model folds over within the image, so that pixels have no ray.
+        CameraError: the lens model folds back within the image, so that pixels have no ray.
     """
     x, y = np.meshgrid(*camera.intrinsics.normalised(camera.width, camera.height))
     if camera.intrinsics.is_distorted:
-        x, y = undistort(x, y, camera.intrinsics, f"camera {camera.name}")
+        u, v = np.meshgrid(np.arange(float(camera.width)), np.arange(float(camera.height)))
+        x, y = undistort(u, v, camera.intrinsics, f"camera {camera.name}")
     return PixelRays(
         x=x.astype(np.float32),
         y=y.astype(np.float32),
@@ -45,45 +50,40 @@ def pixel_rays(camera: DepthCamera) -> PixelRays:
     )
 
 
-def distort(
-    x: NDArray[np.float64], y: NDArray[np.float64], intrinsics: Intrinsics
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """OpenCV's lens model: X/Z and Y/Z of a ray to where the lens puts it, in the same units.
-
-    x' = x (1 + k1 r2 + k2 r4 + k3 r6) / (1 + k4 r2 + k5 r4 + k6 r6) + 2 p1 x y + p2 (r2 + 2 x2), y' alike.
-    """
-    k1, k2, p1, p2, k3, k4, k5, k6 = (*intrinsics.distortion, *[0.0] * 8)[:8]
-    r2 = x * x + y * y
-    radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))
-    return (
-        x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
-        y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y,
-    )
-
-
 def undistort(
-    x_seen: NDArray[np.float64], y_seen: NDArray[np.float64], intrinsics: Intrinsics, what: str
+    u: NDArray[np.float64], v: NDArray[np.float64], intrinsics: Intrinsics, what: str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The rays that the lens puts at given places, by Newton's method from the place itself.
+    """The rays that a lens brings to given places of the image, by Newton's method from the pinhole's rays.
+
+    Args:
+        u, v: places in the raw image, shape (n, m) [px].
+        intrinsics: pinhole and distortion.
+        what: the name that an error gives the camera.
+
+    Returns:
+        X/Z and Y/Z, shape (n, m).
 
     Raises:
-        CameraError: for some place the method finds no ray.
+        CameraError: no ray leads to some place, because the lens model folds back before it.
     """
-    x, y = x_seen.copy(), y_seen.copy()
-    step = 1e-6
+    x, y = (u - intrinsics.cx) / intrinsics.fx, (v - intrinsics.cy) / intrinsics.fy
     for _ in range(NEWTON_STEPS):
-        at_x, at_y = distort(x, y, intrinsics)
-        miss_x, miss_y = x_seen - at_x, y_seen - at_y
-        if max(np.abs(miss_x).max(), np.abs(miss_y).max()) < ACCURACY:
+        at_u, at_v = distorted(intrinsics, x, y)
+        miss_u, miss_v = u - at_u, v - at_v
+        if max(np.abs(miss_u).max(), np.abs(miss_v).max()) < ACCURACY_PX:
+            widest = float(np.hypot(x, y).max())
+            if usable_radius(intrinsics, 1.01 * widest) < widest:
+                break
             return x, y
-        right_x, right_y = distort(x + step, y, intrinsics)
-        down_x, down_y = distort(x, y + step, intrinsics)
-        xx, yx = (right_x - at_x) / step, (right_y - at_y) / step
-        xy, yy = (down_x - at_x) / step, (down_y - at_y) / step
-        scale = xx * yy - xy * yx
-        scale = np.where(np.abs(scale) < 1e-6, 1e-6, scale)
-        x += np.clip((yy * miss_x - xy * miss_y) / scale, -0.5, 0.5)
-        y += np.clip((xx * miss_y - yx * miss_x) / scale, -0.5, 0.5)
+        right_u, right_v = distorted(intrinsics, x + STEP, y)
+        down_u, down_v = distorted(intrinsics, x, y + STEP)
+        ux, vx = (right_u - at_u) / STEP, (right_v - at_v) / STEP
+        uy, vy = (down_u - at_u) / STEP, (down_v - at_v) / STEP
+        area = ux * vy - uy * vx
+        area = np.where(np.abs(area) < 1e-3, 1e-3, area)
+        x = x + np.clip((vy * miss_u - uy * miss_v) / area, -LONGEST_STEP, LONGEST_STEP)
+        y = y + np.clip((ux * miss_v - vx * miss_u) / area, -LONGEST_STEP, LONGEST_STEP)
     raise CameraError(
-        f"{what}: distortion {intrinsics.distortion} folds over in the image; no ray leads to some pixels"
+        f"{what}: distortion {intrinsics.distortion} folds back within the image, so no ray leads to its "
+        "corners; use a smaller field of view or coefficients fitted up to the corners"
     )

@@ -48,7 +48,7 @@ def render(
 
     Raises:
         InputError: a share outside 0 to 1.
-        CameraError: a lens model that folds over within the image.
+        CameraError: a lens model that folds back within the image.
     """
     for name, share in (("flying_pixels", flying_pixels), ("missing", missing)):
         if not 0 <= share <= 1:
