@@ -21,7 +21,14 @@ def one_line(capsys) -> str:
 
 def test_all_commands_are_there(capsys):
     assert run([]) == 0
-    assert all(command in capsys.readouterr().out for command in COMMANDS)
+    text = capsys.readouterr().out
+    assert all(f" {command} " in text for command in COMMANDS)
+
+
+def test_a_group_of_commands_alone_shows_its_help_and_no_error(capsys):
+    assert run(["site"]) == 2
+    captured = capsys.readouterr()
+    assert "check" in captured.out and captured.err == ""
 
 
 @pytest.mark.parametrize("command", ["monitor", "reconstruct", "check", "bench"])

@@ -44,7 +44,12 @@ def run(argv: Sequence[str] | None = None) -> int:
             message = getattr(error, "format_message", None)
             if message is None:
                 raise
-            return _fail(f"{message()} (elbowroom COMMAND --help shows what is allowed)")
+            # without a word where a group of commands was named alone: its help is already printed
+            return (
+                _fail(f"{message()} (elbowroom COMMAND --help shows what is allowed)")
+                if message()
+                else FAILED
+            )
     return code if isinstance(code, int) else 0
 
 

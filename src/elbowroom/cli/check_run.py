@@ -30,7 +30,7 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 4) as steps:
             steps.begin("compiling kernels")
-            warm_up()
+            warm_up(machine)
             steps.begin("reading images")
             scene = scene_at(room, moment)
             steps.begin("reconstructing")

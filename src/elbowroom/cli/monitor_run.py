@@ -91,7 +91,7 @@ def _warm_up(room: Room, cycle: Cycle, console: Console) -> None:
     """
     with Steps(console, 3) as steps:
         steps.begin("compiling kernels")
-        warm_up()
+        warm_up(room.machine)
         steps.begin("first frames")
         scene = next(room.scenes(), None)
         steps.begin("first cycle")

@@ -58,7 +58,7 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 6) as steps:
             steps.begin("compiling kernels")
-            warm_up()
+            warm_up(room.machine)
             steps.begin("reading images")
             scene = scene_at(room, moment)
             steps.begin("reconstructing")
