@@ -6,6 +6,7 @@ from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.point_report import PointReport, Sight
 from elbowroom.reconstruct.reconstruct import reconstruct
 from elbowroom.reconstruct.resolve import LAWFUL, RULES, Rule, resolve
+from elbowroom.reconstruct.warm_up import warm_up
 
 __all__ = [
     "DETAILS",
@@ -21,4 +22,5 @@ __all__ = [
     "merge",
     "reconstruct",
     "resolve",
+    "warm_up",
 ]

@@ -120,7 +120,11 @@ def _add_margin(numbers, offset, c, scale, px, py, pz, floats):
             distance = np.sqrt(x * x + y * y + z * z)
             floats[NEAR + lane] = distance - diagonal
             floats[FAR + lane] = distance + diagonal
-    m0, m1, m2 = np.float32(numbers[c, MARGIN + 0]), np.float32(numbers[c, MARGIN + 1]), np.float32(numbers[c, MARGIN + 2])
+    m0, m1, m2 = (
+        np.float32(numbers[c, MARGIN + 0]),
+        np.float32(numbers[c, MARGIN + 1]),
+        np.float32(numbers[c, MARGIN + 2]),
+    )
     m3, m4 = np.float32(numbers[c, MARGIN + 3]), np.float32(numbers[c, MARGIN + 4])
     for lane in range(64):
         far = floats[FAR + lane]
@@ -135,7 +139,11 @@ def bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
     """Depth bounds and windows of the 64 children of a cube that lies wholly inside the image."""
     fx, fy = np.float32(numbers[c, LENS + 0]), np.float32(numbers[c, LENS + 1])
     ox, oy = np.float32(numbers[c, LENS + 2]) + HALF, np.float32(numbers[c, LENS + 3]) + HALF
-    ex, ey, ez = np.float32(numbers[c, HALF_EXTENT + 4 * scale]) * fx, np.float32(numbers[c, HALF_EXTENT + 4 * scale + 1]) * fy, np.float32(numbers[c, HALF_EXTENT + 4 * scale + 2])
+    ex, ey, ez = (
+        np.float32(numbers[c, HALF_EXTENT + 4 * scale]) * fx,
+        np.float32(numbers[c, HALF_EXTENT + 4 * scale + 1]) * fy,
+        np.float32(numbers[c, HALF_EXTENT + 4 * scale + 2]),
+    )
     reach = np.int32(0)
     for lane in range(64):
         x = px + offset[c, scale, 0, lane]
@@ -162,7 +170,11 @@ def bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
     """The same for a cube that the image's edge or the camera's plane cuts; row STATE says where each child lies."""
     fx, fy = np.float32(numbers[c, LENS + 0]), np.float32(numbers[c, LENS + 1])
     ox, oy = np.float32(numbers[c, LENS + 2]), np.float32(numbers[c, LENS + 3])
-    ex, ey, ez = np.float32(numbers[c, HALF_EXTENT + 4 * scale]) * fx, np.float32(numbers[c, HALF_EXTENT + 4 * scale + 1]) * fy, np.float32(numbers[c, HALF_EXTENT + 4 * scale + 2])
+    ex, ey, ez = (
+        np.float32(numbers[c, HALF_EXTENT + 4 * scale]) * fx,
+        np.float32(numbers[c, HALF_EXTENT + 4 * scale + 1]) * fy,
+        np.float32(numbers[c, HALF_EXTENT + 4 * scale + 2]),
+    )
     lateral = np.float32(numbers[c, LATERAL]) + SLOP_PX
     last_u, last_v = np.float32(numbers[c, SIZE + 0] - 1), np.float32(numbers[c, SIZE + 1] - 1)
     reach = np.int32(0)
@@ -211,7 +223,9 @@ def look_up(windows, quantum, floats, ints):
     for lane in range(64):
         greatest = ints[LOW_GREATEST + lane]
         floats[LEAST + lane] = np.float32(ints[LOW_LEAST + lane]) * scale
-        floats[GREATEST + lane] = np.float32(greatest) * scale if greatest < np.int32(NO_RETURN) else np.float32(np.inf)
+        floats[GREATEST + lane] = (
+            np.float32(greatest) * scale if greatest < np.int32(NO_RETURN) else np.float32(np.inf)
+        )
 
 
 @njit(cache=True, nogil=True, inline="always")

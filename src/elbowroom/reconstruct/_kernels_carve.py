@@ -6,6 +6,7 @@ anything of it, so that neither the order nor the grouping of cameras can be rea
 
 import numpy as np
 from numba import njit
+from numba.cpython.unsafe.numbers import trailing_zeros
 
 from elbowroom.reconstruct._kernels_box import (
     ALL,
@@ -64,18 +65,6 @@ def _tally(counts, word, mask):
 
 
 @njit(cache=True, nogil=True)
-def _lowest_lane(mask):
-    """The number of the lowest set bit, by halving."""
-    lane = 0
-    rest = mask
-    for step in (32, 16, 8, 4, 2, 1):
-        if not rest & ((np.uint64(1) << np.uint64(step)) - np.uint64(1)):
-            rest >>= np.uint64(step)
-            lane += step
-    return lane
-
-
-@njit(cache=True, nogil=True)
 def _measured_at_centre(views, c, unsure, partly, floats):
     """Which unsure boxes hold the measured point of their centre's pixel, and which have pixels without a return."""
     surface, blind = NOTHING, NOTHING
@@ -83,7 +72,7 @@ def _measured_at_centre(views, c, unsure, partly, floats):
     quantum = views.numbers[c, QUANTUM]
     rest = unsure
     while rest:
-        lane = _lowest_lane(rest)
+        lane = np.int64(trailing_zeros(rest))
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
         if partly and floats[STATE + lane] == CROSSING:
@@ -105,7 +94,7 @@ def _contested(floats, unsure, partly):
     disputed = NOTHING
     rest = unsure
     while rest:
-        lane = _lowest_lane(rest)
+        lane = np.int64(trailing_zeros(rest))
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
         crossing = partly and floats[STATE + lane] == CROSSING
@@ -135,9 +124,7 @@ def _ask(views, c, scale, x, y, z, edge, keep_partly, floats, ints, flags):
 
 
 @njit(cache=True, nogil=True)
-def carve_cubes(
-    cubes, lattice, inside, views, detail, complete, planes, through_count, dispute_count
-):
+def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through_count, dispute_count):
     """Carves some 16-voxel cubes; each writes only its own 64 words.
 
     Args:
@@ -167,7 +154,17 @@ def carve_cubes(
         z = lattice.z0 + (cube % lattice.cubes_z) * 16 * edge
         for c in range(cameras):
             through[c], mixed[c], _ = _ask(
-                views, c, 1, x + 0.5 * block, y + 0.5 * block, z + 0.5 * block, block, True, floats, ints, flags
+                views,
+                c,
+                1,
+                x + 0.5 * block,
+                y + 0.5 * block,
+                z + 0.5 * block,
+                block,
+                True,
+                floats,
+                ints,
+                flags,
             )
         for lane in range(64):
             word = cube * 64 + lane
@@ -187,7 +184,9 @@ def carve_cubes(
                 open_voxels = inside[word] if complete else inside[word] & ~planes[THREE, word]
                 if not mixed[c] & here or not open_voxels:
                     continue
-                seen, unsure, partly = _ask(views, c, 0, bx, by, bz, edge, detail == PIXEL, floats, ints, flags)
+                seen, unsure, partly = _ask(
+                    views, c, 0, bx, by, bz, edge, detail == PIXEL, floats, ints, flags
+                )
                 seen &= open_voxels
                 unsure &= open_voxels
                 _count_through(planes, word, seen)
@@ -215,7 +214,7 @@ def carve_cubes(
                     rest = undecided[c] if complete else undecided[c] & ~planes[THREE, word]
                     seen, disputed = NOTHING, NOTHING
                     while rest:
-                        voxel = _lowest_lane(rest)
+                        voxel = np.int64(trailing_zeros(rest))
                         bit = np.uint64(1) << np.uint64(voxel)
                         rest &= ~bit
                         answer = settle_voxel(
@@ -253,9 +252,7 @@ def carve_cubes(
 
 
 @njit(cache=True, nogil=True)
-def carve_points(
-    cubes, lattice, inside, views, detail, complete, planes, through_count, dispute_count
-):
+def carve_points(cubes, lattice, inside, views, detail, complete, planes, through_count, dispute_count):
     """The thesis' test of voxel centres, every voxel with every camera; arguments as of `carve_cubes`."""
     numbers = views.numbers
     edge = lattice.edge

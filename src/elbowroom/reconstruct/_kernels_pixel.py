@@ -162,6 +162,7 @@ def settle_voxel(numbers, c, first, trust, doubt, x, y, z, edge, s):
     )
     quantum = numbers[c, QUANTUM]
     clear_from = np.uint32(min((far + margin) / quantum + 2.0, 65535.0))
+    hidden_to = np.uint32(max((near - margin) / quantum - 2.0, 0.0))
     lines = _prepare(numbers, c, x, y, z, edge, s)
     blocked = False
     seen_past, hidden = False, False
@@ -169,10 +170,17 @@ def settle_voxel(numbers, c, first, trust, doubt, x, y, z, edge, s):
     for v in range(va, vb + 1):
         row = first + v * width
         for u in range(ua, ub + 1):
-            texel = trust[row + u]
-            least = texel >> np.uint32(16)
+            least = trust[row + u] >> np.uint32(16)
             if least >= clear_from:
                 continue
+            doubtful = doubt[row + u]
+            greatest = np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF))
+            if blocked and (
+                doubtful == NEUTRAL
+                or (hidden and greatest <= hidden_to)
+                or (answer & IS_BLIND and greatest == NO_RETURN)
+            ):
+                continue  # it can add nothing to what is known already
             if _misses(s, lines, u, v):
                 continue
             steep_near, steep_far = 1.0, 1.0
@@ -186,21 +194,19 @@ def settle_voxel(numbers, c, first, trust, doubt, x, y, z, edge, s):
             if _has_left(s, u, v, (least * quantum - margin) / steep_far):
                 continue
             blocked = True
-            texel = doubt[row + u]
-            if texel == NEUTRAL:
+            if doubtful == NEUTRAL:
                 continue
-            least = texel >> np.uint32(16)
-            greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
+            least = doubtful >> np.uint32(16)
             if greatest == NO_RETURN:
                 answer |= DISPUTES | IS_BLIND
+            elif greatest <= hidden_to or _not_reached(s, u, v, (greatest * quantum + margin) / steep_near):
+                hidden = True
             elif _has_left(s, u, v, (least * quantum - margin) / steep_far):
                 seen_past = True
-            elif _not_reached(s, u, v, (greatest * quantum + margin) / steep_near):
-                hidden = True
-            else:
+            elif _has_left(s, u, v, (greatest * quantum - margin) / steep_far):
                 answer |= DISPUTES
-                if not _has_left(s, u, v, (greatest * quantum - margin) / steep_far):
-                    return DISPUTES | IS_SURFACE
+            else:
+                return DISPUTES | IS_SURFACE
     if not blocked:
         return THROUGH if whole else 0
     if hidden and not answer:
@@ -211,13 +217,17 @@ def settle_voxel(numbers, c, first, trust, doubt, x, y, z, edge, s):
             row = first + v * width
             for u in range(ua, ub + 1):
                 texel = doubt[row + u]
-                if texel == NEUTRAL or _misses(s, lines, u, v):
+                least = texel >> np.uint32(16)
+                greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
+                if texel == NEUTRAL or greatest <= hidden_to or _misses(s, lines, u, v):
                     continue
+                if least >= clear_from:
+                    return DISPUTES
                 steep = 1.0
                 if radial:
                     xn, yn = abs(u - ox) / fx + wide / fx, abs(v - oy) / fy + wide / fy
                     steep = np.sqrt(1.0 + xn * xn + yn * yn)
-                if _has_left(s, u, v, ((texel >> np.uint32(16)) * quantum - margin) / steep):
+                if _has_left(s, u, v, (least * quantum - margin) / steep):
                     return DISPUTES
     return answer
 

@@ -40,7 +40,9 @@ def texels_of_frame(least_m, greatest_m, low, high, quantum, texels):
             valid = (near > zero) & (near >= low) & (far <= high) & (far >= near) & (far < np.inf)
             # the product is off by less than a quantum, so one quantum more is surely on the safe side
             least = np.int32(max(min(near * per_metre, clip) - one, zero) if valid else zero)
-            greatest = np.int32(min(far * per_metre, clip) + np.float32(2) if valid else np.float32(NO_RETURN))
+            greatest = np.int32(
+                min(far * per_metre, clip) + np.float32(2) if valid else np.float32(NO_RETURN)
+            )
             texels[v, u] = np.uint32((least << np.int32(16)) | (np.int32(NO_RETURN) - greatest))
 
 
@@ -86,7 +88,9 @@ def halve(fine, coarse):
         lower = fine[min(2 * v + 1, rows - 1)]
         out = coarse[v]
         for u in range(columns // 2):
-            out[u] = both_least(both_least(upper[2 * u], upper[2 * u + 1]), both_least(lower[2 * u], lower[2 * u + 1]))
+            out[u] = both_least(
+                both_least(upper[2 * u], upper[2 * u + 1]), both_least(lower[2 * u], lower[2 * u + 1])
+            )
         if columns % 2:
             out[coarse.shape[1] - 1] = both_least(upper[columns - 1], lower[columns - 1])
 

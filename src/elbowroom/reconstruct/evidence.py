@@ -48,7 +48,9 @@ class Evidence:
         names = tuple(sorted(self.cameras))
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise EvidenceError(f"evidence: camera {', '.join(twice)} named twice; each camera may speak once")
+            raise EvidenceError(
+                f"evidence: camera {', '.join(twice)} named twice; each camera may speak once"
+            )
         object.__setattr__(self, "cameras", names)
         if self.counts is None:
             self.planes[DISPUTED:] &= ~self.planes[THREE]
@@ -82,7 +84,9 @@ class Evidence:
         measured = bits.pack(surface, grid)
         planes = np.zeros((PLANES, bits.word_count(grid)), dtype=np.uint64)
         planes[ONE], planes[DISPUTED], planes[SURFACE] = through, measured, measured
-        counts = Counts(*(np.unpackbits(p.view(np.uint8), bitorder="little").reshape(-1, 64) for p in (through, measured)))
+        counts = Counts(
+            *(np.unpackbits(p.view(np.uint8), bitorder="little").reshape(-1, 64) for p in (through, measured))
+        )
         return cls(grid, (name,), planes, bits.empty(grid), counts)
 
     @property

@@ -55,9 +55,7 @@ def pinhole_of(camera: DepthCamera) -> DepthCamera:
     return rectified(camera) if camera.intrinsics.is_distorted else camera
 
 
-def frames_by_camera(
-    cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]
-) -> dict[str, DepthFrame]:
+def frames_by_camera(cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]) -> dict[str, DepthFrame]:
     """Frames by camera name, checked.
 
     Raises:
@@ -73,7 +71,9 @@ def frames_by_camera(
     for frame in frames:
         of = known.get(frame.camera)
         if of is None:
-            raise CameraError(f"frames: camera {frame.camera} is unknown, known are {', '.join(known) or 'none'}")
+            raise CameraError(
+                f"frames: camera {frame.camera} is unknown, known are {', '.join(known) or 'none'}"
+            )
         if frame.camera in given:
             raise FrameError(f"frames: two frames of camera {frame.camera}, one each is allowed")
         if frame.depth_m.shape != (of.height, of.width):

@@ -114,9 +114,7 @@ def _state(space: FreeSpace, i: int, j: int, k: int) -> str:
     return "surface" if holds(space.surface_words) else "unseen"
 
 
-def _sight(
-    voxel: VoxelGrid, camera: DepthCamera, source: Source, centre: NDArray[np.float64]
-) -> CameraSight:
+def _sight(voxel: VoxelGrid, camera: DepthCamera, source: Source, centre: NDArray[np.float64]) -> CameraSight:
     name = camera.name
     images = RoomImages(
         (camera,),

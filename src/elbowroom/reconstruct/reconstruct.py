@@ -131,7 +131,9 @@ def _positions_at(joints: Joints, stamp_ns: int | None, camera: str) -> Mapping[
     if not isinstance(joints, JointRecord):
         return joints
     if stamp_ns is None:
-        raise InputError(f"frame of {camera}: has no time, so a joint record cannot say where the machine was")
+        raise InputError(
+            f"frame of {camera}: has no time, so a joint record cannot say where the machine was"
+        )
     return joints.at(stamp_ns)
 
 

@@ -99,7 +99,9 @@ def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin)
     shapes, first = [], 0
     for c, camera in enumerate(cameras):
         if camera.intrinsics.is_distorted:
-            raise CameraError(f"camera {camera.name}: is distorted, bring its image to a pinhole image before carving")
+            raise CameraError(
+                f"camera {camera.name}: is distorted, bring its image to a pinhole image before carving"
+            )
         own = camera.margin or margin
         k = camera.intrinsics
         rotation = camera.camera_from_world[:3, :3]
