@@ -13,7 +13,7 @@ MAX_BLOCKS = 4096
 
 
 class Tree(NamedTuple):
-    """A kinematic tree, a row for each link, parents first; `column`: which joint position moves it, -1 for none."""
+    """A kinematic tree, a row for each link, parents first; `column`: its joint position, -1 for none."""
 
     parent: np.ndarray
     parent_from_joint: np.ndarray
@@ -77,8 +77,9 @@ def mark_balls(
 ):
     """Sets the voxels that balls about surface samples meet: those whose box lies within `reach` of a sample.
 
-    A ball of half a voxel's radius at most meets only voxels of the 2 x 2 x 2 block about the grid corner nearest to
-    its middle. A cluster notes eight bits for each such corner first, and sets the voxels at its end.
+    A ball of half a voxel's radius at most meets only voxels of the 2 x 2 x 2 block about the grid corner
+    nearest to its middle. A cluster notes eight bits for each such corner first, and sets the voxels at its
+    end.
 
     Args:
         points: (n, 3) in the frame of their link [m].
@@ -126,7 +127,7 @@ def mark_balls(
 
 @njit(nogil=True)
 def _block_met(x, y, z, square):
-    """Which voxels about a grid corner a ball meets; its middle lies at (x, y, z), each +-0.5, from the corner.
+    """Which voxels about a grid corner a ball meets; its middle lies at (x, y, z), +-0.5, from there.
 
     Bit 4 i + 2 j + k stands for the voxel on side (i, j, k) of the corner, 0 below and 1 above.
     """
@@ -147,7 +148,7 @@ def _block_met(x, y, z, square):
 
 @njit(nogil=True)
 def _set_block(i, j, k, block, cells, words):
-    """Sets the voxels (i, j, k) to (i + 1, j + 1, k + 1) whose bits stand in `block`, as far as they are in the grid."""
+    """Sets the voxels from (i, j, k) on whose bits stand in `block`, as far as they are in the grid."""
     for n in range(8):
         if (block >> n) & 1:
             a, b, c = i + (n >> 2), j + ((n >> 1) & 1), k + (n & 1)

@@ -9,6 +9,7 @@ from numba import njit
 from elbowroom.geometry._kernels import bit_of, word_of
 
 NEAR_M = 0.001
+MOST_M = 1e6
 EDGE_PX = 1e-7
 TILE = 16
 
@@ -32,9 +33,11 @@ class View(NamedTuple):
 
 
 class Mesh(NamedTuple):
-    """Triangles of many links, one after the other; link l has vertices vertex_start[l] to vertex_start[l + 1].
+    """Triangles of many links; link l has vertices vertex_start[l] to vertex_start[l + 1].
 
-    All faces of a link refer to `vertices` as a whole. `centre`, `radius`: a sphere about each link, in its frame.
+    Faces refer to `vertices` as a whole. `centre`, `radius`: a sphere about each link, in its frame.
+    `closed`: the link's surface is closed and its faces turn outwards, so that from outside the backs of
+    faces are hidden.
     """
 
     vertices: np.ndarray
@@ -43,6 +46,7 @@ class Mesh(NamedTuple):
     face_start: np.ndarray
     centre: np.ndarray
     radius: np.ndarray
+    closed: np.ndarray
 
 
 @njit(cache=True, nogil=True)
@@ -64,6 +68,7 @@ def draw(mesh, camera_from_link, view, inverse, first, last):
         pose = camera_from_link[l]
         if not _sphere_in_view(pose, mesh.centre[l], mesh.radius[l], view):
             continue
+        backs = not (mesh.closed[l] and _is_outside(pose, mesh.centre[l], mesh.radius[l]))
         for p in range(mesh.vertex_start[l], mesh.vertex_start[l + 1]):
             a, b, c = mesh.vertices[p, 0], mesh.vertices[p, 1], mesh.vertices[p, 2]
             x = pose[0, 0] * a + pose[0, 1] * b + pose[0, 2] * c + pose[0, 3]
@@ -82,6 +87,10 @@ def draw(mesh, camera_from_link, view, inverse, first, last):
             a, b, c = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
             behind = (seen[a, 2] < 0.0) + (seen[b, 2] < 0.0) + (seen[c, 2] < 0.0)
             if behind == 0:
+                area = (seen[b, 0] - seen[a, 0]) * (seen[c, 1] - seen[a, 1])
+                area -= (seen[c, 0] - seen[a, 0]) * (seen[b, 1] - seen[a, 1])
+                if area > 0.0 and not backs:
+                    continue
                 _fill(
                     seen[a, 0], seen[a, 1], seen[a, 2], seen[b, 0], seen[b, 1], seen[b, 2],
                     seen[c, 0], seen[c, 1], seen[c, 2], view, inverse, first, last,
@@ -108,6 +117,16 @@ def _sphere_in_view(pose, centre, radius, view):
         and view.fy * y + above * z >= -radius * math.hypot(view.fy, above)
         and below * z - view.fy * y >= -radius * math.hypot(view.fy, below)
     )
+
+
+@njit(nogil=True)
+def _is_outside(pose, centre, radius):
+    """Whether the camera is outside a sphere, and the near plane too."""
+    square = 0.0
+    for i in range(3):
+        along = pose[i, 0] * centre[0] + pose[i, 1] * centre[1] + pose[i, 2] * centre[2] + pose[i, 3]
+        square += along * along
+    return square > (radius + 2 * NEAR_M) ** 2
 
 
 @njit(nogil=True)
@@ -150,8 +169,8 @@ def _clip_and_fill(corners, view, inverse, first, last):
 def _fill(ua, va, ia, ub, vb, ib, uc, vc, ic, view, inverse, first, last):
     """Draws a triangle given by its corners' columns, rows and inverse depths.
 
-    Inverse depth is linear over the image. Rows are cut by the triangle's edges, each always taken from its upper end,
-    so that neighbours meet without gaps.
+    Inverse depth is linear over the image. Rows are cut by the triangle's edges, each always taken from its
+    upper end, so that neighbours meet without gaps.
     """
     # corners from the top down
     if vb < va:
@@ -219,7 +238,8 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model):
         inverse: (height, width) float32, from `draw` and `to_kind`; zeros afterwards.
         first, last: (height,) columns drawn in each row.
         tolerance, sigmas: a depth d fits if it lies within tolerance [m] + sigmas * sigma(d).
-        model: (height, width) float32 zeros; nearest depth drawn about a pixel that fits [m, the camera's kind].
+        model: (height, width) float32 zeros; nearest depth drawn about a pixel that fits [m, the camera's
+            kind].
     """
     height, width = view.height, view.width
     left, right = width, -1
@@ -228,41 +248,74 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model):
     if right < 0:
         return
     left, right = max(0, left - 1), min(width - 1, right + 1)
-    # greatest and least inverse depth of three neighbours in each of three rows
-    most = np.zeros((3, width), dtype=np.float32)
-    least = np.full((3, width), np.inf, dtype=np.float32)
+    # per row of three: greatest and least inverse depth of each pixel and its neighbours; then over the three
+    # rows
+    across = np.zeros((8, width + 2), dtype=np.float32)
     for v in range(-1, height):
-        _across(inverse, v + 1, first, last, left, right, most[(v + 1) % 3], least[(v + 1) % 3])
+        _across(inverse, v + 1, first, last, left, right, across, (v + 1) % 3)
         if v < 0:
             continue
         start, stop = width, -1
         for row in range(max(0, v - 1), min(height, v + 2)):
             start, stop = min(start, first[row]), max(stop, last[row])
-        for u in range(max(0, start - 1), min(width - 1, stop + 1) + 1):
-            nearest = max(most[0, u], most[1, u], most[2, u])
-            d = depth[v, u]
-            if nearest > 0.0 and d > 0.0 and view.min_depth <= d <= view.max_depth and d < np.inf:
-                farthest = min(least[0, u], least[1, u], least[2, u])
-                slack = tolerance + sigmas * _sigma(view, d)
-                if (d + slack) * nearest >= 1.0 and (d - slack) * farthest <= 1.0:
-                    model[v, u] = np.float32(1.0) / nearest
+        if stop >= 0:
+            _compare(
+                view,
+                depth[v],
+                across,
+                max(0, start - 1),
+                min(width - 1, stop + 1),
+                tolerance,
+                sigmas,
+                model[v],
+            )
     for v in range(height):
         inverse[v, first[v] : last[v] + 1] = 0.0
 
 
 @njit(nogil=True)
-def _across(inverse, v, first, last, left, right, most, least):
-    """Greatest and least inverse depth of each pixel of row v and its two neighbours; 0 and infinity for none."""
-    most[left : right + 1] = 0.0
-    least[left : right + 1] = np.inf
-    if v >= inverse.shape[0]:
+def _across(inverse, v, first, last, left, right, across, row):
+    """Greatest (row) and least (row + 3) inverse depth of each pixel of image row v and its two neighbours.
+
+    Zero and infinity where there is none. Column u of the image is column u + 1 of `across`.
+    """
+    across[row, left : right + 3] = 0.0
+    across[row + 3, left : right + 3] = np.inf
+    if v >= inverse.shape[0] or last[v] < 0:
         return
-    for u in range(first[v], last[v] + 1):
-        here = inverse[v, u]
-        if here > 0.0:
-            for w in range(max(u - 1, left), min(u + 1, right) + 1):
-                most[w] = max(most[w], here)
-                least[w] = min(least[w], here)
+    start, stop = max(0, first[v] - 1), min(inverse.shape[1] - 1, last[v] + 1)
+    across[6, start : stop + 3] = 0.0
+    across[6, first[v] + 1 : last[v] + 2] = inverse[v, first[v] : last[v] + 1]
+    _of_neighbours(across[6], across[7], start, stop, across[row], across[row + 3])
+
+
+@njit(nogil=True)
+def _of_neighbours(drawn, filled, start, stop, most, least):
+    """Greatest and least of three neighbours; `filled` takes `drawn` with infinity for 0."""
+    for u in range(start, stop + 3):
+        filled[u] = drawn[u] if drawn[u] > np.float32(0.0) else np.float32(np.inf)
+    for u in range(start + 1, stop + 2):
+        most[u] = max(drawn[u - 1], max(drawn[u], drawn[u + 1]))
+    for u in range(start + 1, stop + 2):
+        least[u] = min(filled[u - 1], min(filled[u], filled[u + 1]))
+
+
+@njit(nogil=True)
+def _compare(view, depth, across, start, stop, tolerance, sigmas, model):
+    """Fills one row of the model where depth fits; without branches, for many pixels at once."""
+    one, zero = np.float32(1.0), np.float32(0.0)
+    fixed, factor = np.float32(tolerance + sigmas * view.constant), np.float32(sigmas * view.linear)
+    square, offset = np.float32(sigmas * view.quadratic), np.float32(view.offset)
+    low, high = np.float32(view.min_depth), np.float32(min(view.max_depth, MOST_M))
+    for u in range(start, stop + 1):
+        nearest = max(across[0, u + 1], max(across[1, u + 1], across[2, u + 1]))
+        farthest = min(across[3, u + 1], min(across[4, u + 1], across[5, u + 1]))
+        d = depth[u]
+        beyond = max(d - offset, zero)
+        slack = fixed + factor * d + square * beyond * beyond
+        valid = (d > zero) & (d >= low) & (d <= high) & (nearest > zero)
+        fits = valid & ((d + slack) * nearest >= one) & ((d - slack) * farthest <= one)
+        model[u] = one / nearest if fits else zero
 
 
 @njit(nogil=True)
@@ -309,8 +362,8 @@ def mark_tiles(balls, link, radius, camera_from_link, view, near, far):
 def mark_unexplained(view, depth, model, near, far, sigmas, world_from_camera, cells, words):
     """Sets the voxels that an unexplained return near the body may lie in.
 
-    That is those that the cube about the measured point meets whose half side is half a pixel at its range, moved
-    along the ray by up to sigmas * sigma.
+    That is those that the cube about the measured point meets whose half side is half a pixel at its range,
+    moved along the ray by up to sigmas * sigma.
 
     Args:
         view: the camera.
@@ -328,10 +381,22 @@ def mark_unexplained(view, depth, model, near, far, sigmas, world_from_camera, c
             if low > high:
                 continue
             for v in range(row * TILE, min(row * TILE + TILE, view.height)):
-                for u in range(column * TILE, min(column * TILE + TILE, view.width)):
+                start, stop = column * TILE, min(column * TILE + TILE, view.width)
+                if not _any_between(depth[v], model[v], start, stop, np.float32(low), np.float32(high)):
+                    continue
+                for u in range(start, stop):
                     d = depth[v, u]
                     if d >= low and d <= high and d > 0.0 and model[v, u] == 0.0:
                         _mark_return(view, u, v, d, sigmas, world_from_camera, cells, words)
+
+
+@njit(nogil=True)
+def _any_between(depth, model, start, stop, low, high):
+    """Whether any of some pixels in a row is not explained and has a depth in a range, ends included."""
+    count = np.int32(0)
+    for u in range(start, stop):
+        count += np.int32((depth[u] >= low) & (depth[u] <= high) & (model[u] == np.float32(0.0)))
+    return count > 0
 
 
 @njit(nogil=True)

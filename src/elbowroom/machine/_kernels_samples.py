@@ -10,8 +10,8 @@ from numba import njit
 def tile_triangles(triangles, pitch, points, reach, fill):
     """Cuts triangles into pieces of about pitch x pitch; returns their number.
 
-    A triangle is cut into columns across its longest edge, each column into cells. A piece is stood for by a point of
-    the triangle; all of it lies within `reach` of that point (farthest corner of the cell).
+    A triangle is cut into columns across its longest edge, each column into cells. A piece is stood for by a
+    point of the triangle; all of it lies within `reach` of that point (farthest corner of the cell).
 
     Args:
         triangles: (m, 3, 3) [m].
@@ -94,8 +94,8 @@ def neighbour_runs(cells, stride_x, stride_y, first):
 def thin_out(points, slack_squared, cell, runs):
     """Chooses points such that every piece is covered by a chosen one.
 
-    Goes through the pieces in order; for one that is not covered yet it takes, among the points that would cover it,
-    the one that covers most of those that are left.
+    Goes through the pieces in order; for one that is not covered yet it takes, among the points that would
+    cover it, the one that covers most of those that are left.
 
     Args:
         points: (n, 3), sorted by cell.
@@ -239,7 +239,7 @@ def mark_surface(triangles, lower, edge, surface):
 
 @njit(cache=True, nogil=True)
 def touches_cell(corners, normal, cell):
-    """Whether a triangle touches the closed unit cell at whole numbers `cell` (separating axes, a hair generous)."""
+    """Whether a triangle touches the closed unit cell at `cell` (separating axes, a hair generous)."""
     for k in range(3):
         low = min(corners[0, k], corners[1, k], corners[2, k])
         high = max(corners[0, k], corners[1, k], corners[2, k])

@@ -29,9 +29,9 @@ def body_words(
 ) -> Words:
     """The plane of the voxels that the grown body covers.
 
-    Set is every voxel that the solid body touches, and every one within `growth_m` less a quarter voxel of its surface.
-    Never set is a voxel farther than `growth_m` from the body. Unchecked links are part of the body; what lies outside
-    the grid is left out.
+    Set is every voxel that the solid body touches, and every one within `growth_m` less a quarter voxel of
+    its surface. Never set is a voxel farther than `growth_m` from the body. Unchecked links are part of the
+    body; what lies outside the grid is left out.
 
     Args:
         machine: whose body.
@@ -41,7 +41,8 @@ def body_words(
         threads: how many to use; None: all cores.
 
     Raises:
-        MachineError: joints that are not possible, more than one configuration, or a growth below a quarter voxel.
+        MachineError: joints that are not possible, more than one configuration, or a growth below a quarter
+            voxel.
     """
     samples = body_samples(machine, grid.voxel_size_m, unchecked=True)
     growth = default_growth(grid) if growth_m is None else growth_m

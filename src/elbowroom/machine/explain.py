@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import FrameError, MachineError
-from elbowroom.geometry import DepthCamera, VoxelGrid, bits
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits, invert_rigid
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import _kernels_image as kernels
@@ -31,12 +31,12 @@ class Explained:
     """What the machine explains of a set of depth images.
 
     Args:
-        model_depth: by camera, float32, shape (height, width) [m, the camera's kind]: 0 where the pixel is not
-            explained; else the depth up to which its ray is free, the model's nearest within the 3 x 3 pixels
-            about it.
-        unexplained_words: plane of the grid with every voxel, near the grown body, that may hold a return that
-            the machine does not explain; such voxels must not be freed as body. Voxels farther from the body
-            may be set too. None if no grid was given.
+        model_depth: by camera, float32, shape (height, width) [m, the camera's kind]: 0 where the pixel is
+            not explained; else the depth up to which its ray is free, the model's nearest within the 3 x 3
+            pixels about it.
+        unexplained_words: plane of the grid with every voxel, near the grown body, that may hold a return
+            that the machine does not explain; such voxels must not be freed as body. Voxels farther from the
+            body may be set too. None if no grid was given.
     """
 
     model_depth: dict[str, NDArray[np.float32]]
@@ -57,14 +57,14 @@ def explain_frames(
     """Finds the pixels whose measured point lies on the machine's model.
 
     A valid depth d is explained if it lies between the least and the greatest depth that the model has within
-    the 3 x 3 pixels about it, give or take `tolerance_m` + `tolerance_sigmas` * sigma(d). Where the model is not
-    in these pixels, nothing is explained.
+    the 3 x 3 pixels about it, give or take `tolerance_m` + `tolerance_sigmas` * sigma(d). Where the model is
+    not in these pixels, nothing is explained.
 
     Args:
         machine: with all its links, unchecked ones too.
         cameras: without distortion.
-        depths: for each camera, floating, shape (height, width) [m, its kind]; what is not a finite number above
-            zero and within the camera's range is no return.
+        depths: for each camera, floating, shape (height, width) [m, its kind]; what is not a finite number
+            above zero and within the camera's range is no return.
         joints_per_camera: for each camera, joint positions at its frame's time, by name [m or rad].
         tolerance_m, tolerance_sigmas: as above; not the margin of carving.
         grid: for `unexplained_words`; None: without.
@@ -78,8 +78,8 @@ def explain_frames(
     """
     if not (len(cameras) == len(depths) == len(joints_per_camera)):
         raise FrameError(
-            f"explain_frames: {len(cameras)} cameras, {len(depths)} images and {len(joints_per_camera)} joint "
-            "positions; must be as many of each"
+            f"explain_frames: {len(cameras)} cameras, {len(depths)} images and {len(joints_per_camera)} "
+            "joint positions; must be as many of each"
         )
     if not (tolerance_m >= 0 and tolerance_sigmas >= 0):
         raise MachineError(f"tolerance is {tolerance_m} m + {tolerance_sigmas} sigmas, must be at least 0")
@@ -172,14 +172,14 @@ def _camera_from_links(
     machine: Machine, cameras: Sequence[DepthCamera], joints_per_camera: Sequence[Joints]
 ) -> NDArray[np.float64]:
     """Where all links are for each camera at its frame's time, shape (cameras, links, 4, 4)."""
-    positions = [machine.positions(joints) for joints in joints_per_camera]
-    if any(row.ndim != 1 for row in positions):
+    by_record = {id(joints): machine.positions(joints) for joints in joints_per_camera}
+    if any(row.ndim != 1 for row in by_record.values()):
         raise MachineError("explain_frames takes one position for each joint and camera, got arrays")
-    columns = len(machine.joint_names)
-    placed = machine.world_from_link_array(np.reshape(positions, (len(cameras), columns)))
+    positions = np.array([by_record[id(joints)] for joints in joints_per_camera])
+    placed = machine.world_from_link_array(positions.reshape(len(cameras), len(machine.joint_names)))
     if not len(cameras):
         return placed
-    return np.stack([camera.camera_from_world for camera in cameras])[:, None] @ placed
+    return invert_rigid(np.stack([camera.world_from_camera for camera in cameras]))[:, None] @ placed
 
 
 def _spare_canvas(

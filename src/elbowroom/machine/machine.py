@@ -1,4 +1,4 @@
-"""The machine: links with a body, joints that move them, and where the links are for given joint positions."""
+"""The machine: links with a body, joints that move them, and where the links are."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -28,7 +28,8 @@ class Machine:
 
     Args:
         name: of the robot in the URDF.
-        links: all links, parents before their children, with or without geometry; arrays of links use this order.
+        links: all links, parents before their children, with or without geometry; arrays of links use this
+            order.
         joints: joints that move, in the order of the links that they carry, followers (mimic) among them.
         tree: parents, fixed transforms and axes by link, as the kernels take them.
         world_from_base: where the first link is, shape (4, 4), rigid.
@@ -68,8 +69,8 @@ class Machine:
     ) -> "Machine":
         """Reads a URDF with its collision geometry: meshes (STL, OBJ, GLB, PLY), boxes, cylinders, spheres.
 
-        A link without collision geometry takes its visual geometry if that exists. Cylinders and spheres become
-        polyhedra that contain them.
+        A link without collision geometry takes its visual geometry if that exists. Cylinders and spheres
+        become polyhedra that contain them.
 
         Args:
             path: the URDF file.
@@ -78,7 +79,8 @@ class Machine:
             package_dirs: where to look for `package://` files, before the folders above the URDF.
 
         Raises:
-            MachineError: the file, one of its meshes or its tree of links cannot be used; the message says which.
+            MachineError: the file, one of its meshes or its tree of links cannot be used; the message says
+                which.
         """
         parts = read_urdf(Path(path), [Path(folder) for folder in package_dirs])
         base = np.eye(4) if world_from_base is None else np.asarray(world_from_base, dtype=np.float64)
@@ -136,7 +138,8 @@ class Machine:
             float64 arrays of the shapes that came.
 
         Raises:
-            MachineError: an unknown or a missing joint, a value that is not finite or out of the joint's limits.
+            MachineError: an unknown or a missing joint, a value that is not finite or out of the joint's
+                limits.
         """
         for name in joints:
             self.joint(name)
@@ -216,7 +219,8 @@ class Machine:
         given = np.ascontiguousarray(positions, dtype=np.float64)
         if given.ndim != 2 or given.shape[1] != len(self.joint_names):
             raise MachineError(
-                f"machine {self.name}: positions must have shape (n, {len(self.joint_names)}), got {given.shape}"
+                f"machine {self.name}: positions must have shape (n, {len(self.joint_names)}), "
+                f"got {given.shape}"
             )
         if not np.isfinite(given).all():
             raise MachineError(f"machine {self.name}: joint positions must be finite")

@@ -14,7 +14,7 @@ from elbowroom.errors import MachineError
 MESH_SUFFIXES = (".stl", ".obj", ".glb", ".ply")
 """Mesh files that can be read."""
 CHORD_ERROR_M = 0.0005
-"""How far the flat sides of a cylinder or sphere may stand out of the round solid [m]; they never lie inside."""
+"""How far the flat sides of a cylinder or sphere may stand out of the solid [m]; they never lie inside."""
 SEARCH_LEVELS = 8
 """How many folders above the URDF are searched for the files of a package."""
 
@@ -24,9 +24,9 @@ Triangles = tuple[NDArray[np.float64], NDArray[np.int64]]
 def mesh_path(filename: str, urdf_path: Path, package_dirs: Sequence[Path]) -> Path | None:
     """Where the mesh file of a URDF lies, or None if nowhere.
 
-    `package://name/rest` is looked for in `package_dirs`, then in the folders above the URDF; each is tried with the
-    whole of `name/rest`, then without its first part, and so on, as long as a folder and a file name are left. So a
-    robot that was copied out of its package is found as well.
+    `package://name/rest` is looked for in `package_dirs`, then in the folders above the URDF; each is tried
+    with the whole of `name/rest`, then without its first part, and so on, as long as a folder and a file name
+    are left. So a robot that was copied out of its package is found as well.
 
     Args:
         filename: as the URDF gives it: `package://`, `file://`, or a path relative to the URDF.
@@ -88,8 +88,7 @@ def _read(path: Path, what: str) -> trimesh.Trimesh:
         mesh = trimesh.load(path, force="mesh")
     except Exception as error:  # trimesh's readers raise whatever their formats' parsers raise
         raise MachineError(f"{what}: mesh {path} cannot be read: {error}") from error
-    vertices = np.asarray(getattr(mesh, "vertices", ()))
-    if not len(getattr(mesh, "faces", ())) or not np.isfinite(vertices).all():
+    if not (isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and np.isfinite(mesh.vertices).all()):
         raise MachineError(f"{what}: mesh {path} holds no triangles with finite corners")
     return mesh
 
@@ -108,7 +107,7 @@ def _cylinder(radius: float, length: float) -> trimesh.Trimesh:
 
 
 def _sphere(radius: float) -> trimesh.Trimesh:
-    """A polyhedron that contains the sphere; stands out of it by `CHORD_ERROR_M` up to 0.2 m, by 0.2 % beyond."""
+    """A polyhedron that contains the sphere; stands out of it by `CHORD_ERROR_M`, or 0.2 % if large."""
     for subdivisions in (2, 3, 4):
         mesh = trimesh.creation.icosphere(subdivisions=subdivisions, radius=1.0)
         inner = np.einsum("ij,ij->i", mesh.face_normals, mesh.triangles[:, 0]).min()

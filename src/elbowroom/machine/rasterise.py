@@ -3,11 +3,13 @@
 from weakref import WeakKeyDictionary
 
 import numpy as np
+import trimesh
 from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine._kernels_image import Mesh, View, draw, to_kind
+from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Joints, Machine
 
 _meshes: WeakKeyDictionary[Machine, Mesh] = WeakKeyDictionary()
@@ -88,5 +90,16 @@ def mesh_of(machine: Machine) -> Mesh:
             face_start=np.cumsum([0] + [len(link.faces) for link in links]),
             centre=centre,
             radius=radius,
+            closed=np.array([_is_closed(link) for link in links]),
         )
     return _meshes[machine]
+
+
+def _is_closed(link: Link) -> bool:
+    """Whether the link's surface is made of closed shells whose faces turn outwards."""
+    if not link.has_geometry:
+        return False
+    mesh = trimesh.Trimesh(link.vertices, link.faces, process=True)
+    if not (mesh.is_watertight and mesh.is_winding_consistent):
+        return False
+    return all(shell.volume > 0 for shell in mesh.split(only_watertight=False))

@@ -1,4 +1,4 @@
-"""Points that stand for the machine's body: on its surface for touching and sweeping, inside for what it fills."""
+"""Points that stand for the body of a machine: on its surface, and inside it."""
 
 from dataclasses import dataclass
 from threading import Lock
@@ -27,12 +27,13 @@ MAX_CELLS = 400_000_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodySamples:
-    """Sample points of a machine's links, each in the frame of its link; move them with `world_from_link_array`.
+    """Sample points of links, each in its link's frame; move them with `world_from_link_array`.
 
-    Every point of a link's surface lies within `cover_m` of a surface sample of that link, and every surface sample
-    lies on the surface. A cube of edge `voxel_size_m` wholly inside the solid holds an interior sample, however it is
-    turned; an interior sample lies in the solid or within `cover_m` of its surface. So the solid touches a voxel only
-    if the voxel lies within `cover_m` of a surface sample or holds an interior one.
+    Every point of a link's surface lies within `cover_m` of a surface sample of that link, and every surface
+    sample lies on the surface. A cube of edge `voxel_size_m` wholly inside the solid holds an interior
+    sample, however it is turned; an interior sample lies in the solid or within `cover_m` of its surface. So
+    the solid touches a voxel only if the voxel lies within `cover_m` of a surface sample or holds an interior
+    one.
 
     The arrays of surface points are sorted by link, and within a link by cluster: cluster c is the points
     `cluster_start[c]` to `cluster_stop[c]` (exclusive), at most 64 that lie close together.
@@ -45,8 +46,8 @@ class BodySamples:
         cluster_link: for each cluster, the row in `machine.links`, shape (k,), int32.
         cluster_start, cluster_stop: its points, shape (k,), int64.
         cluster_centre: middle of its bounding sphere, shape (k, 3), float64, link frame [m].
-        cluster_radius: radius of that sphere about the centre, shape (k,), float64 [m]; the samples lie in it, the
-            surface that they stand for within `cover_m` of it.
+        cluster_radius: radius of that sphere about the centre, shape (k,), float64 [m]; the samples lie in
+            it, the surface that they stand for within `cover_m` of it.
         interior: interior samples, shape (m, 3), float32, link frame [m].
         interior_link: for each, the row in `machine.links`, shape (m,), int32.
     """
@@ -77,7 +78,7 @@ _keeping = Lock()
 
 
 def body_samples(machine: Machine, voxel_size_m: float, *, unchecked: bool = False) -> BodySamples:
-    """The samples of a machine's checked links for voxels of a size; made once per machine and size, then kept.
+    """The samples of a machine's checked links for a size of voxels; made once, then kept.
 
     Args:
         machine: whose links.
@@ -114,14 +115,14 @@ def _sample(machine: Machine, voxel_size_m: float, unchecked: bool) -> BodySampl
     centre, radius = _spheres(points, starts, stops)
     arrays = {
         "points": points,
-        "point_link": np.repeat(np.int32(rows), [len(part.points) for part in parts]),
-        "cluster_link": np.repeat(np.int32(rows), [len(part.stops) - 1 for part in parts]),
+        "point_link": np.repeat(np.asarray(rows, dtype=np.int32), [len(part.points) for part in parts]),
+        "cluster_link": np.repeat(np.asarray(rows, dtype=np.int32), [len(part.stops) - 1 for part in parts]),
         "cluster_start": starts,
         "cluster_stop": stops,
         "cluster_centre": centre,
         "cluster_radius": radius,
         "interior": np.concatenate([part.interior for part in parts]),
-        "interior_link": np.repeat(np.int32(rows), [len(part.interior) for part in parts]),
+        "interior_link": np.repeat(np.asarray(rows, dtype=np.int32), [len(part.interior) for part in parts]),
     }
     for array in arrays.values():
         array.setflags(write=False)
@@ -143,8 +144,8 @@ def _sample_link(link: Link, voxel_size_m: float, cover_m: float) -> _LinkSample
 def surface_points(triangles: NDArray[np.float64], cover_m: float) -> NDArray[np.float64]:
     """Few points of triangles such that all of them lies within `cover_m` of a point.
 
-    The triangles are cut into pieces finer than the covering radius; then those points are kept that cover most of
-    what is left. On flat parts that ends within half again of the best possible, a square lattice.
+    The triangles are cut into pieces finer than the covering radius; then those points are kept that cover
+    most of what is left. On flat parts that ends within half again of the best possible, a square lattice.
 
     Args:
         triangles: shape (m, 3, 3) [m].
@@ -172,10 +173,11 @@ def surface_points(triangles: NDArray[np.float64], cover_m: float) -> NDArray[np
 
 
 def interior_points(link: Link, voxel_size_m: float) -> NDArray[np.float64]:
-    """A lattice of points in the solid that a link's surface encloses; gaps narrower than v / 3.5 count as closed.
+    """A lattice of points in the solid that a link encloses; gaps narrower than v / 3.5 count as closed.
 
-    The surface is marked in a lattice of cells of half the points' pitch; what cannot be reached from outside without
-    crossing a marked cell is inside. Points in marked cells are kept: they lie within a quarter voxel of the surface.
+    The surface is marked in a lattice of cells of half the points' pitch; what cannot be reached from outside
+    without crossing a marked cell is inside. Points in marked cells are kept: they lie within a quarter voxel
+    of the surface.
 
     Args:
         link: a link with geometry.
@@ -192,8 +194,8 @@ def interior_points(link: Link, voxel_size_m: float) -> NDArray[np.float64]:
     counts = np.floor((link.triangles.max(axis=(0, 1)) - lower) / edge).astype(np.int64) + 2
     if np.prod(counts.astype(float)) > MAX_CELLS:
         raise MachineError(
-            f"link {link.name}: {counts.tolist()} cells of {edge:.2g} m for voxels of {voxel_size_m:g} m are more "
-            f"than {MAX_CELLS:,}; use larger voxels"
+            f"link {link.name}: {counts.tolist()} cells of {edge:.2g} m for voxels of {voxel_size_m:g} m are "
+            f"more than {MAX_CELLS:,}; use larger voxels"
         )
     surface = np.zeros(tuple(counts), dtype=np.bool_)
     kernels.mark_surface(link.triangles, lower, edge, surface)

@@ -24,7 +24,7 @@ MOVABLE = ("prismatic", "revolute", "continuous")
 
 
 class Parts(NamedTuple):
-    """What a URDF holds: links in tree order (parents first), movable joints in that order, the tree as arrays."""
+    """What a URDF holds: links (parents first), movable joints in that order, the tree as arrays."""
 
     name: str
     links: tuple[Link, ...]
@@ -40,8 +40,8 @@ def read_urdf(path: Path, package_dirs: Sequence[Path]) -> Parts:
         package_dirs: folders in which `package://` is looked for, before the folders above the URDF.
 
     Raises:
-        MachineError: no such file, not XML, not a tree of links, a joint of an unknown kind or without limits, a mesh
-            that is missing, or no geometry at all.
+        MachineError: no such file, not XML, not a tree of links, a joint of an unknown kind or without
+            limits, a mesh that is missing, or no geometry at all.
     """
     robot = _parse(path)
     order = _tree_order(robot, path)
@@ -119,8 +119,8 @@ def _link(link: yourdf.Link, path: Path, package_dirs: Sequence[Path]) -> Link:
             file = mesh_path(shape.geometry.mesh.filename or "", path, package_dirs)
             if file is None and required:
                 raise MachineError(
-                    f"{what}: mesh {shape.geometry.mesh.filename!r} is missing; looked beside and above the URDF"
-                    + "".join(f", in {folder}" for folder in package_dirs)
+                    f"{what}: mesh {shape.geometry.mesh.filename!r} is missing; looked beside and above "
+                    "the URDF" + "".join(f", in {folder}" for folder in package_dirs)
                 )
             if file is None:
                 continue
@@ -186,7 +186,8 @@ def _tree(order: list[str], into: dict[str, yourdf.Joint], joints: tuple[Joint, 
         given = into[name]
         if given.type not in (*MOVABLE, "fixed"):
             raise MachineError(
-                f"{path}: joint {given.name} is of kind {given.type!r}; allowed are fixed, {', '.join(MOVABLE)}"
+                f"{path}: joint {given.name} is of kind {given.type!r}; "
+                f"allowed are fixed, {', '.join(MOVABLE)}"
             )
         tree.parent[row] = order.index(given.parent)
         tree.parent_from_joint[row] = _origin(given, path)
