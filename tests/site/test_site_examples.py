@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from elbowroom.errors import SiteError
+from elbowroom.reconstruct import reconstruct
 from elbowroom.site import SIMULATED_ROOM, Site, check_images, excluded_frames, moments
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -71,3 +72,19 @@ def test_sevenscenes_keeps_eight_views_for_checking(example_site):
     assert kept == [f"frame-{n:06d}" for n in (100, 225, 350, 475, 600, 725, 850, 950)]
     assert not {camera.name for camera in site.cameras()} & set(kept)
     assert any("32 poses were off a rotation" in note for note in site.notes)
+
+
+def test_where_most_pixels_are_invalid_nothing_is_free(example_site):
+    """apc_wrist_multiview: empty lines run through all that was measured, every few pixels."""
+    site = Site.load(example_site("apc_wrist_multiview"))
+    frames = next(moments(site)).frames
+    space = reconstruct(
+        site.grid(0.02),
+        cameras=site.cameras(),
+        frames=frames,
+        rule="any",
+        detail=site.detail,
+        margin=site.margin(),
+    )
+    assert not space.free.any()
+    assert space.surface.mean() > 0.01

@@ -117,8 +117,9 @@ def _say(row: dict[str, Any]) -> None:
     lines = {
         "site": f"{row['site']} is valid: {row['name']}",
         "grid": f"{shape} voxels of {row['voxel_size_m'] * 100:g} cm from {list(row['origin_m'])} m",
-        "cameras": f"{row['cameras']} of {', '.join(row['sizes_px'])} px; with nothing in the way one sees "
-        f"{row['seen_by_one_pct']:.0f} % of the grid, three or more {row['seen_by_three_pct']:.0f} %",
+        "cameras": f"{row['cameras']} of {', '.join(row['sizes_px'])} px; with nothing in the way "
+        f"{row['seen_by_one_pct']:.0f} % of the grid is in view of one or more, "
+        f"{row['seen_by_three_pct']:.0f} % of three or more",
         "machine": f"{row['machine']}, {row['motions']} motions to check" if row["machine"] else "none",
         "decision": f"rule {row['rule']}, detail {row['detail']}",
         "recording": f"{row['images']} images of {row['moments']} moments, headers checked"
