@@ -25,9 +25,11 @@ class RunLog:
     """Times and levels of the passes of a run. Frame age: of the oldest frame, when the verdicts are out.
 
     Args:
+        source: what brings the frames, such as "simulator".
         unchecked_links: links of the machine that are not checked; every summary names them.
     """
 
+    source: str = "source"
     unchecked_links: Sequence[str] = ()
     cycle_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
     source_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
@@ -93,7 +95,7 @@ class RunLog:
         for name, values in (
             ("cycle", self.cycle_ms),
             ("frame age", self.age_ms),
-            ("source", self.source_ms),
+            (self.source, self.source_ms),
         ):
             if values:
                 p50, p99, worst = np.percentile(values, (50, 99, 100))

@@ -86,9 +86,14 @@ class TerminalView:
 
     def __init__(self, watched: Watched, console: Console | None = None) -> None:
         self.watched = watched
-        self.log = RunLog(watched.unchecked_links)
+        self.log = RunLog(watched.source, watched.unchecked_links)
         self.console = console or Console()
-        self._live = Live(console=self.console, auto_refresh=False) if self.console.is_terminal else None
+        # a screen of its own: what the keyboard echoes there does not stay behind
+        live = (
+            Live(console=self.console, auto_refresh=False, screen=True) if self.console.is_terminal else None
+        )
+        self._live = live
+        self._last_screen: RenderableType | None = None
         self._last_shown_s = float("-inf")
 
     def __enter__(self) -> "TerminalView":
@@ -108,9 +113,11 @@ class TerminalView:
             self.console.print(f"{self.watched.title}: {self.watched.room}", soft_wrap=True, highlight=False)
 
     def stop(self) -> None:
-        """Ends the screen; what it showed last stays. Does nothing the second time."""
-        if self._live is not None:
+        """Ends the screen and prints what it showed last. Does nothing the second time."""
+        if self._live is not None and self._live.is_started:
             self._live.stop()
+            if self._last_screen is not None:
+                self.console.print(self._last_screen)
 
     def show(self, result: CycleResult, source_ms: float) -> None:
         """Notes a pass and, if it is time, shows it.
@@ -125,7 +132,8 @@ class TerminalView:
             return
         self._last_shown_s = now
         if self._live is not None:
-            self._live.update(self.screen(result), refresh=True)
+            self._last_screen = self.screen(result)
+            self._live.update(self._last_screen, refresh=True)
         else:
             self.console.print(self.line(result), soft_wrap=True, highlight=False, markup=False)
 
@@ -150,7 +158,7 @@ class TerminalView:
             lines.append(
                 Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
             )
-        lines.append(Text(NOT_CERTIFIED + " Ctrl-C ends.", "dim"))
+        lines.append(Text(NOT_CERTIFIED, "dim"))
         return Padding(Group(*lines), (0, 1))
 
     def line(self, result: CycleResult) -> str:
@@ -175,8 +183,10 @@ class TerminalView:
         text.append("  cycle ")
         text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
         text.append(f" = {stages}", "dim")
-        text.append(f"  ({self.watched.source} apart: {log.recent(log.source_ms):.0f} ms)", "dim")
         text.append(f"\n{result.stamp_ns / 1e9:.1f} s, cycle {result.sequence + 1}: {counts_text(levels)}")
+        text.append(
+            f"  ({self.watched.source} apart: {log.recent(log.source_ms):.0f} ms; Ctrl-C ends)", "dim"
+        )
         return text
 
     def _table(self, verdicts: Sequence[Verdict], wide: bool) -> Table:
