@@ -192,6 +192,8 @@ def test_lens_that_folds_back_in_the_image_is_refused():
         exact(camera(focal=20.0, distortion=(-0.5, 0.0, 0.0, 0.0, 0.0)), SCENE)
 
 
-def test_share_outside_zero_to_one_is_refused():
+def test_impossible_share_and_seed_are_refused():
+    with pytest.raises(InputError, match="seed is -1"):
+        render([camera()], SCENE, seed=-1)
     with pytest.raises(InputError, match=r"missing is 1\.5"):
         render([camera()], SCENE, missing=1.5)

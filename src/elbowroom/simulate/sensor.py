@@ -47,12 +47,14 @@ def render(
         threads: None: one a core.
 
     Raises:
-        InputError: a share outside 0 to 1.
+        InputError: a share outside 0 to 1, a seed below 0.
         CameraError: a lens model that folds back within the image.
     """
     for name, share in (("flying_pixels", flying_pixels), ("missing", missing)):
         if not 0 <= share <= 1:
             raise InputError(f"render: {name} is {share}, must be a share from 0 to 1")
+    if seed < 0:
+        raise InputError(f"render: seed is {seed}, must be 0 or more")
 
     def one(camera: DepthCamera) -> DepthFrame:
         image = range_image(camera, moment)
