@@ -1,13 +1,19 @@
 # ruff: noqa: E501  (tables of one case a line)
 """Whatever is wrong with a site file is one line: the thing, what was found, what is allowed."""
 
+import copy
+
 import numpy as np
 import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from elbowroom.errors import GridError, InputError, SiteError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.site import Site
 from elbowroom.site.memory import require_memory
+from elbowroom.site.site import NEW_SITE
 
 
 def refusal(path, use=lambda site: site.cameras()):
@@ -204,3 +210,52 @@ def test_simulated_rooms_take_no_settings_that_the_simulator_makes(folder, plain
     plain["camera_defaults"] = {}
     plain["simulated"] = {"resolution": "big"}
     assert "simulated.resolution: found 'big', allowed: " in refusal(folder.write(plain))
+
+
+def places(content, before=()):
+    """Keys that lead to each value of a site file."""
+    inner = (
+        content.items()
+        if isinstance(content, dict)
+        else enumerate(content)
+        if isinstance(content, list)
+        else ()
+    )
+    return [place for key, value in inner for place in ((*before, key), *places(value, (*before, key)))]
+
+
+TEMPLATE = yaml.safe_load(NEW_SITE.read_text())
+STRANGE = [
+    None,
+    0,
+    -1,
+    1e308,
+    1e-300,
+    NAN,
+    float("inf"),
+    10**30,
+    "",
+    "x",
+    "a/b",
+    "${",
+    True,
+    [],
+    {},
+    [[]],
+    {"a": 1},
+]
+
+
+@settings(max_examples=100, deadline=None)
+@given(place=st.sampled_from(places(TEMPLATE)), value=st.sampled_from(STRANGE))
+def test_any_value_at_any_place_is_a_site_or_one_line(tmp_path_factory, place, value):
+    path = tmp_path_factory.getbasetemp() / "strange.yaml"
+    content = changed(copy.deepcopy(TEMPLATE), place, value)
+    path.write_text(yaml.safe_dump(content))
+    try:
+        site = Site.load(path)
+        assert len(site.cameras()) >= 1
+        machine = site.machine()
+        assert machine is None or bool(site.motions(machine)) == bool(site.entry.joints)
+    except InputError as error:
+        assert "\n" not in str(error) and str(error).startswith(str(path))

@@ -4,7 +4,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, Strict
 
-Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
+# no room has numbers beyond this; within it, no product of a few of them overflows
+Number = Annotated[float, Strict(), Field(allow_inf_nan=False, ge=-1e9, le=1e9)]
 Positive = Annotated[Number, Field(gt=0)]
 NotNegative = Annotated[Number, Field(ge=0)]
 Whole = Annotated[int, Strict()]

@@ -21,7 +21,7 @@ class GridEntry(Entry):
     origin_m: Point
     upper_m: Point | None = None
     shape: tuple[Count, Count, Count] | None = None
-    voxel_size_m: Positive
+    voxel_size_m: Annotated[Positive, Field(ge=1e-6)]
 
     @model_validator(mode="after")
     def _one_extent(self) -> "GridEntry":

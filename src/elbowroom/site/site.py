@@ -144,9 +144,11 @@ class Site:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", PoseWarning)
-            if isinstance(self.entry.recording, SevenScenes):
+            recording = self.entry.recording
+            if isinstance(recording, SevenScenes):
+                folder = self.recording_folder()
                 cameras = self._seven_scenes_cameras(
-                    seven_scenes.chosen(self.recording_folder(), self.entry.recording)
+                    self._blame("recording", lambda: seven_scenes.chosen(folder, recording))
                 )
             else:
                 cameras = tuple(self._listed_camera(index) for index in range(len(self.entry.cameras)))
