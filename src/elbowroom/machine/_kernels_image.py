@@ -251,6 +251,8 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model):
     # per row of three: greatest and least inverse depth of each pixel and its neighbours; then over the three
     # rows
     across = np.zeros((8, width + 2), dtype=np.float32)
+    # above the first row is nothing
+    across[3:6] = np.inf
     for v in range(-1, height):
         _across(inverse, v + 1, first, last, left, right, across, (v + 1) % 3)
         if v < 0:
