@@ -89,17 +89,18 @@ def _warm_up(room: Room, cycle: Cycle, console: Console) -> None:
     Raises:
         InputError: the first cycle failed, so that all would.
     """
-    with Steps(console, 3) as steps:
+    with Steps(console, 4) as steps:
         steps.begin("compiling kernels")
         warm_up(room.machine)
         steps.begin("first frames")
         scene = next(room.scenes(), None)
-        steps.begin("first cycle")
         if scene is None:
             return
+        steps.begin("compiling kernels of motion")
         nothing = bits.empty(room.grid)
         all_blocked = FreeSpace(room.grid, nothing, nothing, nothing, nothing)
         check_motions(all_blocked, cycle.machine, scene.joints or {}, cycle.motions)
+        steps.begin("first cycle")
         result = _judge(cycle, scene)
     if result.fault is not None:
         raise InputError(f"the first cycle failed: {result.fault}")
