@@ -8,8 +8,8 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, bits
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.view import depth_picture, save_sections, section
+from elbowroom.view.outline import cut_lines
 from elbowroom.view.palette import COLOURS, Label, labels, shares
-from elbowroom.view.pictures import _cut_lines
 from elbowroom.view.plot import TOP_PX, Plot, _tick_step, _ticks
 
 GRID = VoxelGrid(origin_m=(-1.0, 2.0, 0.5), shape=(20, 30, 25), voxel_size_m=0.1)
@@ -113,9 +113,9 @@ def test_a_camera_is_marked_where_it_stands():
 
 def test_a_plane_cuts_a_triangle_in_a_segment():
     triangle = np.array([[[0.0, 0, 0], [2, 0, 2], [0, 4, 2]]])
-    lines = _cut_lines(triangle, 2, 1.0)
+    lines = cut_lines(triangle, 2, 1.0)
     np.testing.assert_allclose(sorted(lines[0].tolist()), [[0, 2, 1], [1, 0, 1]])
-    assert _cut_lines(triangle, 2, 3.0).shape == (0, 2, 3)
+    assert cut_lines(triangle, 2, 3.0).shape == (0, 2, 3)
 
 
 @pytest.mark.parametrize("extent_m", [0.02, 0.1, 0.7, 2.5, 4, 9.9, 120])

@@ -14,7 +14,8 @@ from elbowroom.geometry import VoxelGrid
 from elbowroom.monitor import CycleResult
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.view.run_log import RunLog
-from elbowroom.view.terminal import TerminalView, Watched
+from elbowroom.view.terminal import TerminalView
+from elbowroom.view.watched import Watched
 from elbowroom.view.words import LEVEL_WORDS, MARKS, NOT_CERTIFIED, plain_line, travel_bar, travel_text
 
 GRID = VoxelGrid(origin_m=(-2, -2, 0), shape=(80, 80, 50), voxel_size_m=0.05)

@@ -15,7 +15,7 @@ from elbowroom.motion import Motion
 from elbowroom.reconstruct import Detail, Rule
 from elbowroom.sensing import DepthFrame, JointRecord, Margin
 from elbowroom.site import RecordedMoment, Site, moments
-from elbowroom.view.terminal import Watched
+from elbowroom.view.watched import Watched
 
 REAL_TIME_SLACK_S = 0.001
 

@@ -12,6 +12,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.machine import Machine
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.view.atomic import folder, whole_file
+from elbowroom.view.outline import cut_lines, triangles_of
 from elbowroom.view.palette import (
     CAMERA_INK,
     COLOURS,
@@ -55,7 +56,7 @@ def section(
     Raises:
         InputError: an unknown axis, or a place outside the grid.
     """
-    triangles = None if machine is None else _triangles(machine, joints or {})
+    triangles = None if machine is None else triangles_of(machine, joints or {})
     return _section(space, labels(space), axis, at_m, triangles, cameras)
 
 
@@ -83,7 +84,7 @@ def save_sections(
     """
     out_dir = folder(out_dir)
     volume = labels(space)
-    triangles = None if machine is None else _triangles(machine, joints or {})
+    triangles = None if machine is None else triangles_of(machine, joints or {})
     paths = []
     for name, at_m in _places(space, triangles).items():
         picture = _section(space, volume, name[0], at_m, triangles, cameras)
@@ -131,7 +132,7 @@ def _section(
     plot = Plot.of_cells(colour_table()[cut], grid.lower_m[plane], grid.voxel_size_m)
     if triangles is not None:
         plot.draw_silhouette(triangles[:, :, plane], MACHINE_INK, 0.16)
-        plot.draw_segments(_cut_lines(triangles, normal, at_m)[:, :, plane], MACHINE_INK, 3)
+        plot.draw_segments(cut_lines(triangles, normal, at_m)[:, :, plane], MACHINE_INK, 3)
     drawn = sum(
         plot.draw_wedge(camera.centre_in_world[plane], camera.world_from_camera[plane, 2], CAMERA_INK)
         for camera in cameras
@@ -185,31 +186,3 @@ def _legend(plot: Plot, cut: NDArray[np.uint8], with_machine: bool, cameras: int
             font=text,
             anchor="lm",
         )
-
-
-def _cut_lines(triangles: NDArray[np.float64], normal: int, at_m: float) -> NDArray[np.float64]:
-    """Where triangles cross the plane: segments, shape (m, 2, 3), world frame [m]."""
-    height = triangles[:, :, normal] - at_m
-    height = np.where(height == 0, 1e-12, height)
-    above = (height > 0).sum(axis=1)
-    crossing = (above == 1) | (above == 2)
-    corners, height = triangles[crossing], height[crossing]
-    # the corner that is alone on its side; both edges from it cross the plane
-    alone = np.where(above[crossing, None] == 1, height > 0, height < 0).argmax(axis=1)
-    row = np.arange(len(corners))
-    ends = []
-    for step in (1, 2):
-        other = (alone + step) % 3
-        share = height[row, alone] / (height[row, alone] - height[row, other])
-        ends.append(corners[row, alone] + share[:, None] * (corners[row, other] - corners[row, alone]))
-    return np.stack(ends, axis=1)
-
-
-def _triangles(machine: Machine, joints: Mapping[str, float]) -> NDArray[np.float64]:
-    """All triangles of the machine, shape (n, 3, 3), world frame [m]."""
-    world_from_links = machine.world_from_links(joints)
-    placed = [np.zeros((0, 3, 3))]
-    for link in machine.links:
-        world_from_link = world_from_links[link.name]
-        placed.append(link.triangles @ world_from_link[:3, :3].T + world_from_link[:3, 3])
-    return np.concatenate(placed)

@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from types import TracebackType
 
 from rich.console import Console, Group, RenderableType
@@ -12,10 +11,10 @@ from rich.rule import Rule
 from rich.table import Table
 from rich.text import Text
 
-from elbowroom.geometry import VoxelGrid
 from elbowroom.monitor import CycleResult
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.view.run_log import RunLog
+from elbowroom.view.watched import Watched
 from elbowroom.view.words import (
     CAUSE_WORDS,
     LEVEL_WORDS,
@@ -43,35 +42,6 @@ BAR_STYLES: dict[Level, str] = {
 REFRESH_S = 0.125
 """The screen is drawn anew no more often than this: eyes need no more, and drawing takes milliseconds."""
 PLAIN_EVERY_S = 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class Watched:
-    """What a run watches, for the head of the screen.
-
-    Args:
-        title: of the room or site.
-        grid: the watched box.
-        cameras: in words, such as "21 cameras 160x120".
-        rule, detail: as of `reconstruct`.
-        source: in words, where frames come from: its time is shown apart.
-        unchecked_links: links of the machine that are not checked.
-    """
-
-    title: str
-    grid: VoxelGrid
-    cameras: str
-    rule: str
-    detail: str
-    source: str
-    unchecked_links: Sequence[str] = ()
-
-    @property
-    def room(self) -> str:
-        """Grid, cameras and rule in one line."""
-        size = " x ".join(f"{n * self.grid.voxel_size_m:.1f}" for n in self.grid.shape)
-        voxels = f"{size} m in {self.grid.size:,} voxels of {self.grid.voxel_size_m * 100:g} cm"
-        return f"{voxels}, {self.cameras}, rule {self.rule}, detail {self.detail}"
 
 
 class TerminalView:
