@@ -10,7 +10,6 @@ import typer
 
 from elbowroom.errors import InputError
 
-
 RuleName = Literal["three", "majority", "veto", "any"]
 DetailName = Literal["footprint", "pixel", "point"]
 SitePath = Annotated[
