@@ -35,9 +35,10 @@ def test_the_picture_changes_within_the_machines_bounds_and_up_to_them(axis, pla
     area = slice(TOP_PX, TOP_PX + height), slice(max(84, left), max(84, left) + 1000)
     rows, columns = np.nonzero((bare[area] != drawn[area]).any(axis=-1))
     found = [columns.min(), columns.max() + 1, rows.min(), rows.max() + 1]
-    triangles = triangles_of(machine, JOINTS)[:, :, plane].reshape(-1, 2)
-    lower = np.maximum(triangles.min(axis=0), GRID.lower_m[plane])
-    upper = np.minimum(triangles.max(axis=0), GRID.upper_m[plane])
+    triangles = triangles_of(machine, JOINTS)[:, :, plane]
+    shown = triangles[(triangles.min(axis=1) < GRID.upper_m[plane]).all(axis=1)].reshape(-1, 2)
+    lower = np.maximum(shown.min(axis=0), GRID.lower_m[plane])
+    upper = np.minimum(shown.max(axis=0), GRID.upper_m[plane])
     right = (np.array([lower[0], upper[0]]) - GRID.lower_m[plane[0]]) * px_per_m
     down = (GRID.upper_m[plane[1]] - np.array([upper[1], lower[1]])) * px_per_m
     np.testing.assert_allclose(found, [*right, *down], atol=4)
