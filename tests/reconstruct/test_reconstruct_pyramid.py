@@ -1,0 +1,120 @@
+import numpy as np
+import pytest
+
+from elbowroom.reconstruct import _kernels_pyramid as kernels
+from reference import reconstruct_pyramid as naive
+from reference.reconstruct_pyramid import NO_RETURN, bounds_of, packed
+
+SHAPES = [(1, 1), (1, 7), (6, 1), (2, 2), (5, 3), (9, 16), (23, 18)]
+NONE = np.zeros((0, 0), dtype=np.uint32)
+
+
+def random_texels(shape, seed=0):
+    rng = np.random.default_rng(seed)
+    least = rng.integers(0, 60000, shape)
+    greatest = np.where(rng.random(shape) < 0.1, NO_RETURN, least + rng.integers(1, 5000, shape))
+    return packed(np.where(greatest == NO_RETURN, 0, least), greatest)
+
+
+def test_texels_bound_a_depth_by_at_most_three_quanta():
+    quantum = np.float32(8e-5)
+    depth = np.random.default_rng(0).uniform(0.001, 5.2, (40, 50)).astype(np.float32)
+    texels = np.zeros(depth.shape, dtype=np.uint32)
+    kernels.texels_of_frame(depth, depth, np.float32(0), np.float32(np.inf), quantum, texels)
+    least, greatest = bounds_of(texels)
+    exact = depth.astype(float) / float(quantum)
+    assert ((exact - 3 < least) & (least <= exact)).all()
+    assert ((exact <= greatest) & (greatest < exact + 3)).all()
+
+
+@pytest.mark.parametrize("depth", [0.0, -0.0, -1.0, np.nan, np.inf, -np.inf, 0.19, 4.01, 1e30])
+def test_what_is_no_depth_within_range_is_no_return(depth):
+    image = np.full((2, 3), depth, dtype=np.float32)
+    texels = np.ones(image.shape, dtype=np.uint32)
+    kernels.texels_of_frame(image, image, np.float32(0.2), np.float32(4.0), np.float32(1e-4), texels)
+    least, greatest = bounds_of(texels)
+    assert (least == 0).all()
+    assert (greatest == NO_RETURN).all()
+
+
+def test_a_depth_beyond_what_can_be_counted_is_far_and_not_missing():
+    image = np.array([[1e6]], dtype=np.float32)
+    texels = np.zeros(image.shape, dtype=np.uint32)
+    kernels.texels_of_frame(image, image, np.float32(0), np.float32(np.inf), np.float32(1e-4), texels)
+    least, greatest = bounds_of(texels)
+    assert 65000 < least[0, 0] <= greatest[0, 0] < NO_RETURN
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("ignoring", [False, True])
+def test_steps_fall_to_the_nearest_neighbour(shape, ignoring):
+    rng = np.random.default_rng(1)
+    texels = random_texels(shape, 1)
+    ignored = rng.random(shape) < (0.3 if ignoring else 0.0)
+    quantum, margin = 1e-4, np.array([0.2, 0.05, 0.01, 0.02, 1.0])
+    got = np.zeros_like(texels)
+    mask = np.where(ignored, kernels.NEUTRAL, texels) if ignoring else NONE
+    kernels.lower_at_steps(texels, mask, quantum, margin, got)
+    least, greatest = bounds_of(texels)
+    z = least * quantum
+    threshold = 0.2 + 0.05 * z + 0.01 * z**2 + 0.02 * np.maximum(z - 1, 0) ** 2
+    expected = naive.lowered(least, ignored, threshold / quantum)
+    np.testing.assert_array_equal(bounds_of(got)[0], expected)
+    np.testing.assert_array_equal(bounds_of(got)[1], greatest)
+    assert ignoring or (expected != least).any() == (max(shape) > 1)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_levels_and_windows_are_minima_over_pixels(shape):
+    texels = random_texels(shape, 2)
+    least, greatest = bounds_of(texels)
+    fine = texels
+    for k in range(int(np.ceil(np.log2(max(shape)))) + 2):
+        if k:
+            coarse = np.zeros(tuple(-(-n // 2) for n in fine.shape), dtype=np.uint32)
+            kernels.halve(fine, coarse)
+            fine = coarse
+        for got, expected in zip(bounds_of(fine), naive.level(least, greatest, k), strict=True):
+            np.testing.assert_array_equal(got, expected)
+        windows = np.zeros_like(fine)
+        kernels.windows_of(fine.view(np.uint16), np.zeros_like(fine).view(np.uint16), windows.view(np.uint16))
+        low, high = bounds_of(windows)
+        for v, u in np.ndindex(shape):
+            assert (low[v >> k, u >> k], high[v >> k, u >> k]) == naive.window(least, greatest, k, u, v)
+
+
+def test_a_window_reaches_far_enough_and_holds_the_window_of_the_level_below():
+    ones = np.ones((40, 40), dtype=int)
+    for k in range(4):
+        for u in range(40):
+            seen = [v for v in range(40) if naive.window(ones - (np.arange(40) == v), ones, k, u, 20)[0] == 0]
+            below = [
+                v
+                for v in range(40)
+                if naive.window(ones - (np.arange(40) == v), ones, max(k - 1, 0), u, 20)[0] == 0
+            ]
+            assert set(range(max(u - (2 << k), 0), min(u + (2 << k) + 1, 40))) <= set(seen)
+            assert set(below) <= set(seen)
+
+
+def test_an_explained_pixel_is_free_up_to_the_model_and_silent():
+    quantum, margin = 1e-4, np.array([0.01, 0.002, 0.0, 0.0, 0.0])
+    model = np.array([[0.0, 1.5, 3.0]], dtype=np.float32)
+    texels = random_texels(model.shape, 3)
+    trust, doubt = texels.copy(), texels.copy()
+    assert kernels.mark_explained(model, margin, quantum, trust, doubt)
+    assert trust[0, 0] == texels[0, 0]
+    assert doubt[0, 0] == texels[0, 0]
+    assert (doubt[0, 1:] == kernels.NEUTRAL).all()
+    # a voxel whose far side plus margin lies at this depth is compared with it, so the margin is in it
+    up_to = bounds_of(trust)[0][0, 1:] * quantum - (0.01 + 0.002 * model[0, 1:])
+    assert (up_to <= model[0, 1:]).all()
+    np.testing.assert_allclose(up_to, model[0, 1:], atol=3 * quantum)
+
+
+def test_a_model_that_is_nowhere_explains_nothing():
+    texels = random_texels((4, 5))
+    trust, doubt = texels.copy(), texels.copy()
+    assert not kernels.mark_explained(np.zeros((4, 5), np.float32), np.zeros(5), 1e-4, trust, doubt)
+    np.testing.assert_array_equal(trust, texels)
+    np.testing.assert_array_equal(doubt, texels)
