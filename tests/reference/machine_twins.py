@@ -29,7 +29,7 @@ ARM = """<robot name="arm">
   <axis xyz="0 1 0"/><limit lower="-0.05" upper="0.05" effort="0" velocity="1"/>
   <mimic joint="grip" multiplier="-1" offset="-0.01"/></joint>
 </robot>"""
-"""A slide, a turn about a slanted axis, a gripper whose second finger follows the first; box, cylinder, sphere."""
+"""A slide, a turn about a slanted axis, a gripper whose second finger follows; box, cylinder, sphere."""
 
 
 def world_from_links(machine, joints):

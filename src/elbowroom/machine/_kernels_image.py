@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry._kernels import bit_of, word_of
+from elbowroom.geometry._kernels import Lattice, bit_of, word_of
 
 NEAR_M = 0.001
 MOST_M = 1e6
@@ -32,6 +32,19 @@ class View(NamedTuple):
     offset: float
 
 
+class Around(NamedTuple):
+    """Where returns near the body are looked for: least and greatest depth per tile (`mark_tiles`), how far
+    along its ray a return may lie off [sigmas], the camera's pose, the voxel grid, the plane to set bits in.
+    """
+
+    near: np.ndarray
+    far: np.ndarray
+    sigmas: float
+    world_from_camera: np.ndarray
+    cells: Lattice
+    words: np.ndarray
+
+
 class Mesh(NamedTuple):
     """Triangles of many links; link l has vertices vertex_start[l] to vertex_start[l + 1].
 
@@ -49,7 +62,7 @@ class Mesh(NamedTuple):
     closed: np.ndarray
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def draw(mesh, camera_from_link, view, inverse, first, last):
     """Draws links into an image of inverse planar depth; what is nearer wins.
 
@@ -100,7 +113,7 @@ def draw(mesh, camera_from_link, view, inverse, first, last):
                 _clip_and_fill(corners, view, inverse, first, last)
 
 
-@njit(nogil=True)
+@njit(nogil=True, error_model="numpy")
 def _sphere_in_view(pose, centre, radius, view):
     """Whether a sphere may meet the image: not beyond the near plane or a side of the view."""
     a, b, c = centre[0], centre[1], centre[2]
@@ -119,7 +132,7 @@ def _sphere_in_view(pose, centre, radius, view):
     )
 
 
-@njit(nogil=True)
+@njit(nogil=True, error_model="numpy")
 def _is_outside(pose, centre, radius):
     """Whether the camera is outside a sphere, and the near plane too."""
     square = 0.0
@@ -129,7 +142,7 @@ def _is_outside(pose, centre, radius):
     return square > (radius + 2 * NEAR_M) ** 2
 
 
-@njit(nogil=True)
+@njit(nogil=True, error_model="numpy")
 def _clip_and_fill(corners, view, inverse, first, last):
     """Cuts a triangle at the near plane and draws the one or two triangles that are left."""
     points = np.empty((3, 3))
@@ -165,7 +178,7 @@ def _clip_and_fill(corners, view, inverse, first, last):
         )  # fmt: skip
 
 
-@njit(nogil=True)
+@njit(nogil=True, error_model="numpy")
 def _fill(ua, va, ia, ub, vb, ib, uc, vc, ic, view, inverse, first, last):
     """Draws a triangle given by its corners' columns, rows and inverse depths.
 
@@ -217,7 +230,7 @@ def _fill(ua, va, ia, ub, vb, ib, uc, vc, ic, view, inverse, first, last):
             inverse[row, x] = max(inverse[row, x], value)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def to_kind(view, inverse, first, last):
     """Turns inverse planar depth into inverse depth of the camera's kind, where something was drawn."""
     if view.radial:
@@ -228,9 +241,11 @@ def to_kind(view, inverse, first, last):
                 inverse[v, u] /= math.sqrt(1.0 + x * x + y * y)
 
 
-@njit(cache=True, nogil=True)
-def explain(view, depth, inverse, first, last, tolerance, sigmas, model):
+@njit(cache=True, nogil=True, error_model="numpy")
+def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around):
     """Fills `model` where a measured depth fits what was drawn in the 3 x 3 pixels about it; wipes `inverse`.
+
+    Sets the voxels of the returns that do not fit, too, sixteen rows at a time while they are at hand.
 
     Args:
         view: the camera.
@@ -238,21 +253,20 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model):
         inverse: (height, width) float32, from `draw` and `to_kind`; zeros afterwards.
         first, last: (height,) columns drawn in each row.
         tolerance, sigmas: a depth d fits if it lies within tolerance [m] + sigmas * sigma(d).
-        model: (height, width) float32 zeros; nearest depth drawn about a pixel that fits [m, the camera's
-            kind].
+        model: (height, width) float32 zeros; nearest depth drawn about a pixel that fits [m, same kind].
+        around: where to look for other returns, and the plane for their voxels; without tiles: nowhere.
     """
     height, width = view.height, view.width
     left, right = width, -1
     for v in range(height):
         left, right = min(left, first[v]), max(right, last[v])
-    if right < 0:
-        return
     left, right = max(0, left - 1), min(width - 1, right + 1)
-    # per row of three: greatest and least inverse depth of each pixel and its neighbours; then over the three
-    # rows
+    # for each of three rows: greatest and least inverse depth of a pixel and its neighbours
     across = np.zeros((8, width + 2), dtype=np.float32)
     # above the first row is nothing
     across[3:6] = np.inf
+    limits = np.empty((2, width), dtype=np.float32)
+    found = np.zeros((width + 7) // 8 * 8, dtype=np.uint8)
     for v in range(-1, height):
         _across(inverse, v + 1, first, last, left, right, across, (v + 1) % 3)
         if v < 0:
@@ -261,48 +275,55 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model):
         for row in range(max(0, v - 1), min(height, v + 2)):
             start, stop = min(start, first[row]), max(stop, last[row])
         if stop >= 0:
-            _compare(
-                view,
-                depth[v],
-                across,
-                max(0, start - 1),
-                min(width - 1, stop + 1),
-                tolerance,
-                sigmas,
-                model[v],
-            )
+            start, stop = max(0, start - 1), min(width - 1, stop + 1)
+            _compare(view, depth[v], across, start, stop, tolerance, sigmas, model[v])
+        if v % TILE == TILE - 1 or v == height - 1:
+            _mark_row_of_tiles(view, depth, model, v // TILE, around, limits, found)
     for v in range(height):
-        inverse[v, first[v] : last[v] + 1] = 0.0
+        _set(inverse[v], first[v], last[v] + 1, np.float32(0.0))
 
 
-@njit(nogil=True)
+@njit(nogil=True, error_model="numpy")
 def _across(inverse, v, first, last, left, right, across, row):
     """Greatest (row) and least (row + 3) inverse depth of each pixel of image row v and its two neighbours.
 
     Zero and infinity where there is none. Column u of the image is column u + 1 of `across`.
     """
-    across[row, left : right + 3] = 0.0
-    across[row + 3, left : right + 3] = np.inf
-    if v >= inverse.shape[0] or last[v] < 0:
-        return
-    start, stop = max(0, first[v] - 1), min(inverse.shape[1] - 1, last[v] + 1)
-    across[6, start : stop + 3] = 0.0
-    across[6, first[v] + 1 : last[v] + 2] = inverse[v, first[v] : last[v] + 1]
-    _of_neighbours(across[6], across[7], start, stop, across[row], across[row + 3])
+    most, least = across[row], across[row + 3]
+    _set(most, left, right + 3, np.float32(0.0))
+    _set(least, left, right + 3, np.float32(np.inf))
+    if v < inverse.shape[0] and last[v] >= 0:
+        _of_neighbours(inverse[v], first[v], last[v], across[6], across[7], most, least)
 
 
-@njit(nogil=True)
-def _of_neighbours(drawn, filled, start, stop, most, least):
-    """Greatest and least of three neighbours; `filled` takes `drawn` with infinity for 0."""
-    for u in range(start, stop + 3):
-        filled[u] = drawn[u] if drawn[u] > np.float32(0.0) else np.float32(np.inf)
-    for u in range(start + 1, stop + 2):
-        most[u] = max(drawn[u - 1], max(drawn[u], drawn[u + 1]))
-    for u in range(start + 1, stop + 2):
-        least[u] = min(filled[u - 1], min(filled[u], filled[u + 1]))
+@njit(nogil=True, error_model="numpy")
+def _set(array, start, stop, value):
+    """Sets a run of an array. Unsigned indices, as below, or the compiler does one pixel at a time."""
+    for n in range(start, stop):
+        array[np.uint64(n)] = value
 
 
-@njit(nogil=True)
+@njit(nogil=True, error_model="numpy")
+def _of_neighbours(drawn, first, last, padded, filled, most, least):
+    """Greatest and least of three neighbours; `padded` takes what was drawn, `filled` has infinity for 0."""
+    start, stop = max(0, first - 1), min(drawn.size - 1, last + 1)
+    one, two, zero, far = np.uint64(1), np.uint64(2), np.float32(0.0), np.float32(np.inf)
+    _set(padded, start, stop + 3, zero)
+    for n in range(first, last + 1):
+        u = np.uint64(n)
+        padded[u + one] = drawn[u]
+    for n in range(start, stop + 3):
+        u = np.uint64(n)
+        filled[u] = padded[u] if padded[u] > zero else far
+    for n in range(start, stop + 1):
+        u = np.uint64(n)
+        most[u + one] = max(padded[u], max(padded[u + one], padded[u + two]))
+    for n in range(start, stop + 1):
+        u = np.uint64(n)
+        least[u + one] = min(filled[u], min(filled[u + one], filled[u + two]))
+
+
+@njit(nogil=True, error_model="numpy")
 def _compare(view, depth, across, start, stop, tolerance, sigmas, model):
     """Fills one row of the model where depth fits; without branches, for many pixels at once."""
     one, zero = np.float32(1.0), np.float32(0.0)
@@ -320,14 +341,14 @@ def _compare(view, depth, across, start, stop, tolerance, sigmas, model):
         model[u] = one / nearest if fits else zero
 
 
-@njit(nogil=True)
+@njit(nogil=True, error_model="numpy")
 def _sigma(view, d):
     """Standard deviation at a measured depth (geometry.noise)."""
     beyond = max(d - view.offset, 0.0)
     return view.constant + view.linear * d + view.quadratic * beyond * beyond
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def mark_tiles(balls, link, radius, camera_from_link, view, near, far):
     """Per tile of 16 x 16 pixels, the least and greatest depth of the balls that may be seen in it.
 
@@ -360,54 +381,47 @@ def mark_tiles(balls, link, radius, camera_from_link, view, near, far):
                 far[row, column] = max(far[row, column], away + r)
 
 
-@njit(cache=True, nogil=True)
-def mark_unexplained(view, depth, model, near, far, sigmas, world_from_camera, cells, words):
-    """Sets the voxels that an unexplained return near the body may lie in.
+@njit(nogil=True, error_model="numpy")
+def _mark_row_of_tiles(view, depth, model, row, around, limits, found):
+    """Sets the voxels that the unexplained returns of one row of tiles may lie in.
 
     That is those that the cube about the measured point meets whose half side is half a pixel at its range,
-    moved along the ray by up to sigmas * sigma.
-
-    Args:
-        view: the camera.
-        depth: (height, width) float32, measured [m, the camera's kind].
-        model: (height, width) float32, above 0 where explained.
-        near, far: from `mark_tiles`; other depths are not looked at.
-        sigmas: as above.
-        world_from_camera: (4, 4).
-        cells: the voxel grid.
-        words: the plane to set bits in.
+    moved along the ray by up to `around.sigmas` * sigma.
     """
-    for row in range(near.shape[0]):
-        for column in range(near.shape[1]):
-            low, high = max(near[row, column], view.min_depth), min(far[row, column], view.max_depth)
-            if low > high:
-                continue
-            for v in range(row * TILE, min(row * TILE + TILE, view.height)):
-                start, stop = column * TILE, min(column * TILE + TILE, view.width)
-                if not _any_between(depth[v], model[v], start, stop, np.float32(low), np.float32(high)):
-                    continue
-                for u in range(start, stop):
-                    d = depth[v, u]
-                    if d >= low and d <= high and d > 0.0 and model[v, u] == 0.0:
-                        _mark_return(view, u, v, d, sigmas, world_from_camera, cells, words)
+    if row >= around.near.shape[0]:
+        return
+    width, least, most = view.width, limits[0], limits[1]
+    for column in range(around.near.shape[1]):
+        start, stop = column * TILE, min(column * TILE + TILE, width)
+        _set(least, start, stop, np.float32(max(around.near[row, column], view.min_depth)))
+        _set(most, start, stop, np.float32(min(around.far[row, column], view.max_depth)))
+    eight = found.view(np.uint64)
+    for v in range(row * TILE, min(row * TILE + TILE, view.height)):
+        _find(depth[v], model[v], least, most, width, found)
+        for n in range(eight.size):
+            if eight[n] != 0:
+                for u in range(8 * n, 8 * n + 8):
+                    if found[u] != 0:
+                        _mark_return(view, u, v, depth[v, u], around)
 
 
-@njit(nogil=True)
-def _any_between(depth, model, start, stop, low, high):
-    """Whether any of some pixels in a row is not explained and has a depth in a range, ends included."""
-    count = np.int32(0)
-    for u in range(start, stop):
-        count += np.int32((depth[u] >= low) & (depth[u] <= high) & (model[u] == np.float32(0.0)))
-    return count > 0
+@njit(nogil=True, error_model="numpy")
+def _find(depth, model, least, most, width, found):
+    """Notes the pixels of a row that are not explained and whose depth lies within their limits."""
+    for n in range(width):
+        u = np.uint64(n)
+        d = depth[u]
+        found[u] = (d > np.float32(0.0)) & (d >= least[u]) & (d <= most[u]) & (model[u] == np.float32(0.0))
 
 
-@njit(nogil=True)
-def _mark_return(view, u, v, d, sigmas, world_from_camera, cells, words):
+@njit(nogil=True, error_model="numpy")
+def _mark_return(view, u, v, d, around):
     """Sets the voxels that one return may lie in."""
+    cells, words, pose = around.cells, around.words, around.world_from_camera
     x, y = (u - view.cx) / view.fx, (v - view.cy) / view.fy
     z = d / math.sqrt(1.0 + x * x + y * y) if view.radial else float(d)
     half = 0.5 * z / min(view.fx, view.fy) / cells.edge
-    pose, scale = world_from_camera, 1.0 / cells.edge
+    scale = 1.0 / cells.edge
     # the ray in voxels from the grid's corner
     ox, oy, oz = (
         (pose[0, 3] - cells.x0) * scale,
@@ -417,7 +431,7 @@ def _mark_return(view, u, v, d, sigmas, world_from_camera, cells, words):
     rx = (pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]) * scale
     ry = (pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]) * scale
     rz = (pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]) * scale
-    spread = sigmas * _sigma(view, d) * z / d
+    spread = around.sigmas * _sigma(view, d) * z / d
     # steps of at most half a voxel
     steps = min(math.ceil(4.0 * spread / cells.edge), 1000)
     for n in range(steps + 1):

@@ -9,14 +9,15 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import FrameError, MachineError
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits, invert_rigid
+from elbowroom.geometry._kernels import Lattice
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import _kernels_image as kernels
-from elbowroom.machine._kernels_image import TILE, View
+from elbowroom.machine._kernels_image import TILE, Around, View
 from elbowroom.machine.body import default_growth
 from elbowroom.machine.machine import Joints, Machine
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
-from elbowroom.machine.samples import BodySamples, body_samples
+from elbowroom.machine.samples import body_samples
 
 BALL_VOXEL_M = 0.1
 """The body is covered with balls of some 0.2 m, the clusters of its samples for voxels of this size."""
@@ -24,6 +25,7 @@ REACH_M = 0.1
 """Returns this much farther from the body are kept as well: it moves between frame and decision [m]."""
 RETURN_SIGMAS = 3.0
 """A return may lie this many sigmas nearer or farther than measured."""
+NO_CELLS = Lattice(0, 0, 0, 0, 0, 0, 0.0, 0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,10 +88,7 @@ def explain_frames(
     views = [view_of(camera) for camera in cameras]
     images = [_image(camera, depth) for camera, depth in zip(cameras, depths, strict=True)]
     placed = _camera_from_links(machine, cameras, joints_per_camera)
-    near_body = None
-    if grid is not None:
-        growth = default_growth(grid) if growth_m is None else growth_m
-        near_body = _Near(grid, body_samples(machine, BALL_VOXEL_M, unchecked=True), growth)
+    near_body = _Near(machine, grid, growth_m)
     mesh = mesh_of(machine)
     canvases: deque[NDArray[np.float32]] = deque()
 
@@ -99,59 +98,59 @@ def explain_frames(
         kernels.draw(mesh, placed[n], view, inverse, first, last)
         kernels.to_kind(view, inverse, first, last)
         model = np.zeros((view.height, view.width), dtype=np.float32)
-        kernels.explain(view, images[n], inverse, first, last, tolerance_m, tolerance_sigmas, model)
+        around = near_body.around(view, placed[n], cameras[n].world_from_camera)
+        kernels.explain(view, images[n], inverse, first, last, tolerance_m, tolerance_sigmas, model, around)
         canvases.append(inverse)
-        if near_body is not None:
-            near_body.mark(view, images[n], model, placed[n], cameras[n].world_from_camera)
+        near_body.give_back(around)
         return model
 
     models = spread(explain_one, range(len(cameras)), threads)
     return Explained(
         model_depth={camera.name: model for camera, model in zip(cameras, models, strict=True)},
-        unexplained_words=None if near_body is None else near_body.words,
+        unexplained_words=near_body.words,
     )
 
 
 class _Near:
-    """Collects unexplained returns near the body, on a plane for each thread."""
+    """Says where returns near the body are looked for, and collects them on a plane for each thread."""
 
-    def __init__(self, grid: VoxelGrid, balls: BodySamples, growth_m: float) -> None:
+    def __init__(self, machine: Machine, grid: VoxelGrid | None, growth_m: float | None) -> None:
         self._grid = grid
-        self._balls = balls
-        voxel_diagonal = np.sqrt(3) * grid.voxel_size_m
-        self._radius = balls.cluster_radius + balls.cover_m + growth_m + voxel_diagonal + REACH_M
         self._planes: list[Words] = []
         self._spare: deque[Words] = deque()
+        if grid is not None:
+            growth = default_growth(grid) if growth_m is None else growth_m
+            self._balls = balls = body_samples(machine, BALL_VOXEL_M, unchecked=True)
+            beyond = balls.cover_m + growth + np.sqrt(3) * grid.voxel_size_m + REACH_M
+            self._radius = balls.cluster_radius + beyond
 
-    def mark(
-        self,
-        view: View,
-        depth: NDArray[np.float32],
-        model: NDArray[np.float32],
-        camera_from_link: NDArray[np.float64],
-        world_from_camera: NDArray[np.float64],
-    ) -> None:
-        """Adds the returns of one image."""
+    def around(
+        self, view: View, camera_from_link: NDArray[np.float64], world_from_camera: NDArray[np.float64]
+    ) -> Around:
+        """For one image: its tiles, and a plane that no other thread uses; without a grid no tiles."""
+        if self._grid is None:
+            nothing = np.zeros((0, 0))
+            return Around(nothing, nothing, 0.0, world_from_camera, NO_CELLS, np.zeros(0, dtype=np.uint64))
         tiles = (-(-view.height // TILE), -(-view.width // TILE))
         near, far = np.full(tiles, np.inf), np.zeros(tiles)
-        balls = self._balls
-        kernels.mark_tiles(
-            balls.cluster_centre, balls.cluster_link, self._radius, camera_from_link, view, near, far
-        )
+        middle, link = self._balls.cluster_centre, self._balls.cluster_link
+        kernels.mark_tiles(middle, link, self._radius, camera_from_link, view, near, far)
         try:
             words = self._spare.pop()
         except IndexError:
             words = bits.empty(self._grid)
             self._planes.append(words)
-        cells = bits.lattice(self._grid)
-        kernels.mark_unexplained(
-            view, depth, model, near, far, RETURN_SIGMAS, world_from_camera, cells, words
-        )
-        self._spare.append(words)
+        return Around(near, far, RETURN_SIGMAS, world_from_camera, bits.lattice(self._grid), words)
+
+    def give_back(self, around: Around) -> None:
+        """The plane may be used for another image."""
+        self._spare.append(around.words)
 
     @property
-    def words(self) -> Words:
-        """The plane of all images that were added."""
+    def words(self) -> Words | None:
+        """The plane of all images; None without a grid."""
+        if self._grid is None:
+            return None
         union = bits.empty(self._grid)
         for plane in self._planes:
             union |= plane
