@@ -47,8 +47,8 @@ def test_balls_meet_the_voxels_that_they_touch():
     for centre in rng.uniform(grid.lower_m - 0.1, grid.upper_m + 0.1, (400, 3)):
         radius = float(rng.choice([0.0, 0.03, 0.12, 0.4]))
         truth = naive.ball_meets(occupied, grid, centre, radius)
-        assert meets_voxel(volume, cells, *centre, radius) == truth
-        assert meets_block(volume, cells, *centre, radius) or not truth
+        assert meets_voxel(volume.words, cells, *centre, radius) == truth
+        assert meets_block(volume.words, volume.cubes, cells, *centre, radius) or not truth
         met += truth
     assert 50 < met < 350
 
@@ -57,8 +57,8 @@ def test_a_ball_that_is_nowhere_counts_as_leaving_the_grid():
     grid = room(0.1)
     volume, cells = swept.volume_of(FreeSpace.from_occupied(grid, nothing_in(grid))), bits.lattice(grid)
     for place in ((np.nan, 0.0, 0.0), (0.0, np.inf, 0.0), (0.0, 0.0, -1e300)):
-        assert meets_voxel(volume, cells, *place, 0.1)
-        assert meets_block(volume, cells, *place, 0.1)
+        assert meets_voxel(volume.words, cells, *place, 0.1)
+        assert meets_block(volume.words, volume.cubes, cells, *place, 0.1)
 
 
 corner = st.tuples(*(st.floats(-2, 2, width=32),) * 3)

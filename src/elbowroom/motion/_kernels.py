@@ -14,6 +14,9 @@ from elbowroom.motion._kernels_volume import cell_of, counted, gap, leaves, meet
 ROUNDING_M = 1e-9
 """Added to every radius, so that rounding never makes a ball smaller than it is [m]."""
 
+EXACT_UP_TO = 6.0
+"""Larger balls are tested against blocks of 64 voxels alone [voxel edges]."""
+
 SURFACE, OUTSIDE, BLIND, UNSEEN, NOTHING = 0, 1, 2, 3, 4
 """What a block is, the most cautious first."""
 
@@ -69,6 +72,16 @@ def _carried(transform, point):
     return x, y, z
 
 
+@njit(inline="always")
+def _placed(placed, link, points, n):
+    """Row n of an array of a link's points in the world: without views of arrays, for the inner loops."""
+    a, b, c = float(points[n, 0]), float(points[n, 1]), float(points[n, 2])
+    x = placed[link, 0, 0] * a + placed[link, 0, 1] * b + placed[link, 0, 2] * c + placed[link, 0, 3]
+    y = placed[link, 1, 0] * a + placed[link, 1, 1] * b + placed[link, 1, 2] * c + placed[link, 1, 3]
+    z = placed[link, 2, 0] * a + placed[link, 2, 1] * b + placed[link, 2, 2] * c + placed[link, 2, 3]
+    return x, y, z
+
+
 @njit(cache=True, nogil=True)
 def bound_speeds(tree, rates, lengths, world_from_link, skin):
     """The most that any point of each cluster moves per unit of travel (see sweep.cluster_speeds).
@@ -113,11 +126,16 @@ def _distance_to_axis(world_from_joint, axis_in_joint, x, y, z):
 @njit
 def _near_clusters(placed, skin, speeds, half, volume, cells, asked, near):
     """The clusters among `asked` that may meet a block within half an interval either way; how many."""
+    link, centre, radius, cover = skin.link, skin.centre, skin.radius, skin.cover
+    words, cubes = volume.words, volume.cubes
     count = 0
-    for cluster in asked:
-        x, y, z = _carried(placed[skin.link[cluster]], skin.centre[cluster])
-        r = skin.radius[cluster] + skin.cover + speeds[cluster] * half + ROUNDING_M
-        if meets_block(volume, cells, x, y, z, r):
+    for n in range(asked.size):
+        cluster = asked[n]
+        x, y, z = _placed(placed, link[cluster], centre, cluster)
+        r = radius[cluster] + cover + speeds[cluster] * half + ROUNDING_M
+        if not meets_block(words, cubes, cells, x, y, z, r):
+            continue
+        if r > EXACT_UP_TO * cells.edge or meets_voxel(words, cells, x, y, z, r):
             near[count] = cluster
             count += 1
     return count
@@ -126,11 +144,14 @@ def _near_clusters(placed, skin, speeds, half, volume, cells, asked, near):
 @njit
 def _near_samples(placed, skin, speeds, half, volume, cells, asked, near):
     """The same for samples."""
+    link, points, cluster_of, cover = skin.link, skin.points, skin.cluster_of, skin.cover
+    words = volume.words
     count = 0
-    for sample in asked:
-        cluster = skin.cluster_of[sample]
-        x, y, z = _carried(placed[skin.link[cluster]], skin.points[sample])
-        if meets_voxel(volume, cells, x, y, z, skin.cover + speeds[cluster] * half + ROUNDING_M):
+    for n in range(asked.size):
+        sample = asked[n]
+        cluster = cluster_of[sample]
+        x, y, z = _placed(placed, link[cluster], points, sample)
+        if meets_voxel(words, cells, x, y, z, cover + speeds[cluster] * half + ROUNDING_M):
             near[count] = sample
             count += 1
     return count

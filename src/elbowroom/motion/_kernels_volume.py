@@ -71,8 +71,8 @@ def leaves(x, y, z, r, cells):
 @njit(inline="always")
 def counted(x, y, z, r, cells):
     """A ball's centre and radius counted in voxels."""
-    edge = cells.edge
-    return (x - cells.x0) / edge, (y - cells.y0) / edge, (z - cells.z0) / edge, r / edge
+    inverse = 1.0 / cells.edge
+    return (x - cells.x0) * inverse, (y - cells.y0) * inverse, (z - cells.z0) * inverse, r * inverse
 
 
 @njit(inline="always")
@@ -82,7 +82,7 @@ def cell_of(coordinate, count):
 
 
 @njit
-def meets_block(volume, cells, x, y, z, r):
+def meets_block(words, cubes, cells, x, y, z, r):
     """Whether a ball meets a word with a blocked voxel, or leaves the grid: a test for large balls."""
     if leaves(x, y, z, r, cells):
         return True
@@ -94,14 +94,14 @@ def meets_block(volume, cells, x, y, z, r):
         for b in range(j0 >> 2, (j1 >> 2) + 1):
             for c in range(k0 >> 2, (k1 >> 2) + 1):
                 cube = (a * cells.cubes_y + b) * cells.cubes_z + c
-                if not volume.cubes[cube]:
+                if not cubes[cube]:
                     continue
                 for i in range(max(i0, a * 4), min(i1, a * 4 + 3) + 1):
                     du = gap(u, i * 4.0, i * 4.0 + 4.0)
                     for j in range(max(j0, b * 4), min(j1, b * 4 + 3) + 1):
                         dv = gap(v, j * 4.0, j * 4.0 + 4.0)
                         for k in range(max(k0, c * 4), min(k1, c * 4 + 3) + 1):
-                            if volume.words[cube * 64 + ((i & 3) * 4 + (j & 3)) * 4 + (k & 3)] == 0:
+                            if words[cube * 64 + ((i & 3) * 4 + (j & 3)) * 4 + (k & 3)] == 0:
                                 continue
                             dw = gap(w, k * 4.0, k * 4.0 + 4.0)
                             if du * du + dv * dv + dw * dw <= s * s:
@@ -110,7 +110,7 @@ def meets_block(volume, cells, x, y, z, r):
 
 
 @njit
-def meets_voxel(volume, cells, x, y, z, r):
+def meets_voxel(words, cells, x, y, z, r):
     """Whether a ball meets a blocked voxel, or leaves the grid: exact, a test for balls of about a voxel."""
     if leaves(x, y, z, r, cells):
         return True
@@ -121,7 +121,7 @@ def meets_voxel(volume, cells, x, y, z, r):
     for a in range(i0 >> 2, (i1 >> 2) + 1):
         for b in range(j0 >> 2, (j1 >> 2) + 1):
             for c in range(k0 >> 2, (k1 >> 2) + 1):
-                word = volume.words[word_of(a * 4, b * 4, c * 4, cells.cubes_y, cells.cubes_z)]
+                word = words[word_of(a * 4, b * 4, c * 4, cells.cubes_y, cells.cubes_z)]
                 if word == 0:
                     continue
                 for i in range(max(i0, a * 4), min(i1, a * 4 + 3) + 1):

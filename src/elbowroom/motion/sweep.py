@@ -15,8 +15,8 @@ from elbowroom.reconstruct.free_space import FreeSpace
 
 FINEST_STEP_IN_VOXELS = 1 / 16
 """The first block is found to within a travel in which no point moves farther than this [voxel edges]."""
-SAMPLE_HALVINGS = 5
-"""Single samples are looked at in the last so many halvings (from two voxels on), clusters before."""
+SAMPLE_HALVINGS = 4
+"""Single samples are looked at in the last so many halvings (from one voxel on), clusters before."""
 MOST_HALVINGS = 40
 """No interval is cut more often: a travel of 10^12 finest steps."""
 
