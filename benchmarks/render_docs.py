@@ -1,0 +1,144 @@
+"""Writes docs/benchmarks.md from the files in benchmarks/results: python benchmarks/render_docs.py
+
+Figures come from those files and nowhere else. A file that is missing is said to be missing.
+"""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import result_tables as tables
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "benchmarks" / "results"
+PAGE = ROOT / "docs" / "benchmarks.md"
+
+
+@dataclass(frozen=True)
+class Section:
+    """One file of results and how it is shown.
+
+    Args:
+        file: its name in benchmarks/results.
+        title, text: what was asked.
+        command: what measures it, but for --json; empty: nothing does yet.
+        tables: of its rows, as lines of Markdown.
+    """
+
+    file: str
+    title: str
+    text: str
+    command: str
+    tables: Callable[[Sequence[tables.Row]], list[str]]
+
+
+SECTIONS = (
+    Section(
+        "bench.json",
+        "Time and memory",
+        """
+The simulated room, each case in a process of its own. *carve*: frames to evidence. *cycle*: newest frames to
+verdicts for 4 joints in 2 directions. The headline is the slow case: a machine waits for the slowest frame.
+*ratio*: the median over that of a fixed reference kernel, measured in turns with it in the same process, so
+that computers compare. The due figures are for two cores.
+""",
+        "elbowroom bench",
+        tables.bench_tables,
+    ),
+    Section(
+        "evaluate_room.json",
+        "Against the truth of the simulated room",
+        """
+*occupied kept*: of the voxels that a solid touches, those that are not declared free. *found*: of the truly
+free voxels whose centre an exact camera sees, those declared free, without the layer that touches the floor.
+The machine is left out of both.
+""",
+        "elbowroom evaluate room",
+        tables.room_tables,
+    ),
+    Section(
+        "evaluate_sevenscenes.json",
+        "Against other views of a real room",
+        """
+40 views of a static room by one hand-held sensor; 32 carve, and the points that the other 8 measured check.
+*false*: of these points, those in a voxel declared free; pose errors of the recording are in it. *free*: of
+all voxels of the grid. What is due is due of at least one detail and margin of a rule.
+""",
+        "elbowroom evaluate sevenscenes",
+        tables.sevenscenes_tables,
+    ),
+    Section(
+        "evaluate_alone.json",
+        "The machine alone",
+        """
+The C-arm in the bare room, with sensor noise, in random poses whose reach stays inside the grid: nothing is
+in its way, so every verdict should be clear.
+""",
+        "elbowroom evaluate alone",
+        tables.alone_tables,
+    ),
+    Section(
+        "evaluate_poses.json",
+        "Verdicts beside exact geometry",
+        """
+The whole room at random moments and poses; each verdict beside what the distance of meshes says (coal).
+""",
+        "elbowroom evaluate poses",
+        tables.poses_tables,
+    ),
+    Section(
+        "evaluate_travel.json",
+        "Free travel beside exact geometry",
+        """
+The volume is the exact truth, so this is what voxels and the swept check cost. *shortfall*: how much less
+than exact, as the way of the point that touches.
+""",
+        "elbowroom evaluate travel",
+        tables.travel_tables,
+    ),
+    Section(
+        "thin_solids.json",
+        "Thin solids",
+        """
+What the promise of three pixel pitches leaves open: how often voxels that thinner and sharper solids touch
+are declared free.
+""",
+        "",
+        tables.any_tables,
+    ),
+)
+
+
+def render(results: Path = RESULTS) -> str:
+    """The whole page."""
+    lines = [
+        "# Benchmarks",
+        "",
+        "Written by `python benchmarks/render_docs.py` from `benchmarks/results`. Do not edit it by hand.",
+        "",
+        "*due* is what the project set out to reach; what misses it stands in bold.",
+    ]
+    for section in SECTIONS:
+        lines += ["", f"## {section.title}", section.text]
+        path = results / section.file
+        if not path.is_file():
+            how = f" `{section.command} --json benchmarks/results/{section.file}` measures it."
+            lines.append("Not measured yet." + (how if section.command else ""))
+            continue
+        content = json.loads(path.read_text(encoding="utf-8"))
+        lines += [*section.tables(content["rows"]), "", _origin(content.get("meta", {}))]
+    return "\n".join(lines) + "\n"
+
+
+def _origin(meta: Mapping[str, Any]) -> str:
+    versions = ", ".join(f"{name} {number}" for name, number in meta.get("versions", {}).items())
+    parts = [f"`{meta.get('command', 'unknown command')}`", f"commit {meta.get('commit', 'unknown')}"]
+    parts += [str(meta.get("processor", "unknown processor"))] + ([versions] if versions else [])
+    return "Measured by " + "; ".join(parts) + "."
+
+
+if __name__ == "__main__":
+    PAGE.write_text(render(), encoding="utf-8")
+    print(f"{PAGE.relative_to(ROOT)} written")

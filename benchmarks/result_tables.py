@@ -1,0 +1,252 @@
+"""Results as Markdown tables, the figure that is due beside the measured one."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+Row = Mapping[str, Any]
+Cell = Callable[[Row], str]
+Due = Callable[[Row], tuple[str, float] | None]
+
+
+def table(rows: Iterable[Row], columns: Mapping[str, Cell]) -> list[str]:
+    """Rows as a Markdown table."""
+    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
+    lines += ["| " + " | ".join(cell(row) for cell in columns.values()) + " |" for row in rows]
+    return lines
+
+
+def plain(value: Any) -> str:
+    """A value as a cell: yes or no, a few digits, or nothing."""
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key} {plain(item)}" for key, item in value.items())
+    return str(value)
+
+
+def of(key: str, digits: int | None = None, *, due: Due | None = None) -> Cell:
+    """A cell with one value of the row.
+
+    Args:
+        key: of the value.
+        digits: after the point; None: as it comes.
+        due: what the value should be, as ("≤" or "≥", figure); None, or None of a row: nothing is due.
+    """
+
+    def cell(row: Row) -> str:
+        value = row.get(key)
+        wanted = due(row) if due is not None else None
+        text = plain(value) if digits is None or value is None else f"{value:.{digits}f}"
+        if wanted is None:
+            return text
+        sign, figure = wanted
+        if value is None:
+            return f"not measured (due {sign} {figure:g})"
+        met = value <= figure if sign == "≤" else value >= figure
+        return f"{text} (due {sign} {figure:g})" if met else f"**{text}** (due {sign} {figure:g}: missed)"
+
+    return cell
+
+
+def centimetres(row: Row) -> str:
+    """The edge of a voxel."""
+    return "" if row.get("voxel_size_m") is None else f"{row['voxel_size_m'] * 100:g} cm"
+
+
+def is_full_room(row: Row) -> bool:
+    """Whether the figures that are due speak of a row's cameras."""
+    return (row.get("cameras"), row.get("width"), row.get("height")) == (21, 640, 480)
+
+
+MEDIAN_MS = {
+    ("carve", 0.05, "footprint"): 25.0,
+    ("carve", 0.02, "footprint"): 130.0,
+    ("cycle", 0.05, "footprint"): 45.0,
+    ("cycle", 0.02, "footprint"): 180.0,
+    ("cycle", 0.05, "pixel"): 140.0,
+    ("cycle", 0.02, "pixel"): 480.0,
+}
+"""Due [ms], by case, edge of a voxel and detail."""
+
+
+def _due_ms(row: Row) -> tuple[str, float] | None:
+    figure = MEDIAN_MS.get((row.get("case"), row.get("voxel_size_m"), row.get("detail")))
+    return None if figure is None or not is_full_room(row) else ("≤", figure)
+
+
+def _due_memory(row: Row) -> tuple[str, float] | None:
+    return ("≤", 600.0) if row.get("voxel_size_m") == 0.02 and is_full_room(row) else None
+
+
+def bench_tables(rows: Sequence[Row]) -> list[str]:
+    """Times, then the stages of a cycle."""
+    whole = [row for row in rows if "/" not in str(row.get("case"))]
+    stages = [row for row in rows if str(row.get("case")).startswith("cycle/")]
+    lines = table(
+        whole,
+        {
+            "case": of("case"),
+            "voxel": centimetres,
+            "cameras": lambda row: f"{row.get('cameras')} x {row.get('width')}x{row.get('height')}",
+            "detail": of("detail"),
+            "noise": of("noise"),
+            "threads": of("threads"),
+            "median ms": of("median_ms", 1, due=_due_ms),
+            "99 % ms": of("p99_ms", 1),
+            "worst ms": of("max_ms", 1),
+            "peak MB": of("peak_rss_mb", 0, due=_due_memory),
+            "ratio": of("ratio", 2),
+        },
+    )
+    against = [row["times_slower_than_carve"] for row in rows if row.get("times_slower_than_carve")]
+    for times in against:
+        met = "" if times >= 500 else ": missed"
+        lines += [
+            "",
+            f"OctoMap takes {times:.0f} times as long as carve on the same images (due ≥ 500{met}).",
+        ]
+    if not stages:
+        return lines
+    kinds = dict.fromkeys((row["voxel_size_m"], row["detail"], row["noise"]) for row in stages)
+    names = list(dict.fromkeys(row["case"].removeprefix("cycle/") for row in stages))
+    pivot = [
+        {
+            "voxel_size_m": voxel,
+            "detail": detail,
+            "noise": noise,
+            **{
+                row["case"].removeprefix("cycle/"): row["median_ms"]
+                for row in stages
+                if (row["voxel_size_m"], row["detail"], row["noise"]) == (voxel, detail, noise)
+            },
+        }
+        for voxel, detail, noise in kinds
+    ]
+    columns: dict[str, Cell] = {"voxel": centimetres, "detail": of("detail"), "noise": of("noise")}
+    columns |= {f"{name} ms": of(name, 1) for name in names}
+    return [*lines, "", "Stages of the cycle, medians:", "", *table(pivot, columns)]
+
+
+def _due_occupied(row: Row) -> tuple[str, float] | None:
+    if row.get("rule") != "three" or not is_full_room(row):
+        return None
+    if row.get("noise"):
+        return ("≥", 99.99) if (row.get("detail"), row.get("voxel_size_m")) == ("pixel", 0.02) else None
+    return {"footprint": ("≥", 100.0), "pixel": ("≥", 99.99)}.get(str(row.get("detail")))
+
+
+def _due_found(row: Row) -> tuple[str, float] | None:
+    if row.get("rule") != "three" or row.get("detail") != "pixel" or not is_full_room(row):
+        return None
+    figures = {(0.02, False): 97.0, (0.05, False): 94.0, (0.02, True): 92.0}
+    figure = figures.get((row.get("voxel_size_m", 0.0), bool(row.get("noise"))))
+    return None if figure is None else ("≥", figure)
+
+
+def room_tables(rows: Sequence[Row]) -> list[str]:
+    """Occupied and found, by voxel size, noise and detail."""
+    return table(
+        rows,
+        {
+            "voxel": centimetres,
+            "detail": of("detail"),
+            "rule": of("rule"),
+            "noise": of("noise"),
+            "occupied kept %": of("occupied_pct", 4, due=_due_occupied),
+            "falsely free voxels": lambda row: (
+                f"{row.get('false_free_voxels', 0):,} of {row.get('occupied_voxels', 0):,}"
+            ),
+            "found %": of("found_pct", 2, due=_due_found),
+            "free %": of("free_pct", 2),
+        },
+    )
+
+
+def _due_free(row: Row) -> tuple[str, float] | None:
+    figures = {"three": 10.0, "majority": 10.0, "veto": 16.0, "any": 20.0}
+    return (
+        ("≥", figures[row["rule"]])
+        if row.get("voxel_size_m") == 0.05 and row.get("rule") in figures
+        else None
+    )
+
+
+def sevenscenes_tables(rows: Sequence[Row]) -> list[str]:
+    """Falsely free check points and free voxels, by rule, detail and margin."""
+    return table(
+        rows,
+        {
+            "voxel": centimetres,
+            "rule": of("rule"),
+            "detail": of("detail"),
+            "margin": of("margin"),
+            "false %": of("false_pct", 3, due=lambda row: ("≤", 0.30) if _due_free(row) else None),
+            "free %": of("free_pct", 2, due=_due_free),
+        },
+    )
+
+
+def _summaries(rows: Sequence[Row]) -> list[Row]:
+    return [row for row in rows if row.get("kind") == "summary"]
+
+
+def alone_tables(rows: Sequence[Row]) -> list[str]:
+    """Levels of all verdicts, by voxel size."""
+    return table(
+        _summaries(rows),
+        {
+            "voxel": centimetres,
+            "detail": of("detail"),
+            "poses": of("poses"),
+            "verdicts": of("verdicts"),
+            "stop": of("stop"),
+            "decelerate": of("decelerate"),
+            "inform": of("inform"),
+            "clear": of("clear"),
+            "clear %": of("clear_pct", 2, due=lambda row: ("≥", 100.0)),
+        },
+    )
+
+
+def poses_tables(rows: Sequence[Row]) -> list[str]:
+    """Verdicts beside the truth."""
+    return table(
+        _summaries(rows),
+        {
+            "voxel": centimetres,
+            "detail": of("detail"),
+            "poses": of("poses"),
+            "verdicts": of("verdicts"),
+            "milder than the truth": of("milder", due=lambda row: ("≤", 0)),
+            "truly clear": of("truly_clear"),
+            "of these stop %": of("stop_where_clear_pct", 2, due=lambda row: ("≤", 10.0)),
+            "the very level of the truth %": of("same_level_pct", 2),
+        },
+    )
+
+
+def travel_tables(rows: Sequence[Row]) -> list[str]:
+    """Free travel beside the truth."""
+    return table(
+        _summaries(rows),
+        {
+            "voxel": centimetres,
+            "poses": of("poses"),
+            "more than the truth": of("more_than_truth", due=lambda row: ("≤", 0)),
+            "something is touched": of("touching"),
+            "median shortfall, voxels": of("median_shortfall_voxels", 2, due=lambda row: ("≤", 1.5)),
+            "greatest shortfall, voxels": of("greatest_shortfall_voxels", 2),
+        },
+    )
+
+
+def any_tables(rows: Sequence[Row]) -> list[str]:
+    """All that rows say, a column each."""
+    names = dict.fromkeys(key for row in rows for key in row if key not in ("kind", "voxel_size_m"))
+    columns: dict[str, Cell] = {"voxel": centimetres} if any("voxel_size_m" in row for row in rows) else {}
+    columns |= {name.replace("_pct", " %").replace("_", " "): of(name) for name in names}
+    return table(rows, columns)
