@@ -15,6 +15,7 @@ from elbowroom.geometry.parallel import spread
 from elbowroom.machine import _kernels_image as kernels
 from elbowroom.machine._kernels_image import TILE, Around, View
 from elbowroom.machine.body import default_growth
+from elbowroom.machine.buffers import zero_image
 from elbowroom.machine.machine import Joints, Machine
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
 from elbowroom.machine.samples import body_samples
@@ -97,7 +98,7 @@ def explain_frames(
         inverse, first, last = _spare_canvas(canvases, view)
         kernels.draw(mesh, placed[n], view, inverse, first, last)
         kernels.to_kind(view, inverse, first, last)
-        model = np.zeros((view.height, view.width), dtype=np.float32)
+        model = zero_image(view.height, view.width)
         around = near_body.around(view, placed[n], cameras[n].world_from_camera)
         kernels.explain(view, images[n], inverse, first, last, tolerance_m, tolerance_sigmas, model, around)
         canvases.append(inverse)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.errors import CameraError
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine._kernels_image import Mesh, View, draw, to_kind
+from elbowroom.machine.buffers import zero_image
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Joints, Machine
 
@@ -67,7 +68,7 @@ def view_of(camera: DepthCamera) -> View:
 
 def canvas(height: int, width: int) -> tuple[NDArray[np.float32], NDArray[np.int64], NDArray[np.int64]]:
     """An empty image of inverse depth, and the first and last column drawn in each of its rows: none."""
-    inverse = np.zeros((height, width), dtype=np.float32)
+    inverse = zero_image(height, width)
     return inverse, np.full(height, width, dtype=np.int64), np.full(height, -1, dtype=np.int64)
 
 
