@@ -29,8 +29,8 @@ GATHER = np.uint64(0x0102040810204080)
 ZERO, ONE_F, HALF = np.float32(0), np.float32(1), np.float32(0.5)
 
 # columns of Views.numbers: camera_from_world (3 x 4), then these
-LENS, SIZE, MARGIN, LATERAL, QUANTUM, RADIAL, BLANK, LOWEST, SPLIT, HALF_EXTENT, CENTRE, COLUMNS = (
-    12, 16, 18, 23, 24, 25, 26, 27, 28, 29, 37, 40,
+LENS, SIZE, MARGIN, LATERAL, QUANTUM, RADIAL, BLANK, LOWEST, SPLIT, HALF_EXTENT, CENTRE, TURN, COLUMNS = (
+    12, 16, 18, 23, 24, 25, 26, 27, 28, 29, 37, 40, 52,
 )  # fmt: skip
 
 
@@ -40,11 +40,14 @@ class Views(NamedTuple):
     numbers (n, COLUMNS) float64: camera_from_world (3 x 4), fx fy cx cy, width height, margin (see `margin_at`),
     lateral [px], quantum [m], whether depth is radial, whether nothing was delivered, the finest level of windows,
     whether `doubt` differs from `trust`, half extents of a voxel along the camera axes and its half diagonal [m], the
-    same of a block of 4 voxels, the camera's centre in the world [m].
+    same of a block of 4 voxels, the camera's centre in the world [m], and how a pixel's
+    direction turns in the world: d_a = D0 + D1 u + D2 v along axis a, and its half width over a widened pixel, as
+    D0 (3), D1 (3), D2 (3), half width (3).
     levels (n, levels, 2) int64: where each level of windows begins, and its row length.
     offset (n, 2, 3, 64) float32: from child 0 to each child of a block (0) or cube (1), in camera axes, x times fx and
     y times fy. trust: windows over all pixels, what may be carved. doubt: over unexplained pixels, what disputes.
-    texel_first (n,): where each camera's level 0 begins in trust_texels and doubt_texels.
+    texel_first (n,): where each camera's level 0 begins in trust_texels and doubt_texels; tile_first (n,) the same of
+    level 2, tiles of 4 x 4 pixels.
     """
 
     numbers: np.ndarray
@@ -55,6 +58,9 @@ class Views(NamedTuple):
     texel_first: np.ndarray
     trust_texels: np.ndarray
     doubt_texels: np.ndarray
+    tile_first: np.ndarray
+    trust_tiles: np.ndarray
+    doubt_tiles: np.ndarray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -229,32 +235,32 @@ def look_up(windows, quantum, floats, ints):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _bits(flags):
-    """Sixty-four bytes of 0 or 1 as one word, lane n to bit n."""
-    words = flags.view(np.uint64)
+def _bits(flag_words, row):
+    """Row of sixty-four bytes of 0 or 1 as one word, lane n to bit n; the bytes come as eight words."""
     out = np.uint64(0)
     for n in range(8):
-        out |= ((words[n] * GATHER) >> np.uint64(56)) << np.uint64(8 * n)
+        out |= ((flag_words[8 * row + n] * GATHER) >> np.uint64(56)) << np.uint64(8 * n)
     return out
 
 
 @njit(cache=True, nogil=True)
-def decide_inside(floats, flags):
-    """Words (through, mixed) of 64 boxes that lie wholly inside the image."""
+def decide_inside(floats, flags, flag_words):
+    """Words (through, mixed) of 64 boxes that lie wholly inside the image. `flag_words` is a view of `flags`."""
     for lane in range(64):
         front = floats[LEAST + lane] > floats[FAR + lane]
         hidden = floats[GREATEST + lane] < floats[NEAR + lane]
         flags[lane] = front
         flags[64 + lane] = hidden
-    through = _bits(flags[:64])
-    return through, ~(through | _bits(flags[64:]))
+    through = _bits(flag_words, 0)
+    return through, ~(through | _bits(flag_words, 1))
 
 
 @njit(cache=True, nogil=True)
-def decide_partly(floats, flags):
+def decide_partly(floats, flags, flag_words):
     """The same where row STATE tells: only a box wholly inside is ever through, one outside is never mixed.
 
-    What can be seen of a box may all be seen through and the box not be; then the camera says nothing of it.
+    The third word: what can be seen of a box is all seen through, but the box is not all in view; then the camera
+    says nothing of it.
     """
     for lane in range(64):
         state = floats[STATE + lane]
@@ -263,4 +269,4 @@ def decide_partly(floats, flags):
         flags[lane] = (state == INSIDE) & front
         flags[64 + lane] = (state == CROSSING) | ((state != OUTSIDE) & (not hidden) & (not front))
         flags[128 + lane] = (state == PARTLY) & front
-    return _bits(flags[:64]), _bits(flags[64:128]), _bits(flags[128:])
+    return _bits(flag_words, 0), _bits(flag_words, 1), _bits(flag_words, 2)

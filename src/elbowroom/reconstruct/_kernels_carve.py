@@ -40,7 +40,7 @@ from elbowroom.reconstruct._kernels_pixel import (
     PIXEL_FLOATS,
     THROUGH,
     settle_centre,
-    settle_voxel,
+    settle_word,
 )
 from elbowroom.reconstruct._kernels_pyramid import NEUTRAL, NO_RETURN
 
@@ -65,11 +65,11 @@ def _tally(counts, word, mask):
 
 
 @njit(cache=True, nogil=True)
-def _measured_at_centre(views, c, unsure, partly, floats):
+def _measured_at_centre(numbers, c, first, doubt_texels, unsure, partly, floats):
     """Which unsure boxes hold the measured point of their centre's pixel, and which have pixels without a return."""
     surface, blind = NOTHING, NOTHING
-    width, first = int(views.numbers[c, SIZE]), views.texel_first[c]
-    quantum = views.numbers[c, QUANTUM]
+    width = int(numbers[c, SIZE])
+    quantum = numbers[c, QUANTUM]
     rest = unsure
     while rest:
         lane = np.int64(trailing_zeros(rest))
@@ -79,7 +79,7 @@ def _measured_at_centre(views, c, unsure, partly, floats):
             continue
         if np.isinf(floats[GREATEST + lane]):
             blind |= bit
-        texel = views.doubt_texels[first + int(floats[V + lane]) * width + int(floats[U + lane])]
+        texel = doubt_texels[first + int(floats[V + lane]) * width + int(floats[U + lane])]
         greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
         if texel == NEUTRAL or greatest == NO_RETURN:
             continue
@@ -106,20 +106,19 @@ def _contested(floats, unsure, partly):
 
 
 @njit(cache=True, nogil=True)
-def _ask(views, c, scale, x, y, z, edge, keep_partly, floats, ints, flags):
+def _ask(numbers, levels, offset, trust, c, scale, x, y, z, edge, keep_partly, floats, ints, flags, flag_words):
     """Words (through, unsure) of the 64 children of a cube, and whether the cube lies partly outside the image."""
-    numbers, levels, offset, trust = views.numbers, views.levels, views.offset, views.trust
     px, py, pz, state = place_cube(numbers, c, scale, x, y, z, edge)
     if state == OUTSIDE:
         return NOTHING, NOTHING, False
     if state == INSIDE:
         bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
         look_up(trust, numbers[c, QUANTUM], floats, ints)
-        through, unsure = decide_inside(floats, flags)
+        through, unsure = decide_inside(floats, flags, flag_words)
         return through, unsure, False
     bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
     look_up(trust, numbers[c, QUANTUM], floats, ints)
-    through, unsure, cut = decide_partly(floats, flags)
+    through, unsure, cut = decide_partly(floats, flags, flag_words)
     return through, (unsure | cut) if keep_partly else unsure, True
 
 
@@ -137,11 +136,16 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
         planes: (PLANES, words) uint64, zeros on entry.
         through_count, dispute_count: (words, 64) uint8 where complete, else of no size.
     """
-    numbers = views.numbers
+    # taken out of the tuple once: each look into it counts references, which costs more than the arithmetic below
+    numbers, levels, offset = views.numbers, views.levels, views.offset
+    trust, doubt = views.trust, views.doubt
+    texel_first, trust_texels, doubt_texels = views.texel_first, views.trust_texels, views.doubt_texels
+    tile_first, trust_tiles, doubt_tiles = views.tile_first, views.trust_tiles, views.doubt_tiles
     cameras = numbers.shape[0]
     floats = np.empty(FLOATS, dtype=np.float32)
     ints = np.empty(INTS, dtype=np.int32)
     flags = np.empty(192, dtype=np.uint8)
+    flag_words = flags.view(np.uint64)
     scratch = np.empty(PIXEL_FLOATS, dtype=np.float64)
     through = np.empty(cameras, dtype=np.uint64)
     mixed = np.empty(cameras, dtype=np.uint64)
@@ -154,7 +158,10 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
         z = lattice.z0 + (cube % lattice.cubes_z) * 16 * edge
         for c in range(cameras):
             through[c], mixed[c], _ = _ask(
-                views,
+                numbers,
+                levels,
+                offset,
+                trust,
                 c,
                 1,
                 x + 0.5 * block,
@@ -165,6 +172,7 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
                 floats,
                 ints,
                 flags,
+                flag_words,
             )
         for lane in range(64):
             word = cube * 64 + lane
@@ -185,7 +193,21 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
                 if not mixed[c] & here or not open_voxels:
                     continue
                 seen, unsure, partly = _ask(
-                    views, c, 0, bx, by, bz, edge, detail == PIXEL, floats, ints, flags
+                    numbers,
+                    levels,
+                    offset,
+                    trust,
+                    c,
+                    0,
+                    bx,
+                    by,
+                    bz,
+                    edge,
+                    detail == PIXEL,
+                    floats,
+                    ints,
+                    flags,
+                    flag_words,
                 )
                 seen &= open_voxels
                 unsure &= open_voxels
@@ -201,9 +223,11 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
                     undecided[c] = unsure
                 elif unsure:
                     if numbers[c, SPLIT] != 0.0:
-                        look_up(views.doubt, numbers[c, QUANTUM], floats, ints)
+                        look_up(doubt, numbers[c, QUANTUM], floats, ints)
                         unsure = _contested(floats, unsure, partly)
-                    surface, blind = _measured_at_centre(views, c, unsure, partly, floats)
+                    surface, blind = _measured_at_centre(
+                        numbers, c, texel_first[c], doubt_texels, unsure, partly, floats
+                    )
                     planes[DISPUTED, word] |= unsure
                     planes[SURFACE, word] |= surface
                     planes[BLIND, word] |= blind
@@ -212,31 +236,26 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
             if detail == PIXEL:
                 for c in range(cameras):
                     rest = undecided[c] if complete else undecided[c] & ~planes[THREE, word]
-                    seen, disputed = NOTHING, NOTHING
-                    while rest:
-                        voxel = np.int64(trailing_zeros(rest))
-                        bit = np.uint64(1) << np.uint64(voxel)
-                        rest &= ~bit
-                        answer = settle_voxel(
-                            numbers,
-                            c,
-                            views.texel_first[c],
-                            views.trust_texels,
-                            views.doubt_texels,
-                            bx + (voxel >> 4) * edge,
-                            by + ((voxel >> 2) & 3) * edge,
-                            bz + (voxel & 3) * edge,
-                            edge,
-                            scratch,
-                        )
-                        if answer & THROUGH:
-                            seen |= bit
-                        if answer & DISPUTES:
-                            disputed |= bit
-                        if answer & IS_SURFACE:
-                            planes[SURFACE, word] |= bit
-                        if answer & IS_BLIND:
-                            planes[BLIND, word] |= bit
+                    if not rest:
+                        continue
+                    seen, disputed, surface, blind = settle_word(
+                        numbers,
+                        c,
+                        trust_texels,
+                        doubt_texels,
+                        texel_first[c],
+                        trust_tiles,
+                        doubt_tiles,
+                        tile_first[c],
+                        rest,
+                        bx,
+                        by,
+                        bz,
+                        edge,
+                        scratch,
+                    )
+                    planes[SURFACE, word] |= surface
+                    planes[BLIND, word] |= blind
                     _count_through(planes, word, seen)
                     planes[DISPUTED, word] |= disputed
                     if complete:
@@ -254,7 +273,7 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
 @njit(cache=True, nogil=True)
 def carve_points(cubes, lattice, inside, views, detail, complete, planes, through_count, dispute_count):
     """The thesis' test of voxel centres, every voxel with every camera; arguments as of `carve_cubes`."""
-    numbers = views.numbers
+    numbers, texel_first, doubt_texels = views.numbers, views.texel_first, views.doubt_texels
     edge = lattice.edge
     for cube in cubes:
         x = lattice.x0 + (cube // (lattice.cubes_y * lattice.cubes_z)) * 16 * edge
@@ -273,8 +292,8 @@ def carve_points(cubes, lattice, inside, views, detail, complete, planes, throug
                     answer = settle_centre(
                         numbers,
                         c,
-                        views.texel_first[c],
-                        views.doubt_texels,
+                        texel_first[c],
+                        doubt_texels,
                         bx + (voxel >> 4) * edge,
                         by + ((voxel >> 2) & 3) * edge,
                         bz + (voxel & 3) * edge,

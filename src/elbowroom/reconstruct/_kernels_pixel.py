@@ -8,8 +8,19 @@ t * d_a is before the near face for some axis, and misses it if it passes a silh
 
 import numpy as np
 from numba import njit
+from numba.cpython.unsafe.numbers import trailing_zeros
 
-from elbowroom.reconstruct._kernels_box import CENTRE, LATERAL, LENS, MARGIN, PLANE_EPS, QUANTUM, RADIAL, SIZE
+from elbowroom.reconstruct._kernels_box import (
+    CENTRE,
+    LATERAL,
+    LENS,
+    MARGIN,
+    PLANE_EPS,
+    QUANTUM,
+    RADIAL,
+    SIZE,
+    TURN,
+)
 from elbowroom.reconstruct._kernels_pyramid import NEUTRAL, NO_RETURN
 
 THROUGH, DISPUTES, IS_SURFACE, IS_BLIND = 1, 2, 4, 8
@@ -51,17 +62,10 @@ def _silhouette(b, c, s, count):
 @njit(cache=True, nogil=True, error_model="numpy")
 def _prepare(numbers, c, x, y, z, edge, s):
     """Fills the scratch array for one voxel and camera; returns the number of silhouette lines."""
-    fx, fy = numbers[c, LENS], numbers[c, LENS + 1]
-    ox, oy = numbers[c, LENS + 2], numbers[c, LENS + 3]
-    wide = 0.5 + numbers[c, LATERAL]
-    for a in range(3):
-        along_u = numbers[c, a] / fx
-        along_v = numbers[c, 4 + a] / fy
-        s[D1 + a] = along_u
-        s[D2 + a] = along_v
-        s[D0 + a] = numbers[c, 8 + a] - along_u * ox - along_v * oy
-        s[DW + a] = (abs(along_u) + abs(along_v)) * wide
     half = 0.5 * edge
+    wide = 0.5 + numbers[c, LATERAL]
+    for n in range(12):
+        s[n] = numbers[c, TURN + n]
     for a in range(3):
         middle = (x if a == 0 else (y if a == 1 else z)) - numbers[c, CENTRE + a]
         s[LOW + a] = middle - half
@@ -110,12 +114,15 @@ def _not_reached(s, u, v, t):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def settle_voxel(numbers, c, first, trust, doubt, x, y, z, edge, s):
+def settle_voxel(
+    numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile_first, x, y, z, edge, s
+):
     """What camera c says of the voxel around (x, y, z): a sum of THROUGH or DISPUTES, IS_SURFACE, IS_BLIND; or 0.
 
-    `first` is where the camera's texels begin in trust and doubt, `s` a scratch array of PIXEL_FLOATS.
+    `first` and `tile_first` are where the camera's pixels and tiles begin; `s` is a scratch array of PIXEL_FLOATS.
     """
     width, height = int(numbers[c, SIZE]), int(numbers[c, SIZE + 1])
+    tiles_across = (width + 3) >> 2
     fx, fy = numbers[c, LENS], numbers[c, LENS + 1]
     ox, oy = numbers[c, LENS + 2], numbers[c, LENS + 3]
     lateral = numbers[c, LATERAL]
@@ -137,7 +144,8 @@ def settle_voxel(numbers, c, first, trust, doubt, x, y, z, edge, s):
         qx = px + numbers[c, 0] * i + numbers[c, 1] * j + numbers[c, 2] * k
         qy = py + numbers[c, 4] * i + numbers[c, 5] * j + numbers[c, 6] * k
         qz = pz + numbers[c, 8] * i + numbers[c, 9] * j + numbers[c, 10] * k
-        u, v = fx * qx / qz + ox, fy * qy / qz + oy
+        per_z = 1.0 / qz
+        u, v = fx * qx * per_z + ox, fy * qy * per_z + oy
         u0, u1, v0, v1 = min(u0, u), max(u1, u), min(v0, v), max(v1, v)
     wide = 0.5 + lateral
     whole = (
@@ -167,69 +175,126 @@ def settle_voxel(numbers, c, first, trust, doubt, x, y, z, edge, s):
     blocked = False
     seen_past, hidden = False, False
     answer = 0
-    for v in range(va, vb + 1):
-        row = first + v * width
-        for u in range(ua, ub + 1):
-            least = trust[row + u] >> np.uint32(16)
-            if least >= clear_from:
+    for tv in range(va >> 2, (vb >> 2) + 1):
+        for tu in range(ua >> 2, (ub >> 2) + 1):
+            # 4 x 4 pixels at once, where none of them can add anything
+            tile = tile_first + tv * tiles_across + tu
+            if trust_tiles[tile] >> np.uint32(16) >= clear_from:
                 continue
-            doubtful = doubt[row + u]
-            greatest = np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF))
+            doubtful = doubt_tiles[tile]
             if blocked and (
                 doubtful == NEUTRAL
-                or (hidden and greatest <= hidden_to)
-                or (answer & IS_BLIND and greatest == NO_RETURN)
+                or (hidden and np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF)) <= hidden_to)
             ):
-                continue  # it can add nothing to what is known already
-            if _misses(s, lines, u, v):
                 continue
-            steep_near, steep_far = 1.0, 1.0
-            if radial:
-                # of the directions in the cone, the least and the greatest ratio of radial to planar depth
-                xn, yn = abs(u - ox) / fx, abs(v - oy) / fy
-                wx, wy = wide / fx, wide / fy
-                steep_far = np.sqrt(1.0 + (xn + wx) * (xn + wx) + (yn + wy) * (yn + wy))
-                xl, yl = max(xn - wx, 0.0), max(yn - wy, 0.0)
-                steep_near = np.sqrt(1.0 + xl * xl + yl * yl)
-            if _has_left(s, u, v, (least * quantum - margin) / steep_far):
-                continue
-            blocked = True
-            if doubtful == NEUTRAL:
-                continue
-            least = doubtful >> np.uint32(16)
-            if greatest == NO_RETURN:
-                answer |= DISPUTES | IS_BLIND
-            elif greatest <= hidden_to or _not_reached(s, u, v, (greatest * quantum + margin) / steep_near):
-                hidden = True
-            elif _has_left(s, u, v, (least * quantum - margin) / steep_far):
-                seen_past = True
-            elif _has_left(s, u, v, (greatest * quantum - margin) / steep_far):
-                answer |= DISPUTES
-            else:
-                return DISPUTES | IS_SURFACE
+            for v in range(max(va, 4 * tv), min(vb, 4 * tv + 3) + 1):
+                row = first + v * width
+                for u in range(max(ua, 4 * tu), min(ub, 4 * tu + 3) + 1):
+                    least = trust[row + u] >> np.uint32(16)
+                    if least >= clear_from:
+                        continue
+                    doubtful = doubt[row + u]
+                    greatest = np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF))
+                    if blocked and (
+                        doubtful == NEUTRAL
+                        or (hidden and greatest <= hidden_to)
+                        or (answer & IS_BLIND and greatest == NO_RETURN)
+                    ):
+                        continue  # it can add nothing to what is known already
+                    if _misses(s, lines, u, v):
+                        continue
+                    steep_near, steep_far = 1.0, 1.0
+                    if radial:
+                        # of the directions in the cone, the least and the greatest ratio of radial to planar depth
+                        xn, yn = abs(u - ox) / fx, abs(v - oy) / fy
+                        wx, wy = wide / fx, wide / fy
+                        steep_far = np.sqrt(1.0 + (xn + wx) * (xn + wx) + (yn + wy) * (yn + wy))
+                        xl, yl = max(xn - wx, 0.0), max(yn - wy, 0.0)
+                        steep_near = np.sqrt(1.0 + xl * xl + yl * yl)
+                    if _has_left(s, u, v, (least * quantum - margin) / steep_far):
+                        continue
+                    blocked = True
+                    if doubtful == NEUTRAL:
+                        continue
+                    least = doubtful >> np.uint32(16)
+                    if greatest == NO_RETURN:
+                        answer |= DISPUTES | IS_BLIND
+                    elif greatest <= hidden_to or _not_reached(s, u, v, (greatest * quantum + margin) / steep_near):
+                        hidden = True
+                    elif least >= clear_from or _has_left(s, u, v, (least * quantum - margin) / steep_far):
+                        seen_past = True
+                    elif greatest >= clear_from or _has_left(s, u, v, (greatest * quantum - margin) / steep_far):
+                        answer |= DISPUTES
+                    else:
+                        return DISPUTES | IS_SURFACE
     if not blocked:
         return THROUGH if whole else 0
     if hidden and not answer:
         # an edge: of the rays that meet the voxel some are stopped before it and some pass it
         if seen_past:
             return DISPUTES
-        for v in range(va, vb + 1):
-            row = first + v * width
-            for u in range(ua, ub + 1):
-                texel = doubt[row + u]
-                least = texel >> np.uint32(16)
-                greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
-                if texel == NEUTRAL or greatest <= hidden_to or _misses(s, lines, u, v):
+        for tv in range(va >> 2, (vb >> 2) + 1):
+            for tu in range(ua >> 2, (ub >> 2) + 1):
+                doubtful = doubt_tiles[tile_first + tv * tiles_across + tu]
+                if np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF)) <= hidden_to:
                     continue
-                if least >= clear_from:
-                    return DISPUTES
-                steep = 1.0
-                if radial:
-                    xn, yn = abs(u - ox) / fx + wide / fx, abs(v - oy) / fy + wide / fy
-                    steep = np.sqrt(1.0 + xn * xn + yn * yn)
-                if _has_left(s, u, v, (least * quantum - margin) / steep):
-                    return DISPUTES
+                for v in range(max(va, 4 * tv), min(vb, 4 * tv + 3) + 1):
+                    row = first + v * width
+                    for u in range(max(ua, 4 * tu), min(ub, 4 * tu + 3) + 1):
+                        texel = doubt[row + u]
+                        least = texel >> np.uint32(16)
+                        greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
+                        if texel == NEUTRAL or greatest <= hidden_to or _misses(s, lines, u, v):
+                            continue
+                        if least >= clear_from:
+                            return DISPUTES
+                        steep = 1.0
+                        if radial:
+                            xn, yn = abs(u - ox) / fx + wide / fx, abs(v - oy) / fy + wide / fy
+                            steep = np.sqrt(1.0 + xn * xn + yn * yn)
+                        if _has_left(s, u, v, (least * quantum - margin) / steep):
+                            return DISPUTES
     return answer
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def settle_word(
+    numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile_first, voxels, x, y, z, edge, s
+):
+    """What camera c says of the set voxels of a block: words (through, disputed, surface, blind).
+
+    (x, y, z) is the centre of the block's voxel (0, 0, 0), `s` a scratch array of PIXEL_FLOATS.
+    """
+    through, disputed, surface, blind = np.uint64(0), np.uint64(0), np.uint64(0), np.uint64(0)
+    rest = voxels
+    while rest:
+        lane = np.int64(trailing_zeros(rest))
+        bit = np.uint64(1) << np.uint64(lane)
+        rest &= ~bit
+        answer = settle_voxel(
+            numbers,
+            c,
+            trust,
+            doubt,
+            first,
+            trust_tiles,
+            doubt_tiles,
+            tile_first,
+            x + (lane >> 4) * edge,
+            y + ((lane >> 2) & 3) * edge,
+            z + (lane & 3) * edge,
+            edge,
+            s,
+        )
+        if answer & THROUGH:
+            through |= bit
+        if answer & DISPUTES:
+            disputed |= bit
+        if answer & IS_SURFACE:
+            surface |= bit
+        if answer & IS_BLIND:
+            blind |= bit
+    return through, disputed, surface, blind
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -47,11 +47,12 @@ def texels_of_frame(least_m, greatest_m, low, high, quantum, texels):
 
 
 @njit(cache=True, nogil=True)
-def lower_at_steps(texels, ignored, quantum, margin, lowered):
+def lower_at_steps(texels, ignored, quantum, step, lowered):
     """Flying pixels: where depth steps, a pixel is trusted only up to the nearest of its 3 x 3 neighbourhood.
 
     A neighbour without a return counts as least 0. Greatest stays. A neighbour that is `NEUTRAL` in `ignored` (of no
-    size: none is) lowers nothing. A step is a difference beyond the margin at the pixel's depth.
+    size: none is) lowers nothing. A step is a difference beyond the polynomial `step` (as of `margin_at`) at the
+    pixel's depth.
     """
     rows, columns = texels.shape
     has_ignored = ignored.size > 0
@@ -66,7 +67,7 @@ def lower_at_steps(texels, ignored, quantum, margin, lowered):
                     if has_ignored and ignored[dv, du] == NEUTRAL:
                         continue
                     near = min(near, texels[dv, du] >> np.uint32(16))
-            if near < least and (least - near) * quantum > margin_at(least * quantum, margin):
+            if near < least and (least - near) * quantum > margin_at(least * quantum, step):
                 least = near
             lowered[v, u] = (least << np.uint32(16)) | (texel & low)
 

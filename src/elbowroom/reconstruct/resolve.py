@@ -108,7 +108,7 @@ def resolve(
         if joints is None:
             raise InputError("resolve: a machine without joints; give its joint positions by name")
         body = body_words(machine, joints, evidence.grid, threads=threads) & ~evidence.unexplained
-        free = (free | body) & ~evidence.unexplained
+        free = free | body
     blocked = ~free & bits.inside(evidence.grid)
     surface = (evidence.surface | evidence.unexplained) & blocked
     return FreeSpace(

@@ -18,8 +18,16 @@ from elbowroom.reconstruct import _kernels_pyramid as pyramid
 from elbowroom.reconstruct._kernels_box import Views
 from elbowroom.reconstruct.images import Image, RoomImages
 
+TILE_LEVEL = 2
+"""The level whose texels the pixel test passes over at once: 4 x 4 pixels."""
 SPARE_M = 0.5
 """Depth beyond the grid's farthest corner that is still told apart."""
+STEP = Margin(sigmas=3.0)
+STEP_WITHOUT_NOISE = Margin(range_linear=0.005)
+"""By how much depth must differ between neighbours to step, of cameras with a noise model and of others.
+
+Were it the margin of the carve, a wider margin would lower fewer pixels and so could add free space.
+"""
 
 
 def margin_polynomial(camera: DepthCamera, margin: Margin) -> NDArray[np.float64]:
@@ -38,6 +46,8 @@ class _Buffers:
 
     trust_texels: NDArray[np.uint32]
     doubt_texels: NDArray[np.uint32]
+    trust_tiles: NDArray[np.uint32]
+    doubt_tiles: NDArray[np.uint32]
     trust: NDArray[np.uint32]
     doubt: NDArray[np.uint32]
 
@@ -52,6 +62,7 @@ class Layout:
     levels: NDArray[np.int64]
     offset: NDArray[np.float32]
     texel_first: NDArray[np.int64]
+    tile_first: NDArray[np.int64]
     shapes: list[list[tuple[int, int]]]
     inside: Words
     _spare: list[_Buffers] = field(default_factory=list)
@@ -65,11 +76,9 @@ class Layout:
                     return self._spare.pop(position)
         texels = int(self.texel_first[-1])
         windows = int(self.levels[-1, -1, 0] + 1)
-        trust_texels = np.zeros(texels, dtype=np.uint32)
-        trust = np.zeros(windows, dtype=np.uint32)
-        if not split:
-            return _Buffers(trust_texels, trust_texels, trust, trust)
-        return _Buffers(trust_texels, np.zeros_like(trust_texels), trust, np.zeros_like(trust))
+        trust = [np.zeros(size, dtype=np.uint32) for size in (texels, int(self.tile_first[-1]), windows)]
+        doubt = [np.zeros_like(array) for array in trust] if split else trust
+        return _Buffers(trust[0], doubt[0], trust[1], doubt[1], trust[2], doubt[2])
 
     def give_back(self, buffers: _Buffers) -> None:
         """Returns buffers for the next carve."""
@@ -96,6 +105,7 @@ def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin)
     depth = max((_levels_of(camera) for camera in cameras), default=1)
     levels = np.zeros((len(cameras), depth, 2), dtype=np.int64)
     texel_first = np.zeros(len(cameras) + 1, dtype=np.int64)
+    tile_first = np.zeros(len(cameras) + 1, dtype=np.int64)
     shapes, first = [], 0
     for c, camera in enumerate(cameras):
         if camera.intrinsics.is_distorted:
@@ -114,9 +124,15 @@ def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin)
         row[box.SIZE : box.SIZE + 2] = camera.width, camera.height
         row[box.MARGIN : box.MARGIN + 5] = polynomial
         row[box.LATERAL] = own.lateral_px
-        row[box.QUANTUM] = reach / (pyramid.FAR_CLIP - 4)
+        # a power of two: where a wider margin makes quanta coarser, no rounding becomes more favourable
+        row[box.QUANTUM] = 2.0 ** np.ceil(np.log2(reach / (pyramid.FAR_CLIP - 4)))
         row[box.RADIAL] = camera.depth_kind == "radial"
         row[box.CENTRE : box.CENTRE + 3] = camera.centre_in_world
+        along_u, along_v = rotation[0] / k.fx, rotation[1] / k.fy
+        turn = row[box.TURN : box.TURN + 12].reshape(4, 3)
+        turn[0] = rotation[2] - along_u * k.cx - along_v * k.cy
+        turn[1:3] = along_u, along_v
+        turn[3] = (np.abs(along_u) + np.abs(along_v)) * (0.5 + own.lateral_px)
         middle = float(np.linalg.norm(grid.lower_m / 2 + grid.upper_m / 2 - camera.centre_in_world))
         # windows over single pixels only where voxels of the middle of the grid are that small
         row[box.LOWEST] = 0 if 0.5 * grid.voxel_size_m * k.fx < max(middle, 1e-3) else 1
@@ -136,11 +152,14 @@ def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin)
             first += h * w if level >= row[box.LOWEST] else 0
         shapes.append(own_shapes)
         texel_first[c + 1] = texel_first[c] + camera.width * camera.height
-    return Layout(grid, cameras, numbers, levels, offset, texel_first, shapes, bits.inside(grid))
+        tile_first[c + 1] = tile_first[c] + own_shapes[TILE_LEVEL][0] * own_shapes[TILE_LEVEL][1]
+    return Layout(
+        grid, cameras, numbers, levels, offset, texel_first, tile_first, shapes, bits.inside(grid)
+    )
 
 
 def _levels_of(camera: DepthCamera) -> int:
-    return int(np.ceil(np.log2(max(camera.width, camera.height)))) + 1
+    return max(int(np.ceil(np.log2(max(camera.width, camera.height)))), TILE_LEVEL) + 1
 
 
 def fill(
@@ -173,13 +192,11 @@ def fill(
             numbers[c, box.BLANK] = 1
             trust[:] = 0
             doubt[:] = 0
-        _windows(layout, c, trust, buffers.trust)
-        if split:
-            if numbers[c, box.SPLIT]:
-                _windows(layout, c, doubt, buffers.doubt)
-            else:
-                doubt[:] = trust
-                _copy_windows(layout, c, buffers)
+        _windows(layout, c, trust, buffers.trust_tiles, buffers.trust)
+        if numbers[c, box.SPLIT]:
+            _windows(layout, c, doubt, buffers.doubt_tiles, buffers.doubt)
+        elif split:
+            _copy_trust(layout, c, buffers)
 
     spread(build, range(len(layout.cameras)), threads)
     views = Views(
@@ -191,6 +208,9 @@ def fill(
         layout.texel_first,
         buffers.trust_texels,
         buffers.doubt_texels,
+        layout.tile_first,
+        buffers.trust_tiles,
+        buffers.doubt_tiles,
     )
     return views, buffers
 
@@ -207,6 +227,7 @@ def _texels(
     camera = layout.cameras[c]
     least_m, greatest_m = images.least_m[camera.name], images.greatest_m[camera.name]
     polynomial = layout.numbers[c, box.MARGIN : box.MARGIN + 5]
+    step = margin_polynomial(camera, STEP if camera.noise is not None else STEP_WITHOUT_NOISE)
     quantum = layout.numbers[c, box.QUANTUM]
     low, high = np.float32(camera.min_depth_m), np.float32(camera.max_depth_m)
     explained = model_m is not None and bool(model_m.any())
@@ -218,31 +239,45 @@ def _texels(
     else:
         measured = np.empty_like(trust)
         pyramid.texels_of_frame(least_m, greatest_m, low, high, np.float32(quantum), measured)
-        pyramid.lower_at_steps(measured, none, quantum, polynomial, trust)
+        pyramid.lower_at_steps(measured, none, quantum, step, trust)
         if explained:
             unexplained = np.empty_like(trust)
             pyramid.ignore_explained(model_m, measured, unexplained)
-            pyramid.lower_at_steps(measured, unexplained, quantum, polynomial, doubt)
+            pyramid.lower_at_steps(measured, unexplained, quantum, step, doubt)
     if explained:
         pyramid.mark_explained(model_m, polynomial, quantum, trust, doubt)
     return explained
 
 
-def _windows(layout: Layout, c: int, texels: NDArray[np.uint32], windows: NDArray[np.uint32]) -> None:
+def _windows(
+    layout: Layout,
+    c: int,
+    texels: NDArray[np.uint32],
+    tiles: NDArray[np.uint32],
+    windows: NDArray[np.uint32],
+) -> None:
+    """Tiles and windows of all levels of one camera, from its level 0."""
     fine = texels
     for level, shape in enumerate(layout.shapes[c]):
         if level:
             coarse = np.empty(shape, dtype=np.uint32)
             pyramid.halve(fine, coarse)
             fine = coarse
+        if level == TILE_LEVEL:
+            tiles[layout.tile_first[c] : layout.tile_first[c + 1]] = fine.reshape(-1)
         if level >= layout.numbers[c, box.LOWEST]:
             first = layout.levels[c, level, 0]
             out = windows[first : first + shape[0] * shape[1]].reshape(shape).view(np.uint16)
             pyramid.windows_of(fine.view(np.uint16), np.empty_like(out), out)
 
 
-def _copy_windows(layout: Layout, c: int, buffers: _Buffers) -> None:
+def _copy_trust(layout: Layout, c: int, buffers: _Buffers) -> None:
+    """For a camera that sees nothing of the machine, while others do."""
     last = layout.shapes[c][-1]
     start = layout.levels[c, int(layout.numbers[c, box.LOWEST]), 0]
     end = layout.levels[c, -1, 0] + last[0] * last[1]
+    texels = slice(layout.texel_first[c], layout.texel_first[c + 1])
+    tiles = slice(layout.tile_first[c], layout.tile_first[c + 1])
     buffers.doubt[start:end] = buffers.trust[start:end]
+    buffers.doubt_texels[texels] = buffers.trust_texels[texels]
+    buffers.doubt_tiles[tiles] = buffers.trust_tiles[tiles]
