@@ -1,0 +1,238 @@
+"""Exact geometry as truth: how far a joint can go until a link touches a solid, by mesh distance.
+
+Distances between meshes are coal's (https://github.com/coal-library/coal). A link and a solid cannot meet
+before the link's fastest point has covered their distance, so each pair is looked at again only there
+(conservative advancement), and the pair that could meet first is always looked at next.
+"""
+
+import heapq
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import ElbowroomError, MachineError
+from elbowroom.machine import Machine
+from elbowroom.motion import Motion
+from elbowroom.simulate.solid import Mesh, Solid
+
+NEAR_M = 1e-5
+"""A distance that counts as contact [m]: travel is found too short by that, never too long."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """How far a motion really can go.
+
+    Args:
+        travel: until a link touches a solid, or to the reach or the joint's limit [m or rad along the joint].
+        length: travel that was looked at: the reach, or less where the joint's limit comes before it.
+        link: what touches; None: nothing does within `length`.
+        solid: what it touches.
+        speed: how fast the touching point moves per unit of travel [m per m or rad]; 0 without contact.
+    """
+
+    travel: float
+    length: float
+    link: str | None = None
+    solid: str | None = None
+    speed: float = 0.0
+
+    @property
+    def touches(self) -> bool:
+        """Whether anything is touched within `length`."""
+        return self.link is not None
+
+
+class ExactTravel:
+    """Distances between a machine's checked links and solids, at one moment of a room.
+
+    A mesh's tree of bounding volumes is built once and kept; so a room's next moment costs little.
+
+    Args:
+        machine: whose links.
+        solids: what they may touch, as closed meshes; solids of the machine itself are left out.
+
+    Raises:
+        ElbowroomError: coal is not installed.
+    """
+
+    def __init__(self, machine: Machine, solids: Sequence[Solid]) -> None:
+        self._coal = load_coal()
+        self._machine = machine
+        self._links = {name: _Body(self._coal, mesh) for name, mesh in _meshes_of(machine).items()}
+        self._solids = [_Obstacle(self._coal, solid) for solid in solids if not solid.is_machine]
+
+    def gap(self, joints: Mapping[str, float], enough_m: float = np.inf) -> float:
+        """The least distance of any checked link to any solid [m], 0 where they meet.
+
+        Args:
+            joints: positions by name [m or rad].
+            enough_m: a greater distance is not worked out: the answer is then at least this [m].
+        """
+        placed = self._machine.world_from_links(joints)
+        least = enough_m
+        for name, body in self._links.items():
+            for obstacle in self._solids:
+                if obstacle.at_least(body, placed[name]) < least:
+                    least = min(least, self._distance(body, placed[name], obstacle)[0])
+        return least
+
+    def until_contact(self, joints: Mapping[str, float], motion: Motion) -> Contact:
+        """How far one joint can go.
+
+        Args:
+            joints: where all joints are, by name [m or rad].
+            motion: joint, direction and reach.
+
+        Raises:
+            MachineError: unknown, missing or impossible joints, or a joint that others follow.
+        """
+        machine = self._machine
+        joint = machine.joint(motion.joint)
+        if any(other.mimic is not None and other.mimic.joint == joint.name for other in machine.joints):
+            raise MachineError(
+                f"exact travel: joint {joint.name} has followers, whose speeds are not known here"
+            )
+        start = float(joints[motion.joint])
+        room = joint.upper - start if motion.direction > 0 else start - joint.lower
+        length = float(max(0.0, min(motion.looked_at, room)))
+        placed = machine.world_from_links(joints)
+        moving = [name for name in machine.moved_links(motion.joint) if name in self._links]
+        axis = _Axis.of(joint.kind, joint.axis_in_joint, placed[joint.child])
+        fastest = {name: axis.greatest_speed(self._links[name], placed[name]) for name in moving}
+        # pairs by the travel before which they cannot meet
+        pairs = [
+            (obstacle.at_least(self._links[name], placed[name]) / max(fastest[name], 1e-12), n, name)
+            for name in moving
+            for n, obstacle in enumerate(self._solids)
+        ]
+        pairs = [pair for pair in pairs if pair[0] < length]
+        heapq.heapify(pairs)
+        while pairs:
+            travel, n, name = heapq.heappop(pairs)
+            here = {**joints, motion.joint: start + motion.direction * travel}
+            world_from_link = machine.world_from_links(here)[name]
+            distance, point = self._distance(self._links[name], world_from_link, self._solids[n])
+            if distance < NEAR_M:
+                return Contact(travel, length, name, self._solids[n].name, axis.speed(point))
+            travel += distance / fastest[name]
+            if travel < length:
+                heapq.heappush(pairs, (travel, n, name))
+        return Contact(length, length)
+
+    def _distance(
+        self, body: "_Body", world_from_link: NDArray[np.float64], obstacle: "_Obstacle"
+    ) -> tuple[float, NDArray[np.float64]]:
+        """Distance of two meshes, not below 0 [m], and the link's point that is nearest."""
+        coal = self._coal
+        result = coal.DistanceResult()
+        place = coal.Transform3s(world_from_link[:3, :3], world_from_link[:3, 3])
+        distance = coal.distance(
+            body.tree, place, obstacle.body.tree, obstacle.place, coal.DistanceRequest(True), result
+        )
+        return max(0.0, float(distance)), np.array(result.getNearestPoint1())
+
+
+def load_coal() -> Any:
+    """The library of mesh distances.
+
+    Raises:
+        ElbowroomError: it is not installed.
+    """
+    try:
+        import coal
+    except ImportError as error:
+        raise ElbowroomError(
+            f"exact mesh distance needs the package coal ({error}); install 'elbowroom[evaluate]'"
+        ) from error
+    return coal
+
+
+_trees: WeakKeyDictionary[Mesh, Any] = WeakKeyDictionary()
+_link_meshes: WeakKeyDictionary[Machine, dict[str, Mesh]] = WeakKeyDictionary()
+
+
+def _tree_of(coal: Any, mesh: Mesh) -> Any:
+    """The mesh's bounding-volume tree, built once."""
+    if mesh not in _trees:
+        tree = coal.BVHModelOBBRSS()
+        tree.beginModel(len(mesh.faces), len(mesh.vertices))
+        tree.addVertices(mesh.vertices)
+        tree.addTriangles(mesh.faces.astype(np.int64))
+        tree.endModel()
+        _trees[mesh] = tree
+    return _trees[mesh]
+
+
+def _meshes_of(machine: Machine) -> dict[str, Mesh]:
+    if machine not in _link_meshes:
+        _link_meshes[machine] = {
+            link.name: Mesh(link.vertices, link.faces)
+            for link in machine.links
+            if link.name in machine.checked_links
+        }
+    return _link_meshes[machine]
+
+
+class _Body:
+    """A mesh with its tree and a ball about it."""
+
+    def __init__(self, coal: Any, mesh: Mesh) -> None:
+        self.mesh, self.tree = mesh, _tree_of(coal, mesh)
+        self.centre = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
+        self.radius = float(np.linalg.norm(mesh.vertices - self.centre, axis=1).max())
+
+
+class _Obstacle:
+    """A solid at its place, and the world-aligned box that holds it."""
+
+    def __init__(self, coal: Any, solid: Solid) -> None:
+        self.name, self.body = solid.name, _Body(coal, solid.mesh)
+        pose = solid.world_from_solid
+        self.place = coal.Transform3s(pose[:3, :3], pose[:3, 3])
+        vertices = solid.vertices_in_world
+        self.lower, self.upper = vertices.min(axis=0), vertices.max(axis=0)
+
+    def at_least(self, body: _Body, world_from_link: NDArray[np.float64]) -> float:
+        """A lower bound of the distance: from the link's ball to the solid's box [m]."""
+        centre = world_from_link[:3, :3] @ body.centre + world_from_link[:3, 3]
+        outside = np.maximum(np.maximum(self.lower - centre, centre - self.upper), 0.0)
+        return max(0.0, float(np.linalg.norm(outside)) - body.radius)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Axis:
+    """What one joint does to points: all move alike, or turn about a line that stands still.
+
+    Args:
+        turns: whether the joint turns.
+        origin, direction: a point of the line and its unit vector, world frame.
+    """
+
+    turns: bool
+    origin: NDArray[np.float64]
+    direction: NDArray[np.float64]
+
+    @classmethod
+    def of(
+        cls, kind: str, axis_in_joint: NDArray[np.float64], world_from_joint: NDArray[np.float64]
+    ) -> "_Axis":
+        return cls(kind != "prismatic", world_from_joint[:3, 3], world_from_joint[:3, :3] @ axis_in_joint)
+
+    def speeds(self, points_in_world: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Speeds of points (n, 3) per unit of travel, shape (n,) [m per m or rad]."""
+        if not self.turns:
+            return np.ones(len(points_in_world))
+        return np.linalg.norm(np.cross(self.direction, points_in_world - self.origin), axis=1)
+
+    def speed(self, point_in_world: NDArray[np.float64]) -> float:
+        return float(self.speeds(point_in_world[None])[0])
+
+    def greatest_speed(self, body: _Body, world_from_link: NDArray[np.float64]) -> float:
+        """Of any point of a link; turning about the axis does not change it."""
+        points = body.mesh.vertices @ world_from_link[:3, :3].T + world_from_link[:3, 3]
+        return float(self.speeds(points).max())
