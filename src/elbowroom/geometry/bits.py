@@ -7,6 +7,8 @@ from elbowroom.errors import GridError
 from elbowroom.geometry._kernels import Lattice, bit_of, word_of
 from elbowroom.geometry.grid import VoxelGrid
 
+__all__ = ["Words", "bit_of", "empty", "inside", "lattice", "pack", "unpack", "word_count", "word_of"]
+
 Words = NDArray[np.uint64]
 
 

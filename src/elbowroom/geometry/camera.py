@@ -55,7 +55,9 @@ class DepthCamera:
             if value != int(value) or not 1 <= value <= MAX_SIDE_PX:
                 raise CameraError(f"camera {self.name}: {side} is {value}, must be 1 to {MAX_SIDE_PX} pixels")
         if self.depth_kind not in ("planar", "radial"):
-            raise CameraError(f"camera {self.name}: depth_kind is {self.depth_kind!r}, allowed are planar, radial")
+            raise CameraError(
+                f"camera {self.name}: depth_kind is {self.depth_kind!r}, allowed are planar, radial"
+            )
         if not 0 <= self.min_depth_m < self.max_depth_m:
             raise CameraError(
                 f"camera {self.name}: depth from {self.min_depth_m} to {self.max_depth_m} m is no range; "

@@ -49,7 +49,9 @@ class Intrinsics:
         """From a 3x3 camera matrix [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]; skew is refused."""
         k = np.asarray(matrix, dtype=np.float64)
         if k.shape != (3, 3) or not np.allclose([k[0, 1], k[1, 0], k[2, 0], k[2, 1]], 0) or k[2, 2] != 1:
-            raise CameraError(f"camera matrix: expected [[fx, 0, cx], [0, fy, cy], [0, 0, 1]], got {k.tolist()}")
+            raise CameraError(
+                f"camera matrix: expected [[fx, 0, cx], [0, fy, cy], [0, 0, 1]], got {k.tolist()}"
+            )
         return cls(fx=k[0, 0], fy=k[1, 1], cx=k[0, 2], cy=k[1, 2], distortion=distortion)
 
     @property
@@ -59,4 +61,5 @@ class Intrinsics:
 
     def normalised(self, width: int, height: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """X/Z of each column, shape (width,), and Y/Z of each row, shape (height,), without distortion."""
-        return (np.arange(width) - self.cx) / self.fx, (np.arange(height) - self.cy) / self.fy
+        columns, rows = np.arange(width, dtype=np.float64), np.arange(height, dtype=np.float64)
+        return (columns - self.cx) / self.fx, (rows - self.cy) / self.fy

@@ -20,9 +20,7 @@ def _pool(threads: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(max_workers=threads, thread_name_prefix="elbowroom")
 
 
-def spread(
-    work: Callable[[Item], Result], items: Sequence[Item], threads: int | None = None
-) -> list[Result]:
+def spread(work: Callable[[Item], Result], items: Sequence[Item], threads: int | None = None) -> list[Result]:
     """Does `work` for each item on up to `threads` threads (None: all cores) and returns the results in order."""
     threads = threads or default_threads()
     if threads == 1 or len(items) <= 1:

@@ -30,9 +30,7 @@ def invert_rigid(b_from_a: NDArray[np.float64]) -> NDArray[np.float64]:
     return a_from_b
 
 
-def nearest_rigid(
-    matrix: ArrayLike, what: str, error: type[InputError] = CameraError
-) -> NDArray[np.float64]:
+def nearest_rigid(matrix: ArrayLike, what: str, error: type[InputError] = CameraError) -> NDArray[np.float64]:
     """The rigid transform nearest to a 4x4 matrix that claims to be one.
 
     Args:
@@ -68,7 +66,9 @@ def nearest_rigid(
         )
     if deviation > SILENT_DEVIATION:
         warnings.warn(
-            f"{what}: off a rotation by {deviation:.1e}, brought to the nearest one", PoseWarning, stacklevel=3
+            f"{what}: off a rotation by {deviation:.1e}, brought to the nearest one",
+            PoseWarning,
+            stacklevel=3,
         )
     rigid = np.eye(4)
     rigid[:3, :3] = rotation
