@@ -1,0 +1,151 @@
+"""What the documentation says of the project is true of the project."""
+
+import ast
+import re
+import runpy
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+import typer
+
+from elbowroom.cli.app import app
+from elbowroom.sensing import NOISE_PRESETS
+
+PROJECT = Path(__file__).resolve().parents[1]
+SOURCE = PROJECT / "src" / "elbowroom"
+PAGES = [*PROJECT.glob("*.md"), *(PROJECT / "docs").glob("*.md"), *(PROJECT / "examples").glob("*.md")]
+TEST_COMMAND = "python3 -m venv .venv && .venv/bin/pip install -e '.[test]' && .venv/bin/pytest"
+MAIN_COMMAND = "python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/elbowroom monitor"
+KERNELS = sorted(SOURCE.rglob("_kernels*.py"))
+KERNEL_LIBRARIES = {"math", "typing", "numpy", "numba"}
+
+
+def module_name(path: Path) -> str:
+    return ".".join(path.relative_to(SOURCE.parent).with_suffix("").parts)
+
+
+def anchors_of(page: Path) -> set[str]:
+    """Headings as GitHub names them in links."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+        if "://" in target:
+            continue
+        path, _, anchor = target.partition("#")
+        linked = (page.parent / path).resolve() if path else page
+        assert linked.exists(), f"{page.name}: {target} leads nowhere"
+        if anchor:
+            assert anchor in anchors_of(linked), f"{page.name}: {target} has no such heading"
+
+
+def test_readme_has_the_two_commands_word_for_word() -> None:
+    lines = (PROJECT / "README.md").read_text(encoding="utf-8").splitlines()
+    commands = [line.strip() for line in lines if line.strip().startswith("python3 -m venv")]
+    assert commands == [MAIN_COMMAND, TEST_COMMAND]
+
+
+def test_continuous_integration_runs_the_test_command_of_the_readme() -> None:
+    lines = (PROJECT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
+    assert TEST_COMMAND in [line.strip() for line in lines]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_that_pages_name_exist(page: Path) -> None:
+    root = typer.main.get_command(app)
+    for words in re.findall(r"\belbowroom ((?:[a-z]+ ?)+)", commands_in(page)):
+        command = root
+        for word in words.split():
+            known = getattr(command, "commands", None)
+            if known is None:
+                break
+            assert word in known, f"{page.name}: elbowroom {words} is no command"
+            command = known[word]
+
+
+def commands_in(page: Path) -> str:
+    """All code of a page that may hold a command line, a piece a line."""
+    text = page.read_text(encoding="utf-8")
+    indented = re.findall(r"^    (\S.*)$", text, re.MULTILINE)
+    return "\n".join([*re.findall(r"`(elbowroom [^`]+)`", text), *indented])
+
+
+def test_headings_that_code_points_to_exist() -> None:
+    for path in SOURCE.rglob("*.py"):
+        text = " ".join(path.read_text(encoding="utf-8").split())
+        for name, heading in re.findall(r'(docs/\w+\.md)(?:, "([^"]+)")?', text):
+            assert (PROJECT / name).is_file(), f"{path.name}: {name}"
+            found = f"## {heading}\n" in (PROJECT / name).read_text(encoding="utf-8")
+            assert found or not heading, f"{path.name}: {name} has no heading {heading}"
+
+
+def test_table_of_modules_names_files_that_exist() -> None:
+    text = (PROJECT / "docs" / "architecture.md").read_text(encoding="utf-8").partition("## Modules")[2]
+    for cell in re.findall(r"^\| (`[^|]+) \|", text, re.MULTILINE):
+        folder = None
+        for name in re.findall(r"`([^`]+)`", cell):
+            path = name if "/" in name else f"{folder}/{name}"
+            assert (SOURCE / path).exists(), f"architecture.md: there is no {path}"
+            folder = Path(path).parent
+
+
+def test_noise_table_has_every_preset_with_its_coefficients() -> None:
+    text = (PROJECT / "docs" / "safety.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `(\w+)` \| ([^|]+) \|", text, re.MULTILINE))
+    for name, model in NOISE_PRESETS.items():
+        told = {float(number) for number in re.findall(r"\d+\.\d+", rows[name])}
+        given = {model.constant_m, model.linear, model.quadratic, model.offset_m} - {0.0}
+        assert told == given, f"safety.md: {name}"
+
+
+def test_page_of_benchmarks_is_what_the_results_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(PROJECT / "benchmarks"))
+    rendered = runpy.run_path(str(PROJECT / "benchmarks" / "render_docs.py"))["render"]()
+    monkeypatch.delitem(sys.modules, "result_tables")
+    page = (PROJECT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    assert page == rendered, "run: python benchmarks/render_docs.py"
+
+
+def test_page_of_benchmarks_shows_what_misses_its_due_figure(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.syspath_prepend(str(PROJECT / "benchmarks"))
+    render = runpy.run_path(str(PROJECT / "benchmarks" / "render_docs.py"))["render"]
+    monkeypatch.delitem(sys.modules, "result_tables")
+    room = '"cameras": 21, "width": 640, "height": 480, "rule": "three", "detail": "pixel", "noise": false'
+    for found, words in ((96.5, "**96.50** (due ≥ 97: missed)"), (97.5, "97.50 (due ≥ 97)")):
+        row = f'{{"voxel_size_m": 0.02, {room}, "occupied_pct": 100.0, "found_pct": {found}}}'
+        text = f'{{"meta": {{"command": "c", "commit": "abc", "processor": "p"}}, "rows": [{row}]}}'
+        (tmp_path / "evaluate_room.json").write_text(text)
+        page = render(tmp_path)
+        assert words in page
+        assert "Measured by `c`; commit abc; p." in page
+        assert page.count("Not measured yet.") == 6
+
+
+@pytest.mark.parametrize("path", KERNELS, ids=module_name)
+def test_kernels_import_numbers_and_other_kernels_only(path: Path) -> None:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        for name in names:
+            is_kernel = name.startswith("elbowroom.") and name.rpartition(".")[2].startswith("_kernels")
+            assert is_kernel or name.partition(".")[0] in KERNEL_LIBRARIES, f"{path.name} imports {name}"
+
+
+def test_every_kernel_is_named_where_borders_and_types_are_checked() -> None:
+    tools = tomllib.loads((PROJECT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]
+    kernels = {module_name(path) for path in KERNELS}
+    borders = next(c for c in tools["importlinter"]["contracts"] if c["type"] == "forbidden")
+    assert set(borders["source_modules"]) == kernels
+    assert set(tools["mypy"]["overrides"][0]["module"]) == kernels
+
+
+def test_pictures_are_light() -> None:
+    for picture in (PROJECT / "docs" / "images").iterdir():
+        assert picture.stat().st_size <= 300_000, picture.name
