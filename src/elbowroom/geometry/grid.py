@@ -53,7 +53,9 @@ class VoxelGrid:
         """The smallest grid of this voxel size that starts at `lower_m` and reaches at least `upper_m` [m]."""
         lower, upper = np.asarray(lower_m, dtype=float), np.asarray(upper_m, dtype=float)
         if lower.shape != (3,) or upper.shape != (3,) or not np.isfinite([lower, upper]).all():
-            raise GridError(f"grid: corners must be three finite numbers each, got {lower_m!r} and {upper_m!r}")
+            raise GridError(
+                f"grid: corners must be three finite numbers each, got {lower_m!r} and {upper_m!r}"
+            )
         if not (np.isfinite(voxel_size_m) and voxel_size_m > 0):
             raise GridError(f"grid: voxel_size_m is {voxel_size_m}, must be above 0 [m]")
         if (upper <= lower).any():
