@@ -75,7 +75,7 @@ class Layout:
                 if (buffers.doubt is not buffers.trust) == split:
                     return self._spare.pop(position)
         texels = int(self.texel_first[-1])
-        windows = int(self.levels[-1, -1, 0] + 1)
+        windows = int(self.levels[-1, -1, 0] + 1) if self.cameras else 0
         trust = [np.zeros(size, dtype=np.uint32) for size in (texels, int(self.tile_first[-1]), windows)]
         doubt = [np.zeros_like(array) for array in trust] if split else trust
         return _Buffers(trust[0], doubt[0], trust[1], doubt[1], trust[2], doubt[2])
