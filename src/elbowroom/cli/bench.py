@@ -29,7 +29,9 @@ def bench(
     for column in ("case", "voxel", "detail", "noise", "median", "99 %", "worst", "memory", "ratio"):
         table.add_column(column, justify="left" if column in ("case", "detail", "noise") else "right")
     with json_rows(json) as add, Console(stderr=True).status("rendering the room") as status:
-        for row in bench_rows(cases, cameras=cameras, size=size, threads=threads, octomap=octomap and not quick):
+        for row in bench_rows(
+            cases, cameras=cameras, size=size, threads=threads, octomap=octomap and not quick
+        ):
             add(row)
             status.update(f"{row['case']} at {row['voxel_size_m'] * 100:g} cm, {row['detail']}: done")
             slower = row.get("times_slower_than_carve")

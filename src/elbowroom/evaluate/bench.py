@@ -110,7 +110,9 @@ def _in_own_process(scene_file: Path, case: Case, threads: int | None) -> list[d
         "rounds": case.rounds,
     }
     done = subprocess.run(
-        [sys.executable, "-m", "elbowroom.evaluate.bench_case", json.dumps(given)], capture_output=True, text=True
+        [sys.executable, "-m", "elbowroom.evaluate.bench_case", json.dumps(given)],
+        capture_output=True,
+        text=True,
     )
     if done.returncode:
         last = (done.stderr.strip().splitlines() or ["no message"])[-1]

@@ -4,7 +4,7 @@ import json
 import resource
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -80,7 +80,7 @@ def run_case(
     grid = VoxelGrid.covering((-2.0, -2.0, 0.0), (2.0, 2.0, 2.5), voxel_size_m)
     motions = joint_motions(machine, SPEEDS, BRAKING_TIME_S)
     cycle = Cycle(grid, cameras, machine, motions, detail=detail, threads=threads)  # type: ignore[arg-type]
-    stages: list[dict[str, float]] = []
+    stages: list[Mapping[str, float]] = []
 
     def pass_once(n: int) -> None:
         m = n % len(moments)
@@ -110,7 +110,13 @@ def run_case(
     measured = [("carve", carves), ("cycle", cycles)]
     measured += [(f"cycle/{name}", [stage[name] for stage in stages[2:]]) for name in stages[-1]]
     return [
-        {"case": case, **shared, **_summary(spent), "peak_rss_mb": peak, "ratio": float(np.median(spent)) / against}
+        {
+            "case": case,
+            **shared,
+            **_summary(spent),
+            "peak_rss_mb": peak,
+            "ratio": float(np.median(spent)) / against,
+        }
         for case, spent in measured
     ]
 

@@ -45,7 +45,8 @@ def split_recording(site: Site, voxel_size_m: float) -> CheckViews:
     grid = VoxelGrid.covering(grid.lower_m, grid.upper_m, voxel_size_m)
     moment = next(iter(moments(site)))
     points = [
-        camera.points_in_world(frame.depth_m)[_valid(camera, frame)] for camera, frame in excluded_frames(site)
+        camera.points_in_world(frame.depth_m)[_valid(camera, frame)]
+        for camera, frame in excluded_frames(site)
     ]
     if not points:
         raise SiteError(f"{site.path}: recording.exclude is empty, some views must be left out to check with")
@@ -80,7 +81,9 @@ def sevenscenes_rows(path: Path, voxel_sizes_m: tuple[float, ...]) -> Iterator[d
         plain = tuple(replace(camera, flying_pixels=False) for camera in views.cameras)
         for name, cameras, margin in (("site", views.cameras, views.margin), ("narrow", plain, NARROW)):
             for detail in DETAILS:
-                evidence = carve(views.grid, cameras, views.frames, detail=detail, margin=margin, complete=True)
+                evidence = carve(
+                    views.grid, cameras, views.frames, detail=detail, margin=margin, complete=True
+                )
                 for rule in RULES:
                     space = resolve(evidence, cameras, rule=rule, detail=detail, margin=margin)
                     free_pct, false_pct = rates(views, space)
