@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
+from trimesh.exchange.stl import export_stl
 
 Points = NDArray[np.float64]
 
@@ -187,7 +188,7 @@ def build(folder: Path = HERE) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for link, parts in bodies().items():
         for index, body in enumerate(parts):
-            (folder / f"{link}_{index}.stl").write_bytes(body.export(file_type="stl"))
+            (folder / f"{link}_{index}.stl").write_bytes(export_stl(body))
     (folder / "ceiling_c_arm.urdf").write_text(urdf(), encoding="utf-8")
 
 
