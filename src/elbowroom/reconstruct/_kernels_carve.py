@@ -11,6 +11,7 @@ from numba.cpython.unsafe.numbers import trailing_zeros
 from elbowroom.reconstruct._kernels_box import (
     ALL,
     BLANK,
+    CROSSING,
     FAR,
     FLOATS,
     GREATEST,
@@ -23,7 +24,6 @@ from elbowroom.reconstruct._kernels_box import (
     SIZE,
     SPLIT,
     STATE,
-    CROSSING,
     U,
     V,
     bound_inside,
@@ -106,7 +106,9 @@ def _contested(floats, unsure, partly):
 
 
 @njit(cache=True, nogil=True)
-def _ask(numbers, levels, offset, trust, c, scale, x, y, z, edge, keep_partly, floats, ints, flags, flag_words):
+def _ask(
+    numbers, levels, offset, trust, c, scale, x, y, z, edge, keep_partly, floats, ints, flags, flag_words
+):
     """Words (through, unsure) of the 64 children of a cube, and whether the cube lies partly outside the image."""
     px, py, pz, state = place_cube(numbers, c, scale, x, y, z, edge)
     if state == OUTSIDE:

@@ -18,7 +18,7 @@ from elbowroom.reconstruct.views import fill, layout_of
 from elbowroom.sensing import DepthFrame
 
 Detail = Literal["footprint", "pixel", "point"]
-DETAILS: tuple[str, ...] = get_args(Detail)
+DETAILS: tuple[Detail, ...] = get_args(Detail)
 _CODES = {"point": kernels.POINT, "footprint": kernels.FOOTPRINT, "pixel": kernels.PIXEL}
 SHARES_PER_THREAD = 8
 

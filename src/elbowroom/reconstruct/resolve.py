@@ -15,7 +15,7 @@ from elbowroom.reconstruct.evidence import Evidence, merge
 from elbowroom.reconstruct.free_space import FreeSpace, Source
 
 Rule = Literal["three", "majority", "veto", "any"]
-RULES: tuple[str, ...] = get_args(Rule)
+RULES: tuple[Rule, ...] = get_args(Rule)
 LAWFUL: tuple[str, ...] = ("three", "majority")
 """Rules by which less evidence never adds free space."""
 
@@ -110,7 +110,7 @@ def resolve(
         body = body_words(machine, joints, evidence.grid, threads=threads) & ~evidence.unexplained
         free = free | body
     blocked = ~free & bits.inside(evidence.grid)
-    surface = (evidence.surface | evidence.unexplained) & blocked
+    surface: Words = (evidence.surface | evidence.unexplained) & blocked
     return FreeSpace(
         evidence.grid,
         free,

@@ -153,9 +153,7 @@ def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin)
         shapes.append(own_shapes)
         texel_first[c + 1] = texel_first[c] + camera.width * camera.height
         tile_first[c + 1] = tile_first[c] + own_shapes[TILE_LEVEL][0] * own_shapes[TILE_LEVEL][1]
-    return Layout(
-        grid, cameras, numbers, levels, offset, texel_first, tile_first, shapes, bits.inside(grid)
-    )
+    return Layout(grid, cameras, numbers, levels, offset, texel_first, tile_first, shapes, bits.inside(grid))
 
 
 def _levels_of(camera: DepthCamera) -> int:

@@ -23,6 +23,10 @@ def warm_up(machine: Machine | None = None) -> None:
         for name, noise in (("exact", None), ("noisy", NoiseModel(0.001)))
     ]
     frames = [DepthFrame(camera.name, 0, np.full((24, 32), 1.1, dtype=np.float32)) for camera in cameras]
-    middle = None if machine is None else {j.name: min(max(0.0, j.lower), j.upper) for j in map(machine.joint, machine.joint_names)}
+    middle = (
+        None
+        if machine is None
+        else {j.name: min(max(0.0, j.lower), j.upper) for j in map(machine.joint, machine.joint_names)}
+    )
     for detail in DETAILS:
         reconstruct(grid, cameras, frames, machine=machine, joints=middle, detail=detail, threads=1)
