@@ -20,9 +20,7 @@ some_ways = st.sets(st.sampled_from(WAYS), min_size=1)
 def a_room(seed, cameras=None):
     """A random room with frames at NOW; in half of the rooms cameras have noise and filter flying pixels."""
     noise = NoiseModel(0.003, 0.0, 0.002) if seed % 2 else None
-    rng, grid, group, scene, frames = scenes.random_room(
-        seed, cameras, noise=noise, flying_pixels=seed % 3 != 0
-    )
+    rng, grid, group, _, frames = scenes.random_room(seed, cameras, noise=noise, flying_pixels=seed % 3 != 0)
     return rng, grid, group, [DepthFrame(frame.camera, NOW, frame.depth_m) for frame in frames]
 
 

@@ -146,7 +146,7 @@ class Boxes:
             here = tuple(int(bound[int(self.v[lane]), int(self.u[lane])]) for bound in self.image.doubt)
             says[lane] |= BLIND if np.isinf(greatest[lane]) else 0
             measured = here[1] * self.image.quantum
-            if NEUTRAL != here and here[1] != NO_RETURN and self.near[lane] <= measured <= self.far[lane]:
+            if here != NEUTRAL and here[1] != NO_RETURN and self.near[lane] <= measured <= self.far[lane]:
                 says[lane] |= SURFACE
         return says
 
