@@ -6,6 +6,7 @@ import runpy
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 import typer
@@ -48,6 +49,24 @@ def test_readme_has_the_two_commands_word_for_word() -> None:
     lines = (PROJECT / "README.md").read_text(encoding="utf-8").splitlines()
     commands = [line.strip() for line in lines if line.strip().startswith("python3 -m venv")]
     assert commands == [MAIN_COMMAND, TEST_COMMAND]
+
+
+def test_example_of_the_readme_answers_what_it_says(capsys: pytest.CaptureFixture[str]) -> None:
+    blocks = re.findall(
+        r"```python\n(.*?)```", (PROJECT / "README.md").read_text(encoding="utf-8"), re.DOTALL
+    )
+    (example,) = blocks
+    names: dict[str, Any] = {}
+    exec(compile(example, "README.md", "exec"), names)
+    space, verdict = names["space"], names["verdict"]
+    told = re.search(r"verdict\.cause  # (.*)$", example, re.MULTILINE)
+    assert told is not None
+    assert told[1] == f'{verdict.level}, "{verdict.band}", {verdict.free_travel}, {verdict.cause}'
+    assert "is free\n  north: sees through it" in capsys.readouterr().out
+    assert space.free.shape == (200, 200, 125)
+    assert (space.free.astype(int) + space.surface + space.unseen == 1).all()
+    assert (names["truth"].free | space.surface).all()
+    assert names["lidar"].cameras == ("lidar-1",)
 
 
 def test_continuous_integration_runs_the_test_command_of_the_readme() -> None:
