@@ -63,14 +63,16 @@ class Boxes:
                 rz, rn = F(1) / self.z, F(1) / near
                 self.u = np.floor(self.x * rz + (F(lens.cx) + F(0.5)))
                 self.v = np.floor(self.y * rz + (F(lens.cy) + F(0.5)))
-                aside = np.maximum(
-                    (np.abs(self.x) + self.ex) * rn - np.abs(self.x) * rz,
-                    (np.abs(self.y) + self.ey) * rn - np.abs(self.y) * rz,
-                )
-                widest = max(int((aside * F(1024)).max()), 0) / 1024
-                reach = int(np.ceil(widest + image.lateral_px + 1.5 + 0.02)) - 1
+                counted = np.ones(64, dtype=bool)
             else:
-                reach = self._place_partly(lens, near, far, last)
+                rz, rn, counted = self._place_partly(lens, near, far, last)
+        # from the middle to the farther side, where the pixel's own place may cost 1.5 pixels more
+        aside = np.maximum(
+            (np.abs(self.x) + self.ex) * rn - np.abs(self.x) * rz,
+            (np.abs(self.y) + self.ey) * rn - np.abs(self.y) * rz,
+        )
+        widest = int((np.where(counted, np.minimum(aside, F(32768)), F(0)) * F(1024)).max()) / 1024
+        reach = np.ceil(widest + image.lateral_px + 1.5 + 0.02) - 1
         self.level = image.lowest
         while (2 << self.level) < reach:
             self.level += 1
@@ -94,7 +96,7 @@ class Boxes:
             first = np.minimum(low * rn, low * rf) + offset - lateral
             final = np.maximum(high * rn, high * rf) + offset + lateral
             spans.append((np.floor(np.clip(first, -1, end + 1)), np.ceil(np.clip(final, -1, end + 1))))
-            middle = np.clip(np.floor(at * rz + offset + F(0.5)), 0, end)
+            middle = np.clip(np.floor(at * rz + (offset + F(0.5))), 0, end)
             centres.append(np.where(ahead, middle, F(0)))
         (u0, u1), (v0, v1) = spans
         visible = (u1 >= 0) & (u0 <= last[0]) & (v1 >= 0) & (v0 <= last[1])
@@ -102,11 +104,7 @@ class Boxes:
         ahead_state = np.where(visible, np.where(whole, INSIDE, PARTLY), OUTSIDE)
         self.state = np.where(ahead, ahead_state, np.where(far <= 0, OUTSIDE, CROSSING))
         self.u, self.v = centres
-        needed = [
-            np.maximum(centre - np.maximum(first, 0), np.minimum(final, end) - centre)
-            for centre, (first, final), end in zip(centres, spans, last, strict=True)
-        ]
-        return int(max(np.where(visible & ahead, np.maximum(*needed), 0).max(), 0))
+        return rz, rn, visible & ahead
 
     def looked_up(self, bounds):
         """Least and greatest depth [m] in each lane's window."""

@@ -24,6 +24,8 @@ SLOP_REL = np.float32(2e-6)
 """Relative allowance on depth bounds for the same reason."""
 PLANE_EPS = np.float32(1e-3)
 """A box nearer to the camera's plane than this [m] counts as crossing it."""
+WIDEST_PX = np.float32(32768)
+"""More than any image has."""
 ALL = np.uint64(0xFFFFFFFFFFFFFFFF)
 GATHER = np.uint64(0x0102040810204080)
 ZERO, ONE_F, HALF = np.float32(0), np.float32(1), np.float32(0.5)
@@ -102,9 +104,12 @@ def place_cube(numbers, c, scale, x, y, z, edge):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _choose_windows(numbers, levels, c, reach, floats, ints):
-    """Points each lane at the window around its centre pixel that reaches at least `reach` pixels to every side."""
+    """Points each lane at the window around its centre pixel that reaches at least `reach` pixels to every side.
+
+    At the last level all of the image is one texel.
+    """
     level = int(numbers[c, LOWEST])
-    while (2 << level) < reach:
+    while (2 << level) < reach and level < levels.shape[1] - 1:
         level += 1
     first, stride = np.int32(levels[c, level, 0]), np.int32(levels[c, level, 1])
     shift = np.int32(level)
@@ -176,6 +181,7 @@ def bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
     """The same for a cube that the image's edge or the camera's plane cuts; row STATE says where each child lies."""
     fx, fy = np.float32(numbers[c, LENS + 0]), np.float32(numbers[c, LENS + 1])
     ox, oy = np.float32(numbers[c, LENS + 2]), np.float32(numbers[c, LENS + 3])
+    ox_half, oy_half = ox + HALF, oy + HALF
     ex, ey, ez = (
         np.float32(numbers[c, HALF_EXTENT + 4 * scale]) * fx,
         np.float32(numbers[c, HALF_EXTENT + 4 * scale + 1]) * fy,
@@ -206,15 +212,17 @@ def bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
         state = (INSIDE if whole else PARTLY) if visible else OUTSIDE
         behind = OUTSIDE if far <= ZERO else CROSSING
         floats[STATE + lane] = state if in_front else behind
-        u = min(max(np.floor(x * rz + ox + HALF), ZERO), last_u) if in_front else ZERO
-        v = min(max(np.floor(y * rz + oy + HALF), ZERO), last_v) if in_front else ZERO
+        u = min(max(np.floor(x * rz + ox_half), ZERO), last_u) if in_front else ZERO
+        v = min(max(np.floor(y * rz + oy_half), ZERO), last_v) if in_front else ZERO
         floats[U + lane] = u
         floats[V + lane] = v
-        aside = max(u - max(u0, ZERO), min(u1, last_u) - u)
-        above = max(v - max(v0, ZERO), min(v1, last_v) - v)
-        needed = max(aside, above) if visible & in_front else ZERO
-        reach = max(reach, np.int32(needed))
-    _choose_windows(numbers, levels, c, reach, floats, ints)
+        wide = (abs(x) + ex) * rn - abs(x) * rz
+        high = (abs(y) + ey) * rn - abs(y) * rz
+        needed = min(max(wide, high), WIDEST_PX) if visible & in_front else ZERO
+        reach = max(reach, np.int32(needed * np.float32(1024)))
+    # as of a cube inside the image: one that a wider margin moves to its edge must not get smaller windows
+    pixels = int(np.ceil(reach / 1024.0 + numbers[c, LATERAL] + 1.5 + 2 * SLOP_PX)) - 1
+    _choose_windows(numbers, levels, c, pixels, floats, ints)
     _add_margin(numbers, offset, c, scale, px, py, pz, floats)
 
 
