@@ -114,9 +114,7 @@ def _not_reached(s, u, v, t):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def settle_voxel(
-    numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile_first, x, y, z, edge, s
-):
+def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile_first, x, y, z, edge, s):
     """What camera c says of the voxel around (x, y, z): a sum of THROUGH or DISPUTES, IS_SURFACE, IS_BLIND; or 0.
 
     `first` and `tile_first` are where the camera's pixels and tiles begin; `s` is a scratch array of PIXEL_FLOATS.
@@ -219,11 +217,15 @@ def settle_voxel(
                     least = doubtful >> np.uint32(16)
                     if greatest == NO_RETURN:
                         answer |= DISPUTES | IS_BLIND
-                    elif greatest <= hidden_to or _not_reached(s, u, v, (greatest * quantum + margin) / steep_near):
+                    elif greatest <= hidden_to or _not_reached(
+                        s, u, v, (greatest * quantum + margin) / steep_near
+                    ):
                         hidden = True
                     elif least >= clear_from or _has_left(s, u, v, (least * quantum - margin) / steep_far):
                         seen_past = True
-                    elif greatest >= clear_from or _has_left(s, u, v, (greatest * quantum - margin) / steep_far):
+                    elif greatest >= clear_from or _has_left(
+                        s, u, v, (greatest * quantum - margin) / steep_far
+                    ):
                         answer |= DISPUTES
                     else:
                         return DISPUTES | IS_SURFACE
