@@ -31,8 +31,8 @@ GATHER = np.uint64(0x0102040810204080)
 ZERO, ONE_F, HALF = np.float32(0), np.float32(1), np.float32(0.5)
 
 # columns of Views.numbers: camera_from_world (3 x 4), then these
-LENS, SIZE, MARGIN, LATERAL, QUANTUM, RADIAL, BLANK, LOWEST, SPLIT, HALF_EXTENT, CENTRE, TURN, COLUMNS = (
-    12, 16, 18, 23, 24, 25, 26, 27, 28, 29, 37, 40, 52,
+LENS, SIZE, MARGIN, LATERAL, QUANTUM, RADIAL, BLANK, LOWEST, SPLIT, HALF_EXTENT, CENTRE, TURN, COSINE, COLUMNS = (
+    12, 16, 18, 23, 24, 25, 26, 27, 28, 29, 37, 40, 52, 53,
 )  # fmt: skip
 
 
@@ -44,7 +44,7 @@ class Views(NamedTuple):
     whether `doubt` differs from `trust`, half extents of a voxel along the camera axes and its half diagonal [m], the
     same of a block of 4 voxels, the camera's centre in the world [m], and how a pixel's
     direction turns in the world: d_a = D0 + D1 u + D2 v along axis a, and its half width over a widened pixel, as
-    D0 (3), D1 (3), D2 (3), half width (3).
+    D0 (3), D1 (3), D2 (3), half width (3); least cosine between a pixel's ray and the optical axis.
     levels (n, levels, 2) int64: where each level of windows begins, and its row length.
     offset (n, 2, 3, 64) float32: from child 0 to each child of a block (0) or cube (1), in camera axes, x times fx and
     y times fy. trust: windows over all pixels, what may be carved. doubt: over unexplained pixels, what disputes.

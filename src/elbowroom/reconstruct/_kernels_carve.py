@@ -11,16 +11,19 @@ from numba.cpython.unsafe.numbers import trailing_zeros
 from elbowroom.reconstruct._kernels_box import (
     ALL,
     BLANK,
+    COSINE,
     CROSSING,
     FAR,
     FLOATS,
     GREATEST,
+    HALF_EXTENT,
     INSIDE,
     INTS,
     LEAST,
     NEAR,
     OUTSIDE,
     QUANTUM,
+    RADIAL,
     SIZE,
     SPLIT,
     STATE,
@@ -48,6 +51,8 @@ ONE, TWO, THREE, DISPUTED, SURFACE, BLIND = range(6)
 PLANES = 6
 POINT, FOOTPRINT, PIXEL = range(3)
 NOTHING = np.uint64(0)
+ROUNDING_M = 2e-5
+"""More than float32 can err in the depth of a voxel [m]."""
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -62,6 +67,15 @@ def _count_through(planes, word, mask):
 def _tally(counts, word, mask):
     for lane in range(64):
         counts[word, lane] += np.uint8((mask >> np.uint64(lane)) & np.uint64(1))
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _make_canonical(planes, word):
+    """Where three see through, nothing else is said; where there is a surface, blindness is not."""
+    open_voxels = ~planes[THREE, word]
+    planes[DISPUTED, word] &= open_voxels
+    planes[SURFACE, word] &= open_voxels
+    planes[BLIND, word] &= open_voxels & ~planes[SURFACE, word]
 
 
 @njit(cache=True, nogil=True)
@@ -86,6 +100,37 @@ def _measured_at_centre(numbers, c, first, doubt_texels, unsure, partly, floats)
         if floats[NEAR + lane] <= greatest * quantum <= floats[FAR + lane]:
             surface |= bit
     return surface, blind
+
+
+@njit(cache=True, nogil=True)
+def _sort_out(numbers, c, scale_edge, first, trust_texels, doubt_texels, unsure, floats):
+    """What one look at the middle pixel settles of unsure voxels: words (surely a surface, surely not through).
+
+    The ray through a voxel's centre lies in the cone of the pixel that the centre projects to, and runs inside the
+    voxel for at least half an edge to both sides of it. So a return there makes the pixel test say *surface*, and one
+    before the centre keeps it from saying *through*, whatever the other pixels hold. All voxels lie wholly in view.
+    """
+    surface, stopped = NOTHING, NOTHING
+    width = int(numbers[c, SIZE])
+    quantum = numbers[c, QUANTUM]
+    radial = numbers[c, RADIAL] != 0.0
+    extent = numbers[c, HALF_EXTENT + 3] if radial else numbers[c, HALF_EXTENT + 2]
+    inner = 0.5 * scale_edge * (1.0 if radial else numbers[c, COSINE])
+    rest = unsure
+    while rest:
+        lane = np.int64(trailing_zeros(rest))
+        bit = np.uint64(1) << np.uint64(lane)
+        rest &= ~bit
+        at = 0.5 * (np.float64(floats[NEAR + lane]) + np.float64(floats[FAR + lane]))
+        margin = 0.5 * (np.float64(floats[FAR + lane]) - np.float64(floats[NEAR + lane])) - extent - ROUNDING_M
+        pixel = first + int(floats[V + lane]) * width + int(floats[U + lane])
+        texel = doubt_texels[pixel]
+        greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
+        if texel != NEUTRAL and greatest != NO_RETURN and abs(greatest * quantum - at) < inner + margin - ROUNDING_M:
+            surface |= bit
+        elif (trust_texels[pixel] >> np.uint32(16)) * quantum < at + margin - ROUNDING_M:
+            stopped |= bit
+    return surface, stopped
 
 
 @njit(cache=True, nogil=True)
@@ -152,6 +197,8 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
     through = np.empty(cameras, dtype=np.uint64)
     mixed = np.empty(cameras, dtype=np.uint64)
     undecided = np.empty(cameras, dtype=np.uint64)
+    unsettled = np.empty((cameras, 64), dtype=np.uint64)
+    stopped = np.empty((cameras, 64), dtype=np.uint64)
     edge = lattice.edge
     block = 4.0 * edge
     for cube in cubes:
@@ -178,22 +225,29 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
             )
         for lane in range(64):
             word = cube * 64 + lane
+            here = np.uint64(1) << np.uint64(lane)
             if not inside[word]:
                 continue
-            here = np.uint64(1) << np.uint64(lane)
             for c in range(cameras):
                 if through[c] & here:
                     _count_through(planes, word, ALL)
                     if complete:
                         _tally(through_count, word, ALL)
-            bx = x + (lane >> 4) * block + 0.5 * edge
-            by = y + ((lane >> 2) & 3) * block + 0.5 * edge
-            bz = z + (lane & 3) * block + 0.5 * edge
-            for c in range(cameras):
-                undecided[c] = NOTHING
+        # camera by camera, so that the part of its image that the cube covers stays in the cache
+        for c in range(cameras):
+            blocks = mixed[c]
+            undecided[c] = NOTHING
+            while blocks:
+                lane = np.int64(trailing_zeros(blocks))
+                here = np.uint64(1) << np.uint64(lane)
+                blocks &= ~here
+                word = cube * 64 + lane
                 open_voxels = inside[word] if complete else inside[word] & ~planes[THREE, word]
-                if not mixed[c] & here or not open_voxels:
+                if not open_voxels:
                     continue
+                bx = x + ((lane >> 4) * 4 + 0.5) * edge
+                by = y + (((lane >> 2) & 3) * 4 + 0.5) * edge
+                bz = z + ((lane & 3) * 4 + 0.5) * edge
                 seen, unsure, partly = _ask(
                     numbers,
                     levels,
@@ -216,14 +270,26 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
                 _count_through(planes, word, seen)
                 if complete:
                     _tally(through_count, word, seen)
+                if not unsure:
+                    continue
                 if numbers[c, BLANK] != 0.0:
                     planes[DISPUTED, word] |= unsure
                     planes[BLIND, word] |= unsure
                     if complete:
                         _tally(dispute_count, word, unsure)
                 elif detail == PIXEL:
-                    undecided[c] = unsure
-                elif unsure:
+                    surface, stopped[c, lane] = NOTHING, NOTHING
+                    if not partly:
+                        surface, stopped[c, lane] = _sort_out(
+                            numbers, c, edge, texel_first[c], trust_texels, doubt_texels, unsure, floats
+                        )
+                        planes[DISPUTED, word] |= surface
+                        planes[SURFACE, word] |= surface
+                        if complete:
+                            _tally(dispute_count, word, surface)
+                    undecided[c] |= here
+                    unsettled[c, lane] = unsure & ~surface
+                else:
                     if numbers[c, SPLIT] != 0.0:
                         look_up(doubt, numbers[c, QUANTUM], floats, ints)
                         unsure = _contested(floats, unsure, partly)
@@ -235,9 +301,22 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
                     planes[BLIND, word] |= blind
                     if complete:
                         _tally(dispute_count, word, unsure)
-            if detail == PIXEL:
-                for c in range(cameras):
-                    rest = undecided[c] if complete else undecided[c] & ~planes[THREE, word]
+        # first those that may see through: where three do, the others need not be asked, nor where there is a surface
+        for turn in range(2):
+            for c in range(cameras):
+                blocks = undecided[c]
+                while blocks:
+                    lane = np.int64(trailing_zeros(blocks))
+                    blocks &= ~(np.uint64(1) << np.uint64(lane))
+                    word = cube * 64 + lane
+                    if turn == 0:
+                        rest = unsettled[c, lane] & ~stopped[c, lane]
+                    else:
+                        rest = unsettled[c, lane] & stopped[c, lane]
+                    if not complete:
+                        rest &= ~planes[THREE, word]
+                        if turn == 1:
+                            rest &= ~planes[SURFACE, word]
                     if not rest:
                         continue
                     seen, disputed, surface, blind = settle_word(
@@ -250,24 +329,22 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
                         doubt_tiles,
                         tile_first[c],
                         rest,
-                        bx,
-                        by,
-                        bz,
+                        x + ((lane >> 4) * 4 + 0.5) * edge,
+                        y + (((lane >> 2) & 3) * 4 + 0.5) * edge,
+                        z + ((lane & 3) * 4 + 0.5) * edge,
                         edge,
                         scratch,
                     )
                     planes[SURFACE, word] |= surface
                     planes[BLIND, word] |= blind
-                    _count_through(planes, word, seen)
                     planes[DISPUTED, word] |= disputed
+                    _count_through(planes, word, seen)
                     if complete:
                         _tally(through_count, word, seen)
                         _tally(dispute_count, word, disputed)
+        for word in range(cube * 64, cube * 64 + 64):
             if not complete:
-                unsettled = ~planes[THREE, word]
-                planes[DISPUTED, word] &= unsettled
-                planes[SURFACE, word] &= unsettled
-                planes[BLIND, word] &= unsettled
+                _make_canonical(planes, word)
             for plane in range(PLANES):
                 planes[plane, word] &= inside[word]
 
@@ -314,7 +391,4 @@ def carve_points(cubes, lattice, inside, views, detail, complete, planes, throug
                     _tally(through_count, word, seen)
                     _tally(dispute_count, word, disputed)
             if not complete:
-                unsettled = ~planes[THREE, word]
-                planes[DISPUTED, word] &= unsettled
-                planes[SURFACE, word] &= unsettled
-                planes[BLIND, word] &= unsettled
+                _make_canonical(planes, word)

@@ -113,6 +113,29 @@ def _not_reached(s, u, v, t):
     return False
 
 
+@njit(cache=True, nogil=True)
+def _bounds(texels, first, width, ua, ub, va, vb):
+    """Least and greatest depth over at least a rectangle of texels, ends included, in quanta; eight at a time.
+
+    Rows of fewer than eight texels are not bounded.
+    """
+    if width < 8:
+        return np.uint32(0), np.uint32(NO_RETURN)
+    mask = np.uint32(0xFFFF)
+    least, low = NEUTRAL, mask
+    u = min(ua, width - 8)
+    while True:
+        for v in range(va, vb + 1):
+            at = first + v * width + u
+            for n in range(8):
+                least = min(least, texels[at + n])
+                low = min(low, texels[at + n] & mask)
+        if u + 7 >= ub:
+            break
+        u = min(u + 8, width - 8)
+    return least >> np.uint32(16), np.uint32(NO_RETURN) - low
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile_first, x, y, z, edge, s):
     """What camera c says of the voxel around (x, y, z): a sum of THROUGH or DISPUTES, IS_SURFACE, IS_BLIND; or 0.
@@ -169,6 +192,14 @@ def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile
     quantum = numbers[c, QUANTUM]
     clear_from = np.uint32(min((far + margin) / quantum + 2.0, 65535.0))
     hidden_to = np.uint32(max((near - margin) / quantum - 2.0, 0.0))
+    if ub - ua < 8:
+        least, most = _bounds(trust, first, width, ua, ub, va, vb)
+    else:
+        least, most = _bounds(trust_tiles, tile_first, tiles_across, ua >> 2, ub >> 2, va >> 2, vb >> 2)
+    if least >= clear_from:
+        return THROUGH if whole else 0
+    if most <= hidden_to:
+        return 0
     lines = _prepare(numbers, c, x, y, z, edge, s)
     blocked = False
     seen_past, hidden = False, False

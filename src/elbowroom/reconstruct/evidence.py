@@ -25,7 +25,7 @@ class Evidence:
     """What some cameras know of each voxel of a grid.
 
     Without counts (enough for rule `three`) evidence is canonical: where three cameras see through, no other plane
-    says anything. With counts every camera was asked of every voxel, as the other rules need.
+    says anything, and where there is a surface, blindness is not told. With counts every camera was asked of every voxel, as the other rules need.
 
     Args:
         grid: the watched box.
@@ -54,6 +54,7 @@ class Evidence:
         object.__setattr__(self, "cameras", names)
         if self.counts is None:
             self.planes[DISPUTED:] &= ~self.planes[THREE]
+            self.planes[BLIND] &= ~self.planes[SURFACE]
         for array in (self.planes, self.unexplained):
             array.setflags(write=False)
 

@@ -133,6 +133,9 @@ def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin)
         turn[0] = rotation[2] - along_u * k.cx - along_v * k.cy
         turn[1:3] = along_u, along_v
         turn[3] = (np.abs(along_u) + np.abs(along_v)) * (0.5 + own.lateral_px)
+        aside = max(k.cx + 0.5, camera.width - 0.5 - k.cx) / k.fx
+        above = max(k.cy + 0.5, camera.height - 0.5 - k.cy) / k.fy
+        row[box.COSINE] = 1.0 / np.sqrt(1.0 + aside**2 + above**2)
         middle = float(np.linalg.norm(grid.lower_m / 2 + grid.upper_m / 2 - camera.centre_in_world))
         # windows over single pixels only where voxels of the middle of the grid are that small
         row[box.LOWEST] = 0 if 0.5 * grid.voxel_size_m * k.fx < max(middle, 1e-3) else 1
