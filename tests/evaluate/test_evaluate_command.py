@@ -88,6 +88,7 @@ def test_poses_compares_each_verdict_with_exact_geometry(tmp_path, capsys):
     assert run(["evaluate", "poses", "--poses", "2", *SMALL, "--json", str(out)]) == 0
     *verdicts, summary = rows_of(out)
     assert len(verdicts) == summary["verdicts"] == 16
+    assert (summary["voxel_size_m"], summary["detail"], summary["width"]) == (0.1, "pixel", 64)
     assert all(row["milder"] == (row["free_travel"] > row["true_travel"] + 1e-9) for row in verdicts)
     assert summary["milder"] == sum(row["milder"] for row in verdicts) == 0
     assert "milder than exact geometry" in capsys.readouterr().out
@@ -101,7 +102,7 @@ def test_travel_in_the_true_volume_is_never_more_than_exact(tmp_path, capsys):
         == 0
     )
     *motions, summary = rows_of(out)
-    assert (summary["poses"], summary["motions"]) == (8, 64)
+    assert (summary["voxel_size_m"], summary["poses"], summary["motions"]) == (0.05, 8, 64)
     assert summary["more_than_truth"] == 0
     assert all(row["free_travel"] <= row["true_travel"] + 1e-9 for row in motions)
     assert summary["touching"] == sum(row["true_solid"] is not None for row in motions) > 0

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.evaluate.scene import room_grid, room_motions
+from elbowroom.evaluate.scene import room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.carve import Detail
@@ -72,11 +72,11 @@ def alone_summary(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """A row of kind "summary" for each voxel size in rows of `alone_rows`: its verdicts by level."""
     summary = []
     for edge in dict.fromkeys(row["voxel_size_m"] for row in rows):
-        levels = [row["level"] for row in rows if row["voxel_size_m"] == edge]
+        of_edge = [row for row in rows if row["voxel_size_m"] == edge]
+        levels = [row["level"] for row in of_edge]
         summary.append(
             {
-                "kind": "summary",
-                "voxel_size_m": edge,
+                **settings_of(of_edge),
                 "poses": len({row["pose"] for row in rows}),
                 "verdicts": len(levels),
                 **{level.name.lower(): levels.count(level.name.lower()) for level in Level},

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.evaluate.exact import ExactTravel
-from elbowroom.evaluate.scene import Comparison, room_grid, room_motions
+from elbowroom.evaluate.scene import Comparison, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.carve import Detail
@@ -81,7 +81,7 @@ def poses_summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     clear = [row["level"] for row in rows if row["truly_clear"]]
     ranks = {level.name.lower(): level.rank for level in Level}
     return {
-        "kind": "summary",
+        **settings_of(rows),
         "poses": len({row["pose"] for row in rows}),
         "verdicts": len(rows),
         "milder": sum(row["milder"] for row in rows),

@@ -1,6 +1,8 @@
 """What the evaluations of motions share: the room's motions, and a verdict beside the truth."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from elbowroom.evaluate.exact import Contact
 from elbowroom.evaluate.room import ROOM_LOWER_M, ROOM_UPPER_M
@@ -21,6 +23,12 @@ def room_grid(voxel_size_m: float) -> VoxelGrid:
 def room_motions(machine: Machine) -> tuple[Motion, ...]:
     """Every joint in both directions, with the speeds and braking times of the simulated room's site file."""
     return tuple(Site.simulated_room().motions(machine))
+
+
+def settings_of(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """What a summary says of how its rows were made: its kind, and the rows' voxel size, detail and cameras."""
+    names = ("voxel_size_m", "detail", "cameras", "width", "height")
+    return {"kind": "summary", **{name: rows[0][name] for name in names if rows and name in rows[0]}}
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.evaluate.exact import ExactTravel
-from elbowroom.evaluate.scene import SAME, room_grid, room_motions
+from elbowroom.evaluate.scene import SAME, room_grid, room_motions, settings_of
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
 from elbowroom.simulate import InterventionRoom, true_occupancy
@@ -74,7 +74,7 @@ def travel_summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     shortfalls = [row["shortfall_voxels"] for row in rows if row["shortfall_voxels"] is not None]
     untouched = [row for row in rows if row["shortfall_voxels"] is None]
     return {
-        "kind": "summary",
+        **settings_of(rows),
         "poses": len({row["pose"] for row in rows}),
         "motions": len(rows),
         "more_than_truth": sum(row["free_travel"] > row["true_travel"] + SAME for row in rows),
