@@ -12,9 +12,11 @@ def planes_by_counting(says, complete):
         here = [int(say[voxel]) for say in says]
         through = sum(bool(say & THROUGH) for say in here)
         planes[(slice(0, 3), *voxel)] = [through >= n for n in (1, 2, 3)]
-        if complete or through < 3:
-            for plane, kind in ((3, DISPUTES), (4, SURFACE), (5, BLIND)):
-                planes[(plane, *voxel)] = any(say & kind for say in here)
+        disputed, measured, blind = (any(say & kind for say in here) for kind in (DISPUTES, SURFACE, BLIND))
+        if complete:
+            planes[(slice(3, 6), *voxel)] = disputed, measured, blind
+        elif through < 3:
+            planes[(slice(3, 6), *voxel)] = disputed, measured, blind and not measured
     return planes
 
 
