@@ -136,7 +136,7 @@ def ray_cast(triangles, camera):
 
 
 def explain(model, depth, camera, tolerance_m, sigmas):
-    """Pixel by pixel: the nearest model depth of 3 x 3 pixels where the measured depth fits them, else 0."""
+    """Where the measured depth fits the model in 3 x 3 pixels: the model's depth, nearest about if not drawn; else 0."""
     explained = np.zeros(depth.shape)
     for v in range(camera.height):
         for u in range(camera.width):
@@ -151,8 +151,38 @@ def explain(model, depth, camera, tolerance_m, sigmas):
             sigma = 0.0 if camera.noise is None else float(camera.noise.sigma(d))
             slack = tolerance_m + sigmas * sigma
             if about.min() - slack <= d <= about.max() + slack:
-                explained[v, u] = about.min()
-    return explained
+                explained[v, u] = model[v, u] if np.isfinite(model[v, u]) else about.min()
+    return explained if not camera.flying_pixels else with_mixed_pixels(model, depth, camera, explained)
+
+
+def with_mixed_pixels(model, depth, camera, explained):
+    """Returns behind the machine's edge with fewer than four neighbours like them are explained too."""
+    settled = explained.copy()
+    k = camera.intrinsics
+
+    def is_return(d):
+        return np.isfinite(d) and d > 0 and camera.min_depth_m <= d <= camera.max_depth_m
+
+    for v in range(camera.height):
+        for u in range(camera.width):
+            about = model[max(0, v - 1) : v + 2, max(0, u - 1) : u + 2]
+            d = depth[v, u]
+            if explained[v, u] or not is_return(d) or not np.isfinite(about).any() or d <= about.min():
+                continue
+            sigma = 0.0 if camera.noise is None else float(camera.noise.sigma(d))
+            support = 0
+            for nv in (v - 1, v, v + 1):
+                for nu in (u - 1, u, u + 1):
+                    if (nv, nu) == (v, u):
+                        continue
+                    beyond = not (0 <= nv < camera.height and 0 <= nu < camera.width)
+                    if beyond or not is_return(depth[nv, nu]):
+                        support += 1
+                    elif not explained[nv, nu] and abs(depth[nv, nu] - d) <= 4.5 * sigma + d / min(k.fx, k.fy):
+                        support += 1
+            if support < 4:
+                settled[v, u] = about.min()
+    return settled
 
 
 def unexplained_voxels(camera, depth, explained, grid):

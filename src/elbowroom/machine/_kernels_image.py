@@ -14,8 +14,13 @@ EDGE_PX = 1e-7
 TILE = 16
 
 
+SUPPORT = 4
+"""Of eight neighbours, how many must be like a return beside the machine's edge for it to count as a surface."""
+
+
 class View(NamedTuple):
-    """A pinhole camera as kernels take it: image, intrinsics [px], kind of depth, range [m], noise."""
+    """A pinhole camera as kernels take it: image, intrinsics [px], kind of depth, range [m], noise, and whether a
+    return at a step of depth may lie anywhere between its two sides (flying pixels)."""
 
     width: int
     height: int
@@ -30,6 +35,7 @@ class View(NamedTuple):
     linear: float
     quadratic: float
     offset: float
+    flying: bool
 
 
 class Around(NamedTuple):
@@ -245,7 +251,7 @@ def to_kind(view, inverse, first, last):
 def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around):
     """Fills `model` where a measured depth fits what was drawn in the 3 x 3 pixels about it; wipes `inverse`.
 
-    Sets the voxels of the returns that do not fit, too, sixteen rows at a time while they are at hand.
+    Sets the voxels of the returns that do not fit, too.
 
     Args:
         view: the camera.
@@ -253,7 +259,8 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around)
         inverse: (height, width) float32, from `draw` and `to_kind`; zeros afterwards.
         first, last: (height,) columns drawn in each row.
         tolerance, sigmas: a depth d fits if it lies within tolerance [m] + sigmas * sigma(d).
-        model: (height, width) float32 zeros; nearest depth drawn about a pixel that fits [m, same kind].
+        model: (height, width) float32 zeros; where a pixel fits, the depth drawn in it, or else nearest about it
+            [m, same kind].
         around: where to look for other returns, and the plane for their voxels; without tiles: nowhere.
     """
     height, width = view.height, view.width
@@ -276,9 +283,11 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around)
             start, stop = min(start, first[row]), max(stop, last[row])
         if stop >= 0:
             start, stop = max(0, start - 1), min(width - 1, stop + 1)
-            _compare(view, depth[v], across, start, stop, tolerance, sigmas, model[v])
-        if v % TILE == TILE - 1 or v == height - 1:
-            _mark_row_of_tiles(view, depth, model, v // TILE, around, limits, found)
+            _compare(view, depth[v], inverse[v], across, start, stop, tolerance, sigmas, model[v])
+    if view.flying:
+        _settle_edges(view, depth, first, last, model)
+    for row in range(around.near.shape[0]):
+        _mark_row_of_tiles(view, depth, model, row, around, limits, found)
     for v in range(height):
         _set(inverse[v], first[v], last[v] + 1, np.float32(0.0))
 
@@ -324,7 +333,7 @@ def _of_neighbours(drawn, first, last, padded, filled, most, least):
 
 
 @njit(nogil=True, error_model="numpy")
-def _compare(view, depth, across, start, stop, tolerance, sigmas, model):
+def _compare(view, depth, drawn, across, start, stop, tolerance, sigmas, model):
     """Fills one row of the model where depth fits; without branches, for many pixels at once."""
     one, zero = np.float32(1.0), np.float32(0.0)
     fixed, factor = np.float32(tolerance + sigmas * view.constant), np.float32(sigmas * view.linear)
@@ -338,7 +347,59 @@ def _compare(view, depth, across, start, stop, tolerance, sigmas, model):
         slack = fixed + factor * d + square * beyond * beyond
         valid = (d > zero) & (d >= low) & (d <= high) & (nearest > zero)
         fits = valid & ((d + slack) * nearest >= one) & ((d - slack) * farthest <= one)
-        model[u] = one / nearest if fits else zero
+        # behind the model's nearest surface and beside it: perhaps a mixed pixel of its edge (`_settle_edges`)
+        edge = view.flying & valid & (not fits) & (d * nearest > one)
+        # up to the surface drawn in the pixel itself; beside the drawn edge up to the nearest one about it
+        free_to = one / (drawn[u] if drawn[u] > zero else nearest)
+        model[u] = free_to if fits else (-one / nearest if edge else zero)
+
+
+@njit(nogil=True, error_model="numpy")
+def _has_support(view, depth, model, u, v):
+    """Whether at least `SUPPORT` of eight neighbours are like an unexplained return: a surface, not a flying pixel.
+
+    Like it is a neighbour that is unexplained too and about as deep, and one that has no return or lies outside the
+    image: so a lost neighbour never takes support away. Anything three pixels wide has support in its middle.
+    """
+    d = depth[v, u]
+    slack = 4.5 * _sigma(view, d) + d / min(view.fx, view.fy)
+    support = 0
+    for nv in range(v - 1, v + 2):
+        for nu in range(u - 1, u + 2):
+            if nv == v and nu == u:
+                continue
+            if nv < 0 or nv >= view.height or nu < 0 or nu >= view.width:
+                support += 1
+                continue
+            other = depth[nv, nu]
+            if not (other > 0.0 and other >= view.min_depth and other <= view.max_depth):
+                support += 1
+            elif model[nv, nu] <= 0.0 and abs(other - d) <= slack:
+                support += 1
+    return support >= SUPPORT
+
+
+@njit(nogil=True, error_model="numpy")
+def _settle_edges(view, depth, first, last, model):
+    """Of the returns behind the machine's edge, those that stand alone are mixed pixels of the edge: explained.
+
+    On entry negative depths mark what is to be settled.
+    """
+    height, width = view.height, view.width
+    for turn in range(2):
+        for v in range(height):
+            start, stop = width, -1
+            for row in range(max(0, v - 1), min(height, v + 2)):
+                start, stop = min(start, first[row]), max(stop, last[row])
+            for u in range(max(0, start - 1), min(width - 1, stop + 1) + 1 if stop >= 0 else 0):
+                if model[v, u] >= 0.0:
+                    continue
+                if turn == 1:
+                    # supported ones were set to minus infinity, so that all were judged by the same neighbours
+                    model[v, u] = np.float32(0.0) if model[v, u] == -np.inf else -model[v, u]
+                    continue
+                if _has_support(view, depth, model, u, v):
+                    model[v, u] = -np.inf
 
 
 @njit(nogil=True, error_model="numpy")
@@ -386,7 +447,7 @@ def _mark_row_of_tiles(view, depth, model, row, around, limits, found):
     """Sets the voxels that the unexplained returns of one row of tiles may lie in.
 
     That is those that the cube about the measured point meets whose half side is half a pixel at its range,
-    moved along the ray by up to `around.sigmas` * sigma.
+    moved along the ray by up to `around.sigmas` * sigma. A return that stands alone may fly and is passed over.
     """
     if row >= around.near.shape[0]:
         return
@@ -401,7 +462,7 @@ def _mark_row_of_tiles(view, depth, model, row, around, limits, found):
         for n in range(eight.size):
             if eight[n] != 0:
                 for u in range(8 * n, 8 * n + 8):
-                    if found[u] != 0:
+                    if found[u] != 0 and (not view.flying or _has_support(view, depth, model, u, v)):
                         _mark_return(view, u, v, depth[v, u], around)
 
 

@@ -35,8 +35,8 @@ class Explained:
 
     Args:
         model_depth: by camera, float32, shape (height, width) [m, the camera's kind]: 0 where the pixel is
-            not explained; else the depth up to which its ray is free, the model's nearest within the 3 x 3
-            pixels about it.
+            not explained; else the depth up to which its ray is free, the model's depth in it, or beside the
+            model's edge the nearest within the 3 x 3 pixels about it.
         unexplained_words: plane of the grid with every voxel, near the grown body, that may hold a return
             that the machine does not explain; such voxels must not be freed as body. Voxels farther from the
             body may be set too. None if no grid was given.
@@ -62,6 +62,10 @@ def explain_frames(
     A valid depth d is explained if it lies between the least and the greatest depth that the model has within
     the 3 x 3 pixels about it, give or take `tolerance_m` + `tolerance_sigmas` * sigma(d). Where the model is
     not in these pixels, nothing is explained.
+
+    Of cameras with flying pixels a return must have neighbours like it to count as something else than the machine:
+    one that stands alone behind the machine's edge is a mixed pixel of the edge and explained; one that stands alone
+    anywhere says nothing of the voxels of the body.
 
     Args:
         machine: with all its links, unchecked ones too.

@@ -63,6 +63,7 @@ def view_of(camera: DepthCamera) -> View:
         float(camera.min_depth_m),
         float(camera.max_depth_m),
         *(float(part) for part in spread),
+        bool(camera.flying_pixels),
     )
 
 

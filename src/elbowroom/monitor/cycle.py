@@ -12,7 +12,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
-from elbowroom.motion import Cause, Level, Motion, Verdict, check_motions
+from elbowroom.motion import Cause, Level, Motion, Verdict, check_motions, blocks_in_reach
 from elbowroom.reconstruct import Detail, Rule, reconstruct
 from elbowroom.sensing import DepthFrame, JointRecord
 
@@ -30,6 +30,7 @@ class Cycle:
         max_age_ns: frames older than this are not used [ns]; None: no limit.
         explain_tolerance_m: as of `reconstruct` [m].
         threads: None: all cores.
+        focused: detail "pixel" only where the motions can go; elsewhere "footprint", which never frees more.
 
     Raises:
         InputError: no motions, since then nothing would ever say stop.
@@ -45,6 +46,7 @@ class Cycle:
     max_age_ns: int | None = None
     explain_tolerance_m: float = 0.01
     threads: int | None = None
+    focused: bool = True
     sequence: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -87,6 +89,7 @@ class Cycle:
                 now_ns=now_ns,
                 max_age_ns=self.max_age_ns,
                 explain_tolerance_m=self.explain_tolerance_m,
+                focus=blocks_in_reach(self.grid, self.machine, joints, self.motions) if self.focused else None,
                 threads=self.threads,
                 timer=lambda stage: _timed(stage, stage_ms),
             )

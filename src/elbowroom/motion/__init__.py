@@ -2,6 +2,7 @@
 
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.check import check_motion, check_motions, joint_motions
+from elbowroom.motion.focus import blocks_in_reach
 from elbowroom.motion.motion import JointPath, Motion
 from elbowroom.motion.verdict import Cause, Level, Verdict, most_cautious
 
@@ -11,6 +12,7 @@ __all__ = [
     "Level",
     "Motion",
     "Verdict",
+    "blocks_in_reach",
     "braking_distance",
     "check_motion",
     "check_motions",

@@ -49,7 +49,6 @@ from elbowroom.reconstruct._kernels_pyramid import NEUTRAL, NO_RETURN
 
 ONE, TWO, THREE, DISPUTED, SURFACE, BLIND = range(6)
 PLANES = 6
-POINT, FOOTPRINT, PIXEL = range(3)
 NOTHING = np.uint64(0)
 ROUNDING_M = 2e-5
 """More than float32 can err in the depth of a voxel [m]."""
@@ -170,7 +169,7 @@ def _ask(
 
 
 @njit(cache=True, nogil=True)
-def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through_count, dispute_count):
+def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_count, dispute_count):
     """Carves some 16-voxel cubes; each writes only its own 64 words.
 
     Args:
@@ -178,7 +177,7 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
         lattice: the grid.
         inside: (words,) uint64, ones where the grid has voxels.
         views: all cameras.
-        detail: FOOTPRINT or PIXEL.
+        fine: (words,) bool, blocks that get the pixel test where windows do not settle them.
         complete: whether all cameras are asked of every voxel, and counted.
         planes: (PLANES, words) uint64, zeros on entry.
         through_count, dispute_count: (words, 64) uint8 where complete, else of no size.
@@ -259,7 +258,7 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
                     by,
                     bz,
                     edge,
-                    detail == PIXEL,
+                    fine[word],
                     floats,
                     ints,
                     flags,
@@ -277,7 +276,7 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
                     planes[BLIND, word] |= unsure
                     if complete:
                         _tally(dispute_count, word, unsure)
-                elif detail == PIXEL:
+                elif fine[word]:
                     surface, stopped[c, lane] = NOTHING, NOTHING
                     if not partly:
                         surface, stopped[c, lane] = _sort_out(
@@ -350,7 +349,7 @@ def carve_cubes(cubes, lattice, inside, views, detail, complete, planes, through
 
 
 @njit(cache=True, nogil=True)
-def carve_points(cubes, lattice, inside, views, detail, complete, planes, through_count, dispute_count):
+def carve_points(cubes, lattice, inside, views, fine, complete, planes, through_count, dispute_count):
     """The thesis' test of voxel centres, every voxel with every camera; arguments as of `carve_cubes`."""
     numbers, texel_first, doubt_texels = views.numbers, views.texel_first, views.doubt_texels
     edge = lattice.edge

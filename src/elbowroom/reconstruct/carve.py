@@ -10,7 +10,7 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.margin import Margin
-from elbowroom.geometry.parallel import default_threads, spread
+from elbowroom.geometry.parallel import spread
 from elbowroom.reconstruct import _kernels_carve as kernels
 from elbowroom.reconstruct.evidence import Counts, Evidence
 from elbowroom.reconstruct.images import RoomImages, room_images
@@ -19,8 +19,7 @@ from elbowroom.sensing import DepthFrame
 
 Detail = Literal["footprint", "pixel", "point"]
 DETAILS: tuple[Detail, ...] = get_args(Detail)
-_CODES = {"point": kernels.POINT, "footprint": kernels.FOOTPRINT, "pixel": kernels.PIXEL}
-SHARES_PER_THREAD = 8
+SHARES = 16
 
 
 def carve(
@@ -76,9 +75,14 @@ def carve_images(
     complete: bool = False,
     model_depth: Mapping[str, NDArray[np.float32]] | None = None,
     unexplained: Words | None = None,
+    focus: NDArray[np.bool_] | None = None,
     threads: int | None = None,
 ) -> Evidence:
     """As `carve`, from images that are pinhole already.
+
+    Args:
+        focus: blocks of 4 voxels, in the planes' order, that shall have detail "pixel"; elsewhere "footprint" has
+            to do, which never frees more. None: all.
 
     Raises:
         InputError: an unknown detail.
@@ -92,22 +96,24 @@ def carve_images(
     planes = np.zeros((kernels.PLANES, cubes * 64), dtype=np.uint64)
     through, disputes = (np.zeros((cubes * 64 if complete else 0, 64), dtype=np.uint8) for _ in range(2))
     kernel = kernels.carve_points if detail == "point" else kernels.carve_cubes
-    shares = min(cubes, SHARES_PER_THREAD * (threads or default_threads()))
+    fine = np.full(cubes * 64, detail == "pixel")
+    if focus is not None:
+        fine &= focus
     views, buffers = fill(layout, images, model_depth or {}, threads)
     try:
         spread(
             lambda share: kernel(
-                np.arange(share, cubes, shares),
+                np.arange(share, cubes, SHARES),
                 cells,
                 layout.inside,
                 views,
-                _CODES[detail],
+                fine,
                 complete,
                 planes,
                 through,
                 disputes,
             ),
-            range(shares),
+            range(min(SHARES, cubes)),
             threads,
         )
     finally:

@@ -3,6 +3,9 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 
+import numpy as np
+from numpy.typing import NDArray
+
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
@@ -30,6 +33,7 @@ def reconstruct(
     now_ns: int | None = None,
     max_age_ns: int | None = None,
     explain_tolerance_m: float = 0.01,
+    focus: NDArray[np.bool_] | None = None,
     threads: int | None = None,
     timer: Timer | None = None,
 ) -> FreeSpace:
@@ -49,6 +53,8 @@ def reconstruct(
         now_ns: the time now [ns, the clock of the frames]; needed for an age limit.
         max_age_ns: frames older than this are not used [ns]; None: no limit.
         explain_tolerance_m: how near to the machine's model a return counts as the machine, besides its noise [m].
+        focus: blocks of 4 voxels that shall have detail "pixel", elsewhere "footprint", which never frees more; of
+            `motion.blocks_in_reach`. None: all.
         threads: None: all cores. The result does not depend on it.
         timer: called with the name of each stage, returns a context manager around it; None: nobody measures.
 
@@ -89,6 +95,7 @@ def reconstruct(
             complete=complete,
             model_depth=model_depth,
             unexplained=unexplained,
+            focus=focus,
             threads=threads,
         )
     with stage("resolve"):
