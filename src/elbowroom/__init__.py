@@ -14,6 +14,8 @@ from importlib import import_module
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from elbowroom._kernel_cache import forget_stale_kernels
+
 if TYPE_CHECKING:
     from elbowroom.errors import ElbowroomError
     from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
@@ -34,6 +36,8 @@ if TYPE_CHECKING:
     from elbowroom.reconstruct import Evidence, FreeSpace, carve, merge, reconstruct, resolve, warm_up
     from elbowroom.sensing import NOISE_PRESETS, DepthFrame, JointRecord, Margin, NoiseModel
     from elbowroom.site import Site
+
+forget_stale_kernels()
 
 _HOME = {
     "elbowroom.errors": ("ElbowroomError",),

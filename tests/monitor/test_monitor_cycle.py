@@ -40,7 +40,7 @@ def a_cycle(monkeypatch) -> Cycle:
     monkeypatch.setattr(
         cycle, "check_motions", lambda space, machine, joints, motions, _: [*map(clear, motions)]
     )
-    return Cycle(GRID, (), OneJoint(), MOTIONS)
+    return Cycle(GRID, (), OneJoint(), MOTIONS, focused=False)
 
 
 def frames(*stamps_ns: int | None) -> list[DepthFrame]:

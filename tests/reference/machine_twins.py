@@ -178,7 +178,9 @@ def with_mixed_pixels(model, depth, camera, explained):
                     beyond = not (0 <= nv < camera.height and 0 <= nu < camera.width)
                     if beyond or not is_return(depth[nv, nu]):
                         support += 1
-                    elif not explained[nv, nu] and abs(depth[nv, nu] - d) <= 4.5 * sigma + d / min(k.fx, k.fy):
+                    elif not explained[nv, nu] and abs(depth[nv, nu] - d) <= 4.5 * sigma + d / min(
+                        k.fx, k.fy
+                    ):
                         support += 1
             if support < 4:
                 settled[v, u] = about.min()

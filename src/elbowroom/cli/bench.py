@@ -27,7 +27,8 @@ def bench(
     cases = [replace(case, rounds=5) for case in CASES] if quick else list(CASES)
     table = Table(box=None, pad_edge=False)
     for column in ("case", "voxel", "detail", "noise", "median", "99 %", "worst", "memory", "ratio"):
-        table.add_column(column, justify="left" if column in ("case", "detail", "noise") else "right")
+        left = column in ("case", "detail", "noise")
+        table.add_column(column, justify="left" if left else "right", no_wrap=True)
     with json_rows(json) as add, Console(stderr=True).status("rendering the room") as status:
         for row in bench_rows(
             cases, cameras=cameras, size=size, threads=threads, octomap=octomap and not quick

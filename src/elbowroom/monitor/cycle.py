@@ -89,7 +89,9 @@ class Cycle:
                 now_ns=now_ns,
                 max_age_ns=self.max_age_ns,
                 explain_tolerance_m=self.explain_tolerance_m,
-                focus=blocks_in_reach(self.grid, self.machine, joints, self.motions) if self.focused else None,
+                focus=blocks_in_reach(self.grid, self.machine, joints, self.motions)
+                if self.focused
+                else None,
                 threads=self.threads,
                 timer=lambda stage: _timed(stage, stage_ms),
             )

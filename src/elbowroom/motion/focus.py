@@ -54,8 +54,12 @@ def blocks_in_reach(
     cells = bits.lattice(grid)
     counts = 4 * np.array([cells.cubes_x, cells.cubes_y, cells.cubes_z])
     edge = BLOCK * grid.voxel_size_m
-    first = np.floor((centres - around - grid.lower_m) / edge).astype(np.int64).reshape(-1, 3).clip(0, counts - 1)
-    last = np.floor((centres + around - grid.lower_m) / edge).astype(np.int64).reshape(-1, 3).clip(0, counts - 1)
+    first = (
+        np.floor((centres - around - grid.lower_m) / edge).astype(np.int64).reshape(-1, 3).clip(0, counts - 1)
+    )
+    last = (
+        np.floor((centres + around - grid.lower_m) / edge).astype(np.int64).reshape(-1, 3).clip(0, counts - 1)
+    )
     near = np.zeros(tuple(counts), dtype=np.bool_)
     for low, high in np.unique(np.hstack([first, last]), axis=0).reshape(-1, 2, 3).tolist():
         near[low[0] : high[0] + 1, low[1] : high[1] + 1, low[2] : high[2] + 1] = True

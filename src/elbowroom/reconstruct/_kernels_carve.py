@@ -121,11 +121,17 @@ def _sort_out(numbers, c, scale_edge, first, trust_texels, doubt_texels, unsure,
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
         at = 0.5 * (np.float64(floats[NEAR + lane]) + np.float64(floats[FAR + lane]))
-        margin = 0.5 * (np.float64(floats[FAR + lane]) - np.float64(floats[NEAR + lane])) - extent - ROUNDING_M
+        margin = (
+            0.5 * (np.float64(floats[FAR + lane]) - np.float64(floats[NEAR + lane])) - extent - ROUNDING_M
+        )
         pixel = first + int(floats[V + lane]) * width + int(floats[U + lane])
         texel = doubt_texels[pixel]
         greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
-        if texel != NEUTRAL and greatest != NO_RETURN and abs(greatest * quantum - at) < inner + margin - ROUNDING_M:
+        if (
+            texel != NEUTRAL
+            and greatest != NO_RETURN
+            and abs(greatest * quantum - at) < inner + margin - ROUNDING_M
+        ):
             surface |= bit
         elif (trust_texels[pixel] >> np.uint32(16)) * quantum < at + margin - ROUNDING_M:
             stopped |= bit
