@@ -136,7 +136,7 @@ def ray_cast(triangles, camera):
 
 
 def explain(model, depth, camera, tolerance_m, sigmas):
-    """Where the measured depth fits the model in 3 x 3 pixels: the model's depth, nearest about if not drawn; else 0."""
+    """Where the measured depth fits the model in 3 x 3 pixels: its depth, nearest about if not drawn; else 0."""
     explained = np.zeros(depth.shape)
     for v in range(camera.height):
         for u in range(camera.width):
@@ -176,11 +176,9 @@ def with_mixed_pixels(model, depth, camera, explained):
                     if (nv, nu) == (v, u):
                         continue
                     beyond = not (0 <= nv < camera.height and 0 <= nu < camera.width)
-                    if beyond or not is_return(depth[nv, nu]):
-                        support += 1
-                    elif not explained[nv, nu] and abs(depth[nv, nu] - d) <= 4.5 * sigma + d / min(
-                        k.fx, k.fy
-                    ):
+                    lost = beyond or not is_return(depth[nv, nu])
+                    slack = 4.5 * sigma + d / min(k.fx, k.fy)
+                    if lost or (not explained[nv, nu] and abs(depth[nv, nu] - d) <= slack):
                         support += 1
             if support < 4:
                 settled[v, u] = about.min()

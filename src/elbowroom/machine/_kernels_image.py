@@ -372,9 +372,8 @@ def _has_support(view, depth, model, u, v):
                 support += 1
                 continue
             other = depth[nv, nu]
-            if not (other > 0.0 and other >= view.min_depth and other <= view.max_depth):
-                support += 1
-            elif model[nv, nu] <= 0.0 and abs(other - d) <= slack:
+            lost = not (other > 0.0 and other >= view.min_depth and other <= view.max_depth)
+            if lost or (model[nv, nu] <= 0.0 and abs(other - d) <= slack):
                 support += 1
     return support >= SUPPORT
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError
 from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.noise import NoiseModel
 from elbowroom.machine._kernels_image import Mesh, View, draw, to_kind
 from elbowroom.machine.buffers import zero_image
 from elbowroom.machine.link import Link
@@ -48,10 +49,7 @@ def view_of(camera: DepthCamera) -> View:
     """
     if camera.intrinsics.is_distorted:
         raise CameraError(f"camera {camera.name}: has distortion; bring image and camera to a pinhole first")
-    k, noise = camera.intrinsics, camera.noise
-    spread = (0.0, 0.0, 0.0, 0.0)
-    if noise is not None:
-        spread = (noise.constant_m, noise.linear, noise.quadratic, noise.offset_m)
+    k, noise = camera.intrinsics, camera.noise or NoiseModel(0.0)
     return View(
         int(camera.width),
         int(camera.height),
@@ -62,7 +60,10 @@ def view_of(camera: DepthCamera) -> View:
         camera.depth_kind == "radial",
         float(camera.min_depth_m),
         float(camera.max_depth_m),
-        *(float(part) for part in spread),
+        float(noise.constant_m),
+        float(noise.linear),
+        float(noise.quadratic),
+        float(noise.offset_m),
         bool(camera.flying_pixels),
     )
 

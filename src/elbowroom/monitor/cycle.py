@@ -12,7 +12,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
-from elbowroom.motion import Cause, Level, Motion, Verdict, check_motions, blocks_in_reach
+from elbowroom.motion import Cause, Level, Motion, Verdict, blocks_in_reach, check_motions
 from elbowroom.reconstruct import Detail, Rule, reconstruct
 from elbowroom.sensing import DepthFrame, JointRecord
 

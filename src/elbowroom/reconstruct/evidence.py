@@ -25,7 +25,8 @@ class Evidence:
     """What some cameras know of each voxel of a grid.
 
     Without counts (enough for rule `three`) evidence is canonical: where three cameras see through, no other plane
-    says anything, and where there is a surface, blindness is not told. With counts every camera was asked of every voxel, as the other rules need.
+    says anything, and where there is a surface, blindness is not told. With counts every
+    camera was asked of every voxel, as the other rules need.
 
     Args:
         grid: the watched box.
