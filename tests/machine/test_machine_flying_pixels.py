@@ -66,7 +66,7 @@ def test_the_wall_beside_the_machine_is_not_the_machine(scene):
 
 @pytest.mark.parametrize("lost", [0.0, 0.3])
 def test_a_hand_on_the_machine_stays_blocked(scene, lost):
-    machine, camera, drawn, depth = scene
+    _, camera, drawn, depth = scene
     flat = [
         (v, u)
         for v, u in np.argwhere(np.isfinite(drawn[3:-3, 3:-3])) + 3
@@ -86,7 +86,7 @@ def test_a_hand_on_the_machine_stays_blocked(scene, lost):
 
 
 def test_a_lone_return_within_the_body_leaves_it_removed(scene):
-    machine, camera, drawn, depth = scene
+    machine, _, drawn, depth = scene
     v, u = np.argwhere(np.isfinite(drawn))[200]
     lone = depth.copy()
     lone[v, u] = drawn[v, u] - 0.05
