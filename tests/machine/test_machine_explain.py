@@ -157,7 +157,7 @@ def test_voxels_of_unexplained_returns_are_those_of_the_pixels_cubes(arm):
     explained = explain_one(arm, camera, depth, grid=GRID)
     kept = bits.unpack(explained.unexplained_words, GRID)
     near = np.where(depth < 3, depth, 0)
-    assert not (naive.unexplained_voxels(camera, near, explained.model_depth["north"], GRID) & ~kept).any()
+    assert not (naive.unexplained_voxels(camera, depth, explained.model_depth["north"], GRID) & ~kept).any()
     # and no voxel farther than half a pixel from any of these points
     points = camera.points_in_world(np.where(near > 0, depth, 1.0))[near > 0]
     half = 0.5 * near[near > 0] / min(camera.intrinsics.fx, camera.intrinsics.fy)

@@ -155,40 +155,51 @@ def explain(model, depth, camera, tolerance_m, sigmas):
     return explained if not camera.flying_pixels else with_mixed_pixels(model, depth, camera, explained)
 
 
+def is_return(camera, d):
+    return np.isfinite(d) and d > 0 and camera.min_depth_m <= d <= camera.max_depth_m
+
+
+def has_support(depth, camera, explained, v, u):
+    """Whether enough of a pixel's eight neighbours are lost, or unexplained and about as deep."""
+    k, d, support = camera.intrinsics, depth[v, u], 0
+    sigma = 0.0 if camera.noise is None else float(camera.noise.sigma(d))
+    slack = 4.5 * sigma + d / min(k.fx, k.fy)
+    for nv in (v - 1, v, v + 1):
+        for nu in (u - 1, u, u + 1):
+            if (nv, nu) == (v, u):
+                continue
+            beyond = not (0 <= nv < camera.height and 0 <= nu < camera.width)
+            lost = beyond or not is_return(camera, depth[nv, nu])
+            if lost or (not explained[nv, nu] and abs(depth[nv, nu] - d) <= slack):
+                support += 1
+    return support >= (4 if camera.flying_pixels else 1)
+
+
 def with_mixed_pixels(model, depth, camera, explained):
     """Returns behind the machine's edge with fewer than four neighbours like them are explained too."""
     settled = explained.copy()
-    k = camera.intrinsics
-
-    def is_return(d):
-        return np.isfinite(d) and d > 0 and camera.min_depth_m <= d <= camera.max_depth_m
-
     for v in range(camera.height):
         for u in range(camera.width):
             about = model[max(0, v - 1) : v + 2, max(0, u - 1) : u + 2]
             d = depth[v, u]
-            if explained[v, u] or not is_return(d) or not np.isfinite(about).any() or d <= about.min():
+            if (
+                explained[v, u]
+                or not is_return(camera, d)
+                or not np.isfinite(about).any()
+                or d <= about.min()
+            ):
                 continue
-            sigma = 0.0 if camera.noise is None else float(camera.noise.sigma(d))
-            support = 0
-            for nv in (v - 1, v, v + 1):
-                for nu in (u - 1, u, u + 1):
-                    if (nv, nu) == (v, u):
-                        continue
-                    beyond = not (0 <= nv < camera.height and 0 <= nu < camera.width)
-                    lost = beyond or not is_return(depth[nv, nu])
-                    slack = 4.5 * sigma + d / min(k.fx, k.fy)
-                    if lost or (not explained[nv, nu] and abs(depth[nv, nu] - d) <= slack):
-                        support += 1
-            if support < 4:
+            if not has_support(depth, camera, explained, v, u):
                 settled[v, u] = about.min()
     return settled
 
 
 def unexplained_voxels(camera, depth, explained, grid):
-    """Voxels that hold the measured point of a valid pixel that is not explained; shape of the grid."""
+    """Voxels that hold the measured point of a pixel that is not explained and has support; shape of the grid."""
     valid = np.isfinite(depth) & (depth > 0) & (explained == 0)
     valid &= (depth >= camera.min_depth_m) & (depth <= camera.max_depth_m)
+    for v, u in np.argwhere(valid):
+        valid[v, u] = has_support(depth, camera, explained, v, u)
     points = camera.points_in_world(np.where(valid, depth, 1.0))[valid]
     held = np.zeros(grid.shape, dtype=bool)
     inside = points[grid.contains(points)]

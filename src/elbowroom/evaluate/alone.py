@@ -19,6 +19,7 @@ def alone_rows(
     poses: int = 20,
     cameras: int = 21,
     size: str = "vga",
+    heights_m: Sequence[float] = (2.4, 0.4),
     detail: Detail = "pixel",
     seed: int = 1,
 ) -> Iterator[dict[str, object]]:
@@ -27,7 +28,8 @@ def alone_rows(
     Args:
         voxel_sizes_m: each pose is judged with each of them, from the same images.
         poses: how many, drawn at random such that the reach of all joints stays inside the grid.
-        cameras, size: along the walls.
+        cameras, size, heights_m: along the walls, at these heights in turn [m]. From 2.4 m alone no camera sees what
+            lies under the machine's own overhangs.
         detail: of the carve.
         seed: of the poses.
 
@@ -36,7 +38,7 @@ def alone_rows(
     """
     room = InterventionRoom(people=False, furniture=False)
     motions = room_motions(room.machine)
-    views = wall_cameras(cameras, size=size, noise=NOISE_PRESETS["tof"])
+    views = wall_cameras(cameras, heights_m, size=size, noise=NOISE_PRESETS["tof"])
     rng = np.random.default_rng(seed)
     for pose in range(poses):
         moment = room.random_moment(rng)
@@ -55,6 +57,7 @@ def alone_rows(
                     "cameras": len(views),
                     "width": views[0].width,
                     "height": views[0].height,
+                    "heights_m": list(heights_m),
                     "joints": moment.joints,
                     "joint": motion.joint,
                     "direction": "-+"[motion.direction > 0],

@@ -19,6 +19,7 @@ def poses_rows(
     poses: int = 200,
     cameras: int = 21,
     size: str = "vga",
+    heights_m: Sequence[float] = (2.4, 0.4),
     detail: Detail = "pixel",
     seed: int = 2,
 ) -> Iterator[dict[str, object]]:
@@ -29,7 +30,8 @@ def poses_rows(
     Args:
         voxel_size_m: edge of a voxel [m].
         poses: how many moments, each with the machine in a random pose that touches nothing.
-        cameras, size: along the walls.
+        cameras, size, heights_m: along the walls, at these heights in turn [m]. From 2.4 m alone no camera sees what
+            lies under the machine's own overhangs.
         detail: of the carve.
         seed: of moments and poses.
 
@@ -41,7 +43,7 @@ def poses_rows(
     """
     room = InterventionRoom()
     motions = room_motions(room.machine)
-    views = wall_cameras(cameras, size=size)
+    views = wall_cameras(cameras, heights_m, size=size)
     grid = room_grid(voxel_size_m)
     rng = np.random.default_rng(seed)
     for pose in range(poses):
@@ -66,6 +68,7 @@ def poses_rows(
                 "cameras": len(views),
                 "width": views[0].width,
                 "height": views[0].height,
+                "heights_m": list(heights_m),
                 "time_s": moment.time_s,
                 "joints": moment.joints,
                 **compared.row(),

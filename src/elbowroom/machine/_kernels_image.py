@@ -358,6 +358,8 @@ def _compare(view, depth, drawn, across, start, stop, tolerance, sigmas, model):
 def _has_support(view, depth, model, u, v):
     """Whether at least `SUPPORT` of eight neighbours are like an unexplained return: a surface, not a flying pixel.
 
+    Where no pixels fly one neighbour is enough.
+
     Like it is a neighbour that is unexplained too and about as deep, and one that has no return or lies outside the
     image: so a lost neighbour never takes support away. Anything three pixels wide has support in its middle.
     """
@@ -375,7 +377,7 @@ def _has_support(view, depth, model, u, v):
             lost = not (other > 0.0 and other >= view.min_depth and other <= view.max_depth)
             if lost or (model[nv, nu] <= 0.0 and abs(other - d) <= slack):
                 support += 1
-    return support >= SUPPORT
+    return support >= (SUPPORT if view.flying else 1)
 
 
 @njit(nogil=True, error_model="numpy")
@@ -446,7 +448,8 @@ def _mark_row_of_tiles(view, depth, model, row, around, limits, found):
     """Sets the voxels that the unexplained returns of one row of tiles may lie in.
 
     That is those that the cube about the measured point meets whose half side is half a pixel at its range,
-    moved along the ray by up to `around.sigmas` * sigma. A return that stands alone may fly and is passed over.
+    moved along the ray by up to `around.sigmas` * sigma. A return that stands alone is passed over: it may
+    fly, or have slipped between two links.
     """
     if row >= around.near.shape[0]:
         return
@@ -461,7 +464,7 @@ def _mark_row_of_tiles(view, depth, model, row, around, limits, found):
         for n in range(eight.size):
             if eight[n] != 0:
                 for u in range(8 * n, 8 * n + 8):
-                    if found[u] != 0 and (not view.flying or _has_support(view, depth, model, u, v)):
+                    if found[u] != 0 and _has_support(view, depth, model, u, v):
                         _mark_return(view, u, v, depth[v, u], around)
 
 

@@ -63,9 +63,9 @@ def explain_frames(
     the 3 x 3 pixels about it, give or take `tolerance_m` + `tolerance_sigmas` * sigma(d). Where the model is
     not in these pixels, nothing is explained.
 
-    Of cameras with flying pixels a return must have neighbours like it to count as something else than the machine:
-    one that stands alone behind the machine's edge is a mixed pixel of the edge and explained; one that stands alone
-    anywhere says nothing of the voxels of the body.
+    A return must have neighbours like it to count as something else than the machine: one that stands alone says
+    nothing of the voxels of the body, and behind the machine's edge, in a camera with flying pixels, it is a mixed
+    pixel of the edge and explained.
 
     Args:
         machine: with all its links, unchecked ones too.

@@ -1,6 +1,7 @@
 """Depth cameras evenly along the four walls of the room."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ SIZES: dict[str, tuple[int, int, DepthKind]] = {
 
 def wall_cameras(
     count: int = 21,
-    height_m: float = 2.4,
+    height_m: float | Sequence[float] = 2.4,
     width: int | None = None,
     height: int | None = None,
     hfov_deg: float = 90.0,
@@ -40,7 +41,7 @@ def wall_cameras(
 
     Args:
         count: how many.
-        height_m: of the cameras above the floor [m].
+        height_m: of the cameras above the floor [m]; several: neighbours take them in turn.
         width, height: of the image [px]; pixels are square. None: by `size`.
         hfov_deg: horizontal field of view, from the left edge of the image to its right edge [deg].
         size: one of `SIZES`.
@@ -69,6 +70,9 @@ def wall_cameras(
     height = usual_height if height is None else height
     if min(width, height) < 1:
         raise CameraError(f"wall_cameras: image of {width} x {height} pixels, must be at least 1 x 1")
+    heights = [height_m] if isinstance(height_m, int | float) else list(height_m)
+    if not heights:
+        raise CameraError("wall_cameras: height_m is empty, at least one height is needed")
     focal_px = width / 2 / math.tan(math.radians(hfov_deg) / 2)
     intrinsics = Intrinsics(fx=focal_px, fy=focal_px, cx=(width - 1) / 2, cy=(height - 1) / 2)
     digits = max(2, len(str(count - 1)))
@@ -78,7 +82,8 @@ def wall_cameras(
             width=width,
             height=height,
             world_from_camera=looking_at(
-                (*_along_walls(number / count, half_side_m), height_m), (0.0, 0.0, aim_m)
+                (*_along_walls(number / count, half_side_m), heights[number % len(heights)]),
+                (0.0, 0.0, aim_m),
             ),
             intrinsics=intrinsics,
             depth_kind=depth_kind or usual_kind,
