@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from elbowroom.geometry import VoxelGrid
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
@@ -52,7 +52,11 @@ class SimulatedEntry(Entry):
     """The simulated intervention room: cameras along its walls, people who walk, a C-arm that moves."""
 
     cameras: Annotated[Whole, Field(ge=1, le=200)] = 21
-    camera_height_m: Annotated[Number, Field(gt=0, le=2.9)] = 2.4
+    camera_height_m: Annotated[
+        tuple[Annotated[Number, Field(gt=0, le=2.9)], ...],
+        BeforeValidator(lambda given: given if isinstance(given, list | tuple) else [given]),
+        Field(min_length=1),
+    ] = (2.4,)
     resolution: Annotated[Text, Field(pattern=r"^[0-9]{1,5}x[0-9]{1,5}$")] = "640x480"
     field_of_view_deg: Fov = 90.0
     seed: Annotated[Whole, Field(ge=0)] = 1
