@@ -29,7 +29,14 @@ def main() -> None:
     machine, motions = room.machine_and_motions()
     cameras = wall_cameras(**site.simulated_cameras())
     cycle = Cycle(
-        room.grid, cameras, machine, motions, rule=room.rule, detail=room.detail, margin=room.margin
+        room.grid,
+        cameras,
+        machine,
+        motions,
+        rule=room.rule,
+        detail=room.detail,
+        margin=room.margin,
+        focused=False,
     )
     simulated = InterventionRoom(machine=machine)
     warm_up(machine)

@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, bits
 from elbowroom.reconstruct import reconstruct
@@ -14,12 +15,13 @@ def a_frame():
     return DepthFrame("one", 0, depth)
 
 
-def test_out_of_focus_is_free_what_footprint_frees_and_in_focus_what_pixel_frees():
+@pytest.mark.parametrize("detail", ["footprint", "pixel", "point"])
+def test_in_focus_all_is_as_ever_and_out_of_focus_nothing_is_free(detail):
     focus = np.zeros(bits.word_count(GRID), dtype=bool)
     focus[::2] = True
-    pixel = reconstruct(GRID, [CAMERA], [a_frame()]).free_words
-    footprint = reconstruct(GRID, [CAMERA], [a_frame()], detail="footprint").free_words
-    focused = reconstruct(GRID, [CAMERA], [a_frame()], focus=focus).free_words
-    assert (focused == np.where(focus, pixel, footprint)).all()
-    assert np.bitwise_count(pixel).sum() > np.bitwise_count(footprint).sum() > 0
-    assert not (footprint & ~pixel).any()
+    everywhere = reconstruct(GRID, [CAMERA], [a_frame()], detail=detail)
+    focused = reconstruct(GRID, [CAMERA], [a_frame()], detail=detail, focus=focus)
+    for name in ("free_words", "surface_words", "blind_words", "disputed_words"):
+        assert (getattr(focused, name)[focus] == getattr(everywhere, name)[focus]).all()
+    assert not focused.free_words[~focus].any() and focused.free_words.any()
+    assert everywhere.free_words[~focus].any()

@@ -14,6 +14,7 @@ from rich.console import Console
 
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
+from elbowroom.cli.reconstruct_run import space_of
 from elbowroom.cli.room import Room, Scene
 from elbowroom.cli.rows import cycle_rows
 from elbowroom.errors import InputError
@@ -126,7 +127,8 @@ def _save_pictures(room: Room, scene: Scene, result: CycleResult, out_dir: Path,
     if result.space is None:
         console.print("no pictures: the last cycle failed and has no free space", style="red")
         return
-    paths = save_sections(result.space, out_dir, room.machine, scene.joints, room.cameras)
+    # the cycle looked only where the motions can go; a picture shows the whole room
+    paths = save_sections(space_of(room, scene), out_dir, room.machine, scene.joints, room.cameras)
     console.print(f"{len(paths)} pictures of the last cycle in {out_dir}", highlight=False, soft_wrap=True)
 
 

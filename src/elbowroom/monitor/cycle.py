@@ -30,7 +30,7 @@ class Cycle:
         max_age_ns: frames older than this are not used [ns]; None: no limit.
         explain_tolerance_m: as of `reconstruct` [m].
         threads: None: all cores.
-        focused: detail "pixel" only where the motions can go; elsewhere "footprint", which never frees more.
+        focused: only the space where the motions can go is looked at, all other space stays unseen.
 
     Raises:
         InputError: no motions, since then nothing would ever say stop.

@@ -1,4 +1,4 @@
-"""Where the motions can go: the part of the grid that is worth looking at most closely."""
+"""Where the motions can go: the part of the grid that a cycle has to look at."""
 
 from collections.abc import Mapping, Sequence
 
@@ -26,7 +26,7 @@ def blocks_in_reach(
 ) -> NDArray[np.bool_]:
     """The blocks of 4 voxels that the body comes near on its motions, for `reconstruct(focus=...)`.
 
-    What is left out costs nothing but freedom: there a footprint is looked at instead of pixels, and that frees less.
+    What is left out stays unseen, and so blocked: it can cost freedom, never safety.
 
     Args:
         grid: the watched box.

@@ -81,8 +81,8 @@ def carve_images(
     """As `carve`, from images that are pinhole already.
 
     Args:
-        focus: blocks of 4 voxels, in the planes' order, that shall have detail "pixel"; elsewhere "footprint" has
-            to do, which never frees more. None: all.
+        focus: blocks of 4 voxels, in the planes' order, that are asked of the cameras; of the others nothing is known
+            afterwards. None: all.
 
     Raises:
         InputError: an unknown detail.
@@ -97,15 +97,15 @@ def carve_images(
     through, disputes = (np.zeros((cubes * 64 if complete else 0, 64), dtype=np.uint8) for _ in range(2))
     kernel = kernels.carve_points if detail == "point" else kernels.carve_cubes
     fine = np.full(cubes * 64, detail == "pixel")
-    if focus is not None:
-        fine &= focus
+    asked = layout.inside if focus is None else np.where(focus, layout.inside, np.uint64(0))
+    worth = np.flatnonzero(asked.reshape(cubes, 64).any(axis=1))
     views, buffers = fill(layout, images, model_depth or {}, threads)
     try:
         spread(
             lambda share: kernel(
-                np.arange(share, cubes, SHARES),
+                worth[share::SHARES],
                 cells,
-                layout.inside,
+                asked,
                 views,
                 fine,
                 complete,
@@ -113,7 +113,7 @@ def carve_images(
                 through,
                 disputes,
             ),
-            range(min(SHARES, cubes)),
+            range(min(SHARES, len(worth))),
             threads,
         )
     finally:

@@ -53,8 +53,7 @@ def reconstruct(
         now_ns: the time now [ns, the clock of the frames]; needed for an age limit.
         max_age_ns: frames older than this are not used [ns]; None: no limit.
         explain_tolerance_m: how near to the machine's model a return counts as the machine, besides its noise [m].
-        focus: blocks of 4 voxels that shall have detail "pixel", elsewhere "footprint", which never frees more; of
-            `motion.blocks_in_reach`. None: all.
+        focus: blocks of 4 voxels that are looked at, of `motion.blocks_in_reach`; all others stay unseen. None: all.
         threads: None: all cores. The result does not depend on it.
         timer: called with the name of each stage, returns a context manager around it; None: nobody measures.
 
