@@ -48,5 +48,7 @@ def bench(
                 "" if row["ratio"] is None else f"{row['ratio']:.2f}",
             )
     console = Console(highlight=False)
+    if not console.is_terminal:
+        console.width = 120
     console.print(table)
     console.print("ratio: median over that of a fixed reference kernel in the same process", style="dim")
