@@ -42,6 +42,7 @@ from elbowroom.reconstruct._kernels_pixel import (
     IS_SURFACE,
     PIXEL_FLOATS,
     THROUGH,
+    bounds,
     settle_centre,
     settle_word,
 )
@@ -125,28 +126,45 @@ def _sort_out(numbers, c, scale_edge, first, trust_texels, doubt_texels, unsure,
             0.5 * (np.float64(floats[FAR + lane]) - np.float64(floats[NEAR + lane])) - extent - ROUNDING_M
         )
         pixel = first + int(floats[V + lane]) * width + int(floats[U + lane])
+        if not (trust_texels[pixel] >> np.uint32(16)) * quantum < at + margin - ROUNDING_M:
+            continue
+        stopped |= bit
         texel = doubt_texels[pixel]
         greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
-        if (
-            texel != NEUTRAL
-            and greatest != NO_RETURN
-            and abs(greatest * quantum - at) < inner + margin - ROUNDING_M
-        ):
+        if texel == NEUTRAL or greatest == NO_RETURN:
+            continue
+        if abs(greatest * quantum - at) < inner + margin - ROUNDING_M:
             surface |= bit
-        elif (trust_texels[pixel] >> np.uint32(16)) * quantum < at + margin - ROUNDING_M:
-            stopped |= bit
     return surface, stopped
 
 
 @njit(cache=True, nogil=True)
-def _contested(floats, unsure, partly):
-    """Of the unsure boxes those that unexplained pixels dispute; LEAST and GREATEST come from `doubt`."""
+def _contested(numbers, c, first, doubt_texels, tile_first, doubt_tiles, unsure, partly, reach, floats):
+    """Of the unsure boxes those that unexplained pixels dispute; LEAST and GREATEST become what these measured.
+
+    Asked are all pixels within `reach` of a box's centre pixel, or the tiles that hold them where they are many.
+    """
     disputed = NOTHING
+    width, height = int(numbers[c, SIZE]), int(numbers[c, SIZE + 1])
+    quantum = np.float32(numbers[c, QUANTUM])
     rest = unsure
     while rest:
         lane = np.int64(trailing_zeros(rest))
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
+        u, v = int(floats[U + lane]), int(floats[V + lane])
+        ua, ub = max(u - reach, 0), min(u + reach, width - 1)
+        va, vb = max(v - reach, 0), min(v + reach, height - 1)
+        if 2 * reach < 8:
+            least, greatest = bounds(doubt_texels, first, width, ua, ub, va, vb)
+        else:
+            least, greatest = bounds(
+                doubt_tiles, tile_first, (width + 3) >> 2, ua >> 2, ub >> 2, va >> 2, vb >> 2
+            )
+        floats[LEAST + lane] = np.float32(least) * quantum
+        floats[GREATEST + lane] = (
+            np.float32(greatest) * quantum if greatest < NO_RETURN else np.float32(np.inf)
+        )
         crossing = partly and floats[STATE + lane] == CROSSING
         past = floats[LEAST + lane] > floats[FAR + lane]
         hidden = floats[GREATEST + lane] < floats[NEAR + lane]
@@ -157,21 +175,22 @@ def _contested(floats, unsure, partly):
 
 @njit(cache=True, nogil=True)
 def _ask(
-    numbers, levels, offset, trust, c, scale, x, y, z, edge, keep_partly, floats, ints, flags, flag_words
+    numbers, levels, offset, windows, c, scale, x, y, z, edge, keep_partly, floats, ints, flags, flag_words
 ):
-    """Words (through, unsure) of the 64 children of a cube, and whether the cube lies partly outside the image."""
+    """Words (through, unsure) of the 64 children of a cube, whether the cube lies partly outside the image, and the
+    children's reach in pixels."""
     px, py, pz, state = place_cube(numbers, c, scale, x, y, z, edge)
     if state == OUTSIDE:
-        return NOTHING, NOTHING, False
+        return NOTHING, NOTHING, False, 0
     if state == INSIDE:
-        bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
-        look_up(trust, numbers[c, QUANTUM], floats, ints)
+        reach = bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
+        look_up(windows, numbers[c, QUANTUM], floats, ints)
         through, unsure = decide_inside(floats, flags, flag_words)
-        return through, unsure, False
-    bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
-    look_up(trust, numbers[c, QUANTUM], floats, ints)
+        return through, unsure, False, reach
+    reach = bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
+    look_up(windows, numbers[c, QUANTUM], floats, ints)
     through, unsure, cut = decide_partly(floats, flags, flag_words)
-    return through, (unsure | cut) if keep_partly else unsure, True
+    return through, (unsure | cut) if keep_partly else unsure, True, reach
 
 
 @njit(cache=True, nogil=True)
@@ -190,8 +209,8 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
     """
     # taken out of the tuple once: each look into it counts references, which costs more than the arithmetic below
     numbers, levels, offset = views.numbers, views.levels, views.offset
-    trust, doubt = views.trust, views.doubt
-    texel_first, trust_texels, doubt_texels = views.texel_first, views.trust_texels, views.doubt_texels
+    windows, texel_first = views.windows, views.texel_first
+    trust_texels, doubt_texels = views.trust_texels, views.doubt_texels
     tile_first, trust_tiles, doubt_tiles = views.tile_first, views.trust_tiles, views.doubt_tiles
     cameras = numbers.shape[0]
     floats = np.empty(FLOATS, dtype=np.float32)
@@ -211,11 +230,11 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
         y = lattice.y0 + ((cube // lattice.cubes_z) % lattice.cubes_y) * 16 * edge
         z = lattice.z0 + (cube % lattice.cubes_z) * 16 * edge
         for c in range(cameras):
-            through[c], mixed[c], _ = _ask(
+            through[c], mixed[c], _, _ = _ask(
                 numbers,
                 levels,
                 offset,
-                trust,
+                windows,
                 c,
                 1,
                 x + 0.5 * block,
@@ -253,11 +272,11 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
                 bx = x + ((lane >> 4) * 4 + 0.5) * edge
                 by = y + (((lane >> 2) & 3) * 4 + 0.5) * edge
                 bz = z + ((lane & 3) * 4 + 0.5) * edge
-                seen, unsure, partly = _ask(
+                seen, unsure, partly, reach = _ask(
                     numbers,
                     levels,
                     offset,
-                    trust,
+                    windows,
                     c,
                     0,
                     bx,
@@ -296,8 +315,18 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
                     unsettled[c, lane] = unsure & ~surface
                 else:
                     if numbers[c, SPLIT] != 0.0:
-                        look_up(doubt, numbers[c, QUANTUM], floats, ints)
-                        unsure = _contested(floats, unsure, partly)
+                        unsure = _contested(
+                            numbers,
+                            c,
+                            texel_first[c],
+                            doubt_texels,
+                            tile_first[c],
+                            doubt_tiles,
+                            unsure,
+                            partly,
+                            reach,
+                            floats,
+                        )
                     surface, blind = _measured_at_centre(
                         numbers, c, texel_first[c], doubt_texels, unsure, partly, floats
                     )

@@ -113,8 +113,17 @@ def _not_reached(s, u, v, t):
     return False
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _says_nothing(doubtful, clear_from, hidden_to):
+    """Whether measured bounds lie wholly behind a voxel, or wholly before it, or are `NEUTRAL`: no dispute."""
+    return (
+        doubtful >> np.uint32(16) >= clear_from
+        or np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF)) <= hidden_to
+    )
+
+
 @njit(cache=True, nogil=True)
-def _bounds(texels, first, width, ua, ub, va, vb):
+def bounds(texels, first, width, ua, ub, va, vb):
     """Least and greatest depth over at least a rectangle of texels, ends included, in quanta; eight at a time.
 
     Rows of fewer than eight texels are not bounded.
@@ -193,16 +202,15 @@ def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile
     clear_from = np.uint32(min((far + margin) / quantum + 2.0, 65535.0))
     hidden_to = np.uint32(max((near - margin) / quantum - 2.0, 0.0))
     if ub - ua < 8:
-        least, most = _bounds(trust, first, width, ua, ub, va, vb)
+        least, most = bounds(trust, first, width, ua, ub, va, vb)
     else:
-        least, most = _bounds(trust_tiles, tile_first, tiles_across, ua >> 2, ub >> 2, va >> 2, vb >> 2)
+        least, most = bounds(trust_tiles, tile_first, tiles_across, ua >> 2, ub >> 2, va >> 2, vb >> 2)
     if least >= clear_from:
         return THROUGH if whole else 0
     if most <= hidden_to:
         return 0
     lines = _prepare(numbers, c, x, y, z, edge, s)
     blocked = False
-    seen_past, hidden = False, False
     answer = 0
     for tv in range(va >> 2, (vb >> 2) + 1):
         for tu in range(ua >> 2, (ub >> 2) + 1):
@@ -210,23 +218,18 @@ def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile
             tile = tile_first + tv * tiles_across + tu
             if trust_tiles[tile] >> np.uint32(16) >= clear_from:
                 continue
-            doubtful = doubt_tiles[tile]
-            if blocked and (
-                doubtful == NEUTRAL
-                or (hidden and np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF)) <= hidden_to)
-            ):
+            if blocked and _says_nothing(doubt_tiles[tile], clear_from, hidden_to):
                 continue
             for v in range(max(va, 4 * tv), min(vb, 4 * tv + 3) + 1):
                 row = first + v * width
                 for u in range(max(ua, 4 * tu), min(ub, 4 * tu + 3) + 1):
-                    least = trust[row + u] >> np.uint32(16)
-                    if least >= clear_from:
+                    trusted = trust[row + u] >> np.uint32(16)
+                    if trusted >= clear_from:
                         continue
                     doubtful = doubt[row + u]
                     greatest = np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF))
                     if blocked and (
-                        doubtful == NEUTRAL
-                        or (hidden and greatest <= hidden_to)
+                        _says_nothing(doubtful, clear_from, hidden_to)
                         or (answer & IS_BLIND and greatest == NO_RETURN)
                     ):
                         continue  # it can add nothing to what is known already
@@ -240,53 +243,22 @@ def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile
                         steep_far = np.sqrt(1.0 + (xn + wx) * (xn + wx) + (yn + wy) * (yn + wy))
                         xl, yl = max(xn - wx, 0.0), max(yn - wy, 0.0)
                         steep_near = np.sqrt(1.0 + xl * xl + yl * yl)
-                    if _has_left(s, u, v, (least * quantum - margin) / steep_far):
+                    if _has_left(s, u, v, (trusted * quantum - margin) / steep_far):
                         continue
                     blocked = True
-                    if doubtful == NEUTRAL:
+                    if _says_nothing(doubtful, clear_from, hidden_to):
                         continue
-                    least = doubtful >> np.uint32(16)
                     if greatest == NO_RETURN:
                         answer |= DISPUTES | IS_BLIND
-                    elif greatest <= hidden_to or _not_reached(
-                        s, u, v, (greatest * quantum + margin) / steep_near
-                    ):
-                        hidden = True
-                    elif least >= clear_from or _has_left(s, u, v, (least * quantum - margin) / steep_far):
-                        seen_past = True
-                    elif greatest >= clear_from or _has_left(
-                        s, u, v, (greatest * quantum - margin) / steep_far
-                    ):
-                        answer |= DISPUTES
-                    else:
-                        return DISPUTES | IS_SURFACE
+                        continue
+                    least = doubtful >> np.uint32(16)
+                    if _not_reached(s, u, v, (greatest * quantum + margin) / steep_near):
+                        continue
+                    if _has_left(s, u, v, (least * quantum - margin) / steep_far):
+                        continue
+                    return DISPUTES | IS_SURFACE
     if not blocked:
         return THROUGH if whole else 0
-    if hidden and not answer:
-        # an edge: of the rays that meet the voxel some are stopped before it and some pass it
-        if seen_past:
-            return DISPUTES
-        for tv in range(va >> 2, (vb >> 2) + 1):
-            for tu in range(ua >> 2, (ub >> 2) + 1):
-                doubtful = doubt_tiles[tile_first + tv * tiles_across + tu]
-                if np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF)) <= hidden_to:
-                    continue
-                for v in range(max(va, 4 * tv), min(vb, 4 * tv + 3) + 1):
-                    row = first + v * width
-                    for u in range(max(ua, 4 * tu), min(ub, 4 * tu + 3) + 1):
-                        texel = doubt[row + u]
-                        least = texel >> np.uint32(16)
-                        greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
-                        if texel == NEUTRAL or greatest <= hidden_to or _misses(s, lines, u, v):
-                            continue
-                        if least >= clear_from:
-                            return DISPUTES
-                        steep = 1.0
-                        if radial:
-                            xn, yn = abs(u - ox) / fx + wide / fx, abs(v - oy) / fy + wide / fy
-                            steep = np.sqrt(1.0 + xn * xn + yn * yn)
-                        if _has_left(s, u, v, (least * quantum - margin) / steep):
-                            return DISPUTES
     return answer
 
 
