@@ -42,11 +42,10 @@ from elbowroom.reconstruct._kernels_pixel import (
     IS_SURFACE,
     PIXEL_FLOATS,
     THROUGH,
-    bounds,
     settle_centre,
     settle_word,
 )
-from elbowroom.reconstruct._kernels_pyramid import NEUTRAL, NO_RETURN
+from elbowroom.reconstruct._kernels_pyramid import NEUTRAL, NO_RETURN, both_least
 
 ONE, TWO, THREE, DISPUTED, SURFACE, BLIND = range(6)
 PLANES = 6
@@ -155,12 +154,16 @@ def _contested(numbers, c, first, doubt_texels, tile_first, doubt_tiles, unsure,
         u, v = int(floats[U + lane]), int(floats[V + lane])
         ua, ub = max(u - reach, 0), min(u + reach, width - 1)
         va, vb = max(v - reach, 0), min(v + reach, height - 1)
-        if 2 * reach < 8:
-            least, greatest = bounds(doubt_texels, first, width, ua, ub, va, vb)
-        else:
-            least, greatest = bounds(
-                doubt_tiles, tile_first, (width + 3) >> 2, ua >> 2, ub >> 2, va >> 2, vb >> 2
-            )
+        stride = width
+        texels, begin = doubt_texels, first
+        if reach > 3:
+            texels, begin, stride = doubt_tiles, tile_first, (width + 3) >> 2
+            ua, ub, va, vb = ua >> 2, ub >> 2, va >> 2, vb >> 2
+        both = NEUTRAL
+        for row in range(va, vb + 1):
+            for column in range(ua, ub + 1):
+                both = both_least(both, texels[begin + row * stride + column])
+        least, greatest = both >> np.uint32(16), np.uint32(NO_RETURN) - (both & np.uint32(0xFFFF))
         floats[LEAST + lane] = np.float32(least) * quantum
         floats[GREATEST + lane] = (
             np.float32(greatest) * quantum if greatest < NO_RETURN else np.float32(np.inf)

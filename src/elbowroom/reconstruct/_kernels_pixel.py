@@ -123,7 +123,7 @@ def _says_nothing(doubtful, clear_from, hidden_to):
 
 
 @njit(cache=True, nogil=True)
-def bounds(texels, first, width, ua, ub, va, vb):
+def _bounds(texels, first, width, ua, ub, va, vb):
     """Least and greatest depth over at least a rectangle of texels, ends included, in quanta; eight at a time.
 
     Rows of fewer than eight texels are not bounded.
@@ -202,9 +202,9 @@ def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile
     clear_from = np.uint32(min((far + margin) / quantum + 2.0, 65535.0))
     hidden_to = np.uint32(max((near - margin) / quantum - 2.0, 0.0))
     if ub - ua < 8:
-        least, most = bounds(trust, first, width, ua, ub, va, vb)
+        least, most = _bounds(trust, first, width, ua, ub, va, vb)
     else:
-        least, most = bounds(trust_tiles, tile_first, tiles_across, ua >> 2, ub >> 2, va >> 2, vb >> 2)
+        least, most = _bounds(trust_tiles, tile_first, tiles_across, ua >> 2, ub >> 2, va >> 2, vb >> 2)
     if least >= clear_from:
         return THROUGH if whole else 0
     if most <= hidden_to:
