@@ -493,6 +493,8 @@ def _mark_row_of_tiles(view, depth, model, row, around, limits, found):
     if row >= around.near.shape[0]:
         return
     width, least, most = view.width, limits[0], limits[1]
+    # taken out of the tuple once: each look into it counts references, which costs more than the arithmetic below
+    sigmas, pose, cells, words = around.sigmas, around.world_from_camera, around.cells, around.words
     for column in range(around.near.shape[1]):
         start, stop = column * TILE, min(column * TILE + TILE, width)
         _set(least, start, stop, np.float32(max(around.near[row, column], view.min_depth)))
@@ -503,8 +505,13 @@ def _mark_row_of_tiles(view, depth, model, row, around, limits, found):
         for n in range(eight.size):
             if eight[n] != 0:
                 for u in range(8 * n, 8 * n + 8):
-                    if found[u] != 0 and _has_support(view, depth, model, u, v):
-                        _mark_return(view, u, v, depth[v, u], around)
+                    # the voxels first: neighbours mostly lie in the same ones
+                    if (
+                        found[u] != 0
+                        and _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words, False)
+                        and _has_support(view, depth, model, u, v)
+                    ):
+                        _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words, True)
 
 
 @njit(nogil=True, error_model="numpy")
@@ -523,9 +530,8 @@ def _find(depth, model, least, most, width, found):
 
 
 @njit(nogil=True, error_model="numpy")
-def _mark_return(view, u, v, d, around):
-    """Sets the voxels that one return may lie in."""
-    cells, words, pose = around.cells, around.words, around.world_from_camera
+def _mark_return(view, u, v, d, sigmas, pose, cells, words, sets):
+    """Sets the voxels that one return may lie in, or only says whether any of them is not set yet."""
     x, y = (u - view.cx) / view.fx, (v - view.cy) / view.fy
     z = d / math.sqrt(1.0 + x * x + y * y) if view.radial else float(d)
     half = 0.5 * z / min(view.fx, view.fy) / cells.edge
@@ -539,7 +545,7 @@ def _mark_return(view, u, v, d, around):
     rx = (pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]) * scale
     ry = (pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]) * scale
     rz = (pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]) * scale
-    spread = around.sigmas * _sigma(view, d) * z / d
+    spread = sigmas * _sigma(view, d) * z / d
     # steps of at most half a voxel
     steps = min(math.ceil(4.0 * spread / cells.edge), 1000)
     for n in range(steps + 1):
@@ -552,4 +558,9 @@ def _mark_return(view, u, v, d, around):
         for i in range(max(0, math.floor(px - half)), min(cells.nx - 1, math.floor(px + half)) + 1):
             for j in range(max(0, math.floor(py - half)), min(cells.ny - 1, math.floor(py + half)) + 1):
                 for k in range(max(0, math.floor(pz - half)), min(cells.nz - 1, math.floor(pz + half)) + 1):
-                    words[word_of(i, j, k, cells.cubes_y, cells.cubes_z)] |= bit_of(i, j, k)
+                    word, bit = word_of(i, j, k, cells.cubes_y, cells.cubes_z), bit_of(i, j, k)
+                    if sets:
+                        words[word] |= bit
+                    elif not words[word] & bit:
+                        return True
+    return False

@@ -19,7 +19,6 @@ from elbowroom.reconstruct._kernels_box import (
     HALF_EXTENT,
     INSIDE,
     INTS,
-    LEAST,
     NEAR,
     OUTSIDE,
     QUANTUM,
@@ -138,40 +137,33 @@ def _sort_out(numbers, c, scale_edge, first, trust_texels, doubt_texels, unsure,
 
 
 @njit(cache=True, nogil=True)
-def _contested(numbers, c, first, doubt_texels, tile_first, doubt_tiles, unsure, partly, reach, floats):
-    """Of the unsure boxes those that unexplained pixels dispute; LEAST and GREATEST become what these measured.
+def _contested(numbers, c, tile_first, doubt_tiles, unsure, partly, reach, floats):
+    """Of the unsure boxes those that unexplained pixels dispute.
 
-    Asked are all pixels within `reach` of a box's centre pixel, or the tiles that hold them where they are many.
+    Asked are all tiles that hold a pixel within `reach` of a box's centre pixel.
     """
     disputed = NOTHING
     width, height = int(numbers[c, SIZE]), int(numbers[c, SIZE + 1])
+    across = (width + 3) >> 2
     quantum = np.float32(numbers[c, QUANTUM])
     rest = unsure
     while rest:
         lane = np.int64(trailing_zeros(rest))
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
+        if partly and floats[STATE + lane] == CROSSING:
+            disputed |= bit
+            continue
         u, v = int(floats[U + lane]), int(floats[V + lane])
-        ua, ub = max(u - reach, 0), min(u + reach, width - 1)
-        va, vb = max(v - reach, 0), min(v + reach, height - 1)
-        stride = width
-        texels, begin = doubt_texels, first
-        if reach > 3:
-            texels, begin, stride = doubt_tiles, tile_first, (width + 3) >> 2
-            ua, ub, va, vb = ua >> 2, ub >> 2, va >> 2, vb >> 2
+        first, last = max(u - reach, 0) >> 2, min(u + reach, width - 1) >> 2
         both = NEUTRAL
-        for row in range(va, vb + 1):
-            for column in range(ua, ub + 1):
-                both = both_least(both, texels[begin + row * stride + column])
-        least, greatest = both >> np.uint32(16), np.uint32(NO_RETURN) - (both & np.uint32(0xFFFF))
-        floats[LEAST + lane] = np.float32(least) * quantum
-        floats[GREATEST + lane] = (
-            np.float32(greatest) * quantum if greatest < NO_RETURN else np.float32(np.inf)
-        )
-        crossing = partly and floats[STATE + lane] == CROSSING
-        past = floats[LEAST + lane] > floats[FAR + lane]
-        hidden = floats[GREATEST + lane] < floats[NEAR + lane]
-        if crossing or not (past or hidden):
+        for row in range(max(v - reach, 0) >> 2, (min(v + reach, height - 1) >> 2) + 1):
+            for tile in range(tile_first + row * across + first, tile_first + row * across + last + 1):
+                both = both_least(both, doubt_tiles[tile])
+        greatest = np.uint32(NO_RETURN) - (both & np.uint32(0xFFFF))
+        past = np.float32(both >> np.uint32(16)) * quantum > floats[FAR + lane]
+        hidden = greatest < NO_RETURN and np.float32(greatest) * quantum < floats[NEAR + lane]
+        if not (past or hidden):
             disputed |= bit
     return disputed
 
@@ -317,27 +309,21 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
                     undecided[c] |= here
                     unsettled[c, lane] = unsure & ~surface
                 else:
+                    contested = unsure
                     if numbers[c, SPLIT] != 0.0:
-                        unsure = _contested(
-                            numbers,
-                            c,
-                            texel_first[c],
-                            doubt_texels,
-                            tile_first[c],
-                            doubt_tiles,
-                            unsure,
-                            partly,
-                            reach,
-                            floats,
+                        # one dispute is enough, unless they are counted
+                        open_voxels = unsure if complete else unsure & ~planes[DISPUTED, word]
+                        contested = _contested(
+                            numbers, c, tile_first[c], doubt_tiles, open_voxels, partly, reach, floats
                         )
                     surface, blind = _measured_at_centre(
                         numbers, c, texel_first[c], doubt_texels, unsure, partly, floats
                     )
-                    planes[DISPUTED, word] |= unsure
+                    planes[DISPUTED, word] |= contested
                     planes[SURFACE, word] |= surface
                     planes[BLIND, word] |= blind
                     if complete:
-                        _tally(dispute_count, word, unsure)
+                        _tally(dispute_count, word, contested)
         # first those that may see through: where three do, the others need not be asked, nor where there is a surface
         for turn in range(2):
             for c in range(cameras):

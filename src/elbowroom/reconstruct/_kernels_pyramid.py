@@ -101,7 +101,8 @@ def _free_to_model(depth, margin, quantum):
     The margin is added to the model's depth because a voxel is compared with its own margin added: what is known of
     the body does not scatter as a measurement does.
     """
-    return np.uint32(min(max((depth + margin_at(depth, margin)) / quantum - 1.0, 0.0), float(FAR_CLIP)))
+    quanta = min(max((depth + margin_at(depth, margin)) / quantum - 1.0, 0.0), float(FAR_CLIP))
+    return np.uint32(np.int32(quanta))
 
 
 @njit(cache=True, nogil=True)
@@ -218,22 +219,27 @@ def windows_of(texels, across, windows):
 
 
 @njit(cache=True, nogil=True)
-def ignore_explained(model_m, texels):
-    """Makes pixels that see the machine `NEUTRAL`."""
-    for v in range(texels.shape[0]):
-        for u in range(texels.shape[1]):
-            depth = model_m[v, u]
-            explained = depth > 0.0 or depth < -NEXT_TO_NOTHING_M
-            texels[v, u] = NEUTRAL if explained else texels[v, u]
+def _any_of(row):
+    """Whether anything of a row is not zero."""
+    most, least = np.float32(0.0), np.float32(0.0)
+    for n in range(row.size):
+        u = np.uint64(n)
+        most, least = max(most, row[u]), min(least, row[u])
+    return most > least
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def mark_explained(model_m, margin, quantum, trust):
-    """Pixels that see the machine: free up to the model's surface, hidden behind it. Mixed pixels stay as they are."""
-    rows, columns = model_m.shape
-    for v in range(rows):
-        for u in range(columns):
+def mark_explained(model_m, margin, quantum, trust, doubt):
+    """Pixels that see the machine, as `machine.explain` tells: `NEUTRAL` in `doubt`; in `trust`, those with a depth of
+    the model are free up to it, and hidden behind it.
+    """
+    for v in range(model_m.shape[0]):
+        if not _any_of(model_m[v]):
+            continue
+        for u in range(model_m.shape[1]):
             depth = model_m[v, u]
+            if depth > 0.0 or depth < -NEXT_TO_NOTHING_M:
+                doubt[v, u] = NEUTRAL
             if 0.0 < depth < np.inf:
                 least = _free_to_model(depth, margin, quantum)
                 greatest = np.uint32(min(depth / quantum + 2.0, float(FAR_CLIP)))

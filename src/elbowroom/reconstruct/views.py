@@ -234,8 +234,7 @@ def _texels(
     if trust is not doubt:
         trust[:] = doubt
     if explained:
-        pyramid.ignore_explained(model_m, doubt)
-        pyramid.mark_explained(model_m, polynomial, quantum, trust)
+        pyramid.mark_explained(model_m, polynomial, quantum, trust, doubt)
     if camera.flying_pixels:
         model = model_m if explained else np.zeros((0, 0), dtype=np.float32)
         pitch = 1.0 / min(camera.intrinsics.fx, camera.intrinsics.fy)
@@ -244,7 +243,7 @@ def _texels(
         pyramid.pass_over_specks(trust, pitch, model, polynomial, quantum, passed)
         pyramid.lower_at_steps(passed, doubt, quantum, step, trust)
         if explained:
-            pyramid.mark_explained(model_m, polynomial, quantum, trust)
+            pyramid.mark_explained(model_m, polynomial, quantum, trust, doubt)
     return explained
 
 
