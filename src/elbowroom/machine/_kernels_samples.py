@@ -181,7 +181,9 @@ def cluster(points, size, order, stops):
         along = np.empty(part.size, dtype=points.dtype)
         for p in range(part.size):
             along[p] = points[part[p], axis]
-        order[start:stop] = part[np.argsort(along)]
+        rank = np.argsort(along)
+        for p in range(part.size):
+            order[start + p] = part[rank[p]]
         clusters = (stop - start + size - 1) // size
         middle = start + (clusters // 2) * size
         stack[depth, 0], stack[depth, 1] = middle, stop
