@@ -19,7 +19,7 @@ from elbowroom.geometry.parallel import default_threads
 WORKER = (sys.executable, "-m", "elbowroom.cli.kernel_jobs")
 
 
-def compile_kernels(console: Console, *, machine: bool, simulator: bool) -> None:
+def compile_kernels(console: Console, *, machine: bool, motion: bool, simulator: bool) -> None:
     """Compiles those kernels of a run that the cache on disk does not have, and shows which.
 
     What fails here is compiled again, and its fault shown, when the run comes to use it.
@@ -27,9 +27,10 @@ def compile_kernels(console: Console, *, machine: bool, simulator: bool) -> None
     Args:
         console: where to show it.
         machine: whether the run has a machine.
+        motion: whether it checks motions.
         simulator: whether its images are simulated.
     """
-    given = {"always": True, "machine": machine, "simulator": simulator}
+    given = {"always": True, "machine": machine, "motion": motion, "simulator": simulator}
     wanted = [job for job in JOBS if given[job.needs] and not job.is_kept]
     if not wanted:
         return

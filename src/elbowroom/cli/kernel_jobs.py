@@ -11,7 +11,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Literal
 
-Needs = Literal["always", "machine", "simulator"]
+Needs = Literal["always", "machine", "motion", "simulator"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +106,7 @@ JOBS = (
         "motions",
         _motion,
         ("elbowroom.motion._kernels", "first_block"),
-        "machine",
+        "motion",
         "the machine's body",
     ),
     Job(

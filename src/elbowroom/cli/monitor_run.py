@@ -91,7 +91,7 @@ def _warm_up(room: Room, cycle: Cycle, console: Console) -> None:
     Raises:
         InputError: the first cycle failed, so that all would.
     """
-    compile_kernels(console, machine=room.machine is not None, simulator=room.site.simulated is not None)
+    compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
     with Steps(console, 3) as steps:
         steps.begin("first frames")
         scene = next(room.scenes(), None)

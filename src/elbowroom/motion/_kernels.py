@@ -17,9 +17,6 @@ ROUNDING_M = 1e-9
 EXACT_UP_TO = 6.0
 """Larger balls are tested against blocks of 64 voxels alone [voxel edges]."""
 
-INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""For what only kernels call: without the code that takes Python's arguments apart, which takes long to compile."""
-
 SURFACE, OUTSIDE, BLIND, UNSEEN, NOTHING = 0, 1, 2, 3, 4
 """What a block is, the most cautious first."""
 
@@ -51,7 +48,7 @@ class Skin(NamedTuple):
     patch_start: np.ndarray
 
 
-@njit(**INNER)
+@njit
 def place_at(tree, world_from_base, course, travel, world_from_link):
     """Fills world_from_link (1, links, 4, 4) for one place along a course."""
     last = course.travel.size - 2
@@ -117,7 +114,7 @@ def bound_speeds(tree, rates, lengths, world_from_link, skin):
     return speeds
 
 
-@njit(**INNER)
+@njit
 def _distance_to_axis(world_from_joint, axis_in_joint, x, y, z):
     """Distance of a point from the axis through a joint's frame."""
     a, b, c = _carried(world_from_joint, axis_in_joint)
@@ -126,7 +123,7 @@ def _distance_to_axis(world_from_joint, axis_in_joint, x, y, z):
     return math.sqrt((y * c - z * b) ** 2 + (z * a - x * c) ** 2 + (x * b - y * a) ** 2)
 
 
-@njit(**INNER)
+@njit
 def _near_clusters(placed, skin, speeds, half, volume, cells, asked, near):
     """The clusters among `asked` that may meet a block within half an interval either way; how many."""
     link, centre, radius, cover = skin.link, skin.centre, skin.radius, skin.cover
@@ -144,7 +141,7 @@ def _near_clusters(placed, skin, speeds, half, volume, cells, asked, near):
     return count
 
 
-@njit(**INNER)
+@njit
 def _near_samples(placed, skin, speeds, half, volume, cells, asked, near):
     """The same for samples."""
     link, points, cluster_of, cover = skin.link, skin.points, skin.cluster_of, skin.cover
@@ -160,7 +157,7 @@ def _near_samples(placed, skin, speeds, half, volume, cells, asked, near):
     return count
 
 
-@njit(**INNER)
+@njit
 def _members(skin, clusters, samples):
     """All samples of some clusters; how many."""
     count = 0
@@ -171,7 +168,7 @@ def _members(skin, clusters, samples):
     return count
 
 
-@njit(**INNER)
+@njit
 def _leaves_patch(transform, skin, sample, grown, cells):
     """Whether a corner of a sample's patch comes within `grown` of leaving the grid."""
     for n in range(skin.patch_start[sample], skin.patch_start[sample + 1]):
@@ -182,7 +179,7 @@ def _leaves_patch(transform, skin, sample, grown, cells):
     return False
 
 
-@njit(**INNER)
+@njit
 def _meets_patch(transform, skin, sample, x, y, z, half_edge, corners):
     """Whether a sample's patch meets a cube; `corners` (3, 3) is scratch."""
     for n in range(skin.patch_start[sample], skin.patch_start[sample + 1]):
@@ -206,7 +203,7 @@ def _kind(volume, word, bit):
     return UNSEEN
 
 
-@njit(**INNER)
+@njit
 def touched_block(placed, skin, speeds, half, volume, cells, samples, place):
     """The most cautious block that samples' patches meet, grown by their movement: what, by which cluster.
 
