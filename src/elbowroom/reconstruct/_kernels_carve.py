@@ -220,6 +220,8 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
     stopped = np.empty((cameras, 64), dtype=np.uint64)
     edge = lattice.edge
     block = 4.0 * edge
+    # not literals: numba would compile all that `_ask` calls once for each of them
+    of_voxels, of_blocks, keep = np.int64(0), np.int64(1), np.bool_(True)
     for cube in cubes:
         x = lattice.x0 + (cube // (lattice.cubes_y * lattice.cubes_z)) * 16 * edge
         y = lattice.y0 + ((cube // lattice.cubes_z) % lattice.cubes_y) * 16 * edge
@@ -231,12 +233,12 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
                 offset,
                 windows,
                 c,
-                1,
+                of_blocks,
                 x + 0.5 * block,
                 y + 0.5 * block,
                 z + 0.5 * block,
                 block,
-                True,
+                keep,
                 floats,
                 ints,
                 flags,
@@ -273,7 +275,7 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
                     offset,
                     windows,
                     c,
-                    0,
+                    of_voxels,
                     bx,
                     by,
                     bz,

@@ -70,16 +70,18 @@ def _prepare(numbers, c, x, y, z, edge, s):
         middle = (x if a == 0 else (y if a == 1 else z)) - numbers[c, CENTRE + a]
         s[LOW + a] = middle - half
         s[HIGH + a] = middle + half
-    count = _silhouette(0, 1, s, 0)
-    count = _silhouette(1, 2, s, count)
-    count = _silhouette(2, 0, s, count)
+    # not literals: numba would compile it once for each of them
+    first, second, third = np.int64(0), np.int64(1), np.int64(2)
+    count = _silhouette(first, second, s, first)
+    count = _silhouette(second, third, s, count)
+    count = _silhouette(third, first, s, count)
     for line in range(count):
         at = LINES + 4 * line
         s[at + 3] = (abs(s[at + 1]) + abs(s[at + 2])) * wide
     return count
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, forceinline=True)
 def _misses(s, count, u, v):
     for line in range(count):
         at = LINES + 4 * line
@@ -88,7 +90,7 @@ def _misses(s, count, u, v):
     return False
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, forceinline=True)
 def _has_left(s, u, v, t):
     """Whether all of the pixel's cone is beyond the voxel from depth t on."""
     for a in range(3):
@@ -101,7 +103,7 @@ def _has_left(s, u, v, t):
     return False
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, forceinline=True)
 def _not_reached(s, u, v, t):
     """Whether no part of the pixel's cone has reached the voxel up to depth t."""
     for a in range(3):
