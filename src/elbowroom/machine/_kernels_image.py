@@ -117,7 +117,11 @@ def draw(mesh, camera_from_link, view, inverse, first, last):
                     seen[c, 0], seen[c, 1], seen[c, 2], view, inverse, first, last,
                 )  # fmt: skip
             elif behind < 3:
-                corners[0], corners[1], corners[2] = seen[a], seen[b], seen[c]
+                # one number at a time, here and below: assigning rows takes the compiler seconds longer
+                for axis in range(3):
+                    corners[0, axis] = seen[a, axis]
+                    corners[1, axis] = seen[b, axis]
+                    corners[2, axis] = seen[c, axis]
                 _clip_and_fill(corners, view, inverse, first, last)
 
 
@@ -168,11 +172,13 @@ def _clip_and_fill(corners, view, inverse, first, last):
         q = (p + 1) % 3
         inside, next_inside = corners[p, 2] > 0.0, corners[q, 2] > 0.0
         if inside:
-            kept[n] = points[p]
+            for axis in range(3):
+                kept[n, axis] = points[p, axis]
             n += 1
         if inside != next_inside:
             t = (NEAR_M - points[p, 2]) / (points[q, 2] - points[p, 2])
-            kept[n] = points[p] + t * (points[q] - points[p])
+            for axis in range(2):
+                kept[n, axis] = points[p, axis] + t * (points[q, axis] - points[p, axis])
             kept[n, 2] = NEAR_M
             n += 1
     for p in range(n):
