@@ -39,6 +39,14 @@ def joint(kind="revolute", limit='<limit lower="-1" upper="1"/>', axis="0 0 1", 
     )
 
 
+@pytest.mark.parametrize(("lower", "upper", "nearest"), [(-1, 1, 0), (0.5, 2, 0.5), (-3, -0.25, -0.25)])
+def test_nearest_to_zero_keeps_to_the_limits(tmp_path, lower, upper, nearest):
+    limit = f'<limit lower="{lower}" upper="{upper}"/>'
+    made = Machine.from_urdf(urdf(tmp_path, BOX + '<link name="b"/>' + joint(limit=limit)))
+    assert made.nearest_to_zero() == {"j": nearest}
+    made.checked(made.nearest_to_zero())
+
+
 def test_names_follow_the_tree_and_followers_are_not_commanded(arm):
     assert arm.link_names == ("foot", "flange", "upper", "fore", "left", "right")
     assert arm.joint_names == ("slide", "elbow", "grip")

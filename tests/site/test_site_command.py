@@ -109,6 +109,35 @@ def test_the_picture_shows_grid_and_cameras(camera):
     assert (np.asarray(draw_site("room", grid, [camera, camera])) != with_camera).any()
 
 
+def test_the_picture_shows_the_machine_where_it_stands():
+    grid = VoxelGrid((-1, -1, 0), (20, 20, 30), 0.1)
+    triangle = np.array([[[-0.5, -0.5, 1.0], [0.5, -0.5, 1.0], [0.0, 0.5, 2.0]]])
+    bare, drawn = (np.asarray(draw_site("room", grid, [], triangles)) for triangles in (None, triangle))
+    rows, columns = np.nonzero((bare != drawn).any(axis=-1))
+    # 3 m on 700 px; x from column 60 in the left view, from 840 in the right one; z up from row 784
+    px_per_m = 700 / 3
+    left, right = columns < 800, columns > 840
+    assert columns[left].min() == pytest.approx(60 + 0.5 * px_per_m, abs=2)
+    assert np.ptp(rows[left]) == pytest.approx(px_per_m, abs=2)
+    assert rows[right].max() == pytest.approx(784 - px_per_m, abs=2)
+    assert rows[right].min() == pytest.approx(784 - 2 * px_per_m, abs=2)
+
+
+def test_a_site_with_a_machine_has_it_in_its_picture(monkeypatch, tmp_path):
+    from elbowroom.site import picture
+
+    given = []
+    monkeypatch.setattr(picture, "draw_site", lambda *args: given.append(args) or draw_site(*args))
+    command("new", tmp_path / "room.yaml")
+    command("check", tmp_path / "room.yaml", "--out", tmp_path / "room.png")
+    ((_, grid, _, triangles),) = given
+    machine = Site.load(tmp_path / "room.yaml").machine()
+    assert len(triangles) == sum(len(link.triangles) for link in machine.links) > 0
+    # most of it stands in the watched box
+    inside = ((triangles > grid.lower_m) & (triangles < grid.upper_m)).all(axis=-1)
+    assert inside.mean() > 0.5
+
+
 def test_memory_grows_with_grid_and_cameras(camera):
     small, large = VoxelGrid((0, 0, 0), (16, 16, 16), 0.1), VoxelGrid((0, 0, 0), (32, 32, 32), 0.1)
     assert memory_of(large, []).plane_bytes == 8 * memory_of(small, []).plane_bytes == 8 * 512

@@ -38,7 +38,12 @@ def new(
 def check(
     site_path: SitePath,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="PNG", help="Draw cameras and grid into this picture.")
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="PNG",
+            help="Draw cameras, grid and the machine, its joints at zero, into this picture.",
+        ),
     ] = None,
     json_file: JsonFile = None,
 ) -> None:
@@ -139,6 +144,9 @@ def _say(row: dict[str, Any]) -> None:
 def _draw(site: "Site", out: Path) -> None:
     from elbowroom.site.picture import draw_site
     from elbowroom.view.atomic import whole_file
+    from elbowroom.view.outline import triangles_of
 
+    machine = site.machine()
+    triangles = None if machine is None else triangles_of(machine, machine.nearest_to_zero())
     with whole_file(out) as unfinished:
-        draw_site(site.name, site.grid(), cameras_of(site)).save(unfinished, format="PNG")
+        draw_site(site.name, site.grid(), cameras_of(site), triangles).save(unfinished, format="PNG")

@@ -128,6 +128,11 @@ class Machine:
             moved[row] = self.tree.column[row] == column or (parent >= 0 and moved[parent])
         return tuple(name for name, moves in zip(self.link_names, moved, strict=True) if moves)
 
+    def nearest_to_zero(self) -> dict[str, float]:
+        """All joints at zero, or at the limit nearest to it [m or rad]."""
+        joints = [self.joint(name) for name in self.joint_names]
+        return {joint.name: min(max(0.0, joint.lower), joint.upper) for joint in joints}
+
     def checked(self, joints: Joints) -> dict[str, NDArray[np.float64]]:
         """The same joint positions, in the order of `joint_names`, after finding them possible.
 

@@ -1,11 +1,11 @@
-"""Cameras and grid from above and from the side, as a picture to look at before anything is measured."""
+"""Cameras, machine and grid from above and from the side, as a picture to look at before anything is measured."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageChops, ImageDraw, ImageFilter, ImageFont
 from scipy.spatial import ConvexHull, QhullError
 
 from elbowroom.geometry import DepthCamera, VoxelGrid
@@ -18,6 +18,7 @@ GRID_FILL, FAN_FILL, FAN_EDGE, DOT = (
     (0, 114, 178, 120),
     (213, 94, 0, 255),
 )
+MACHINE, MACHINE_OPACITY = (64, 70, 78), 0.35
 NAME_WIDTH_PX, NAME_HEIGHT_PX = 64, 15
 """A name that would lie on another within this distance is left out."""
 FEW_CAMERAS = 4
@@ -40,27 +41,34 @@ class _View(NamedTuple):
         return [(self.left_px + x, TITLE_PX + VIEW_PX - y) for x, y in place]
 
 
-def draw_site(name: str, grid: VoxelGrid, cameras: Sequence[DepthCamera]) -> Image.Image:
-    """Grid and fields of view, projected along z (x and y shown) and along y (x and z shown).
+def draw_site(
+    name: str,
+    grid: VoxelGrid,
+    cameras: Sequence[DepthCamera],
+    machine_in_world: NDArray[np.float64] | None = None,
+) -> Image.Image:
+    """Grid, machine and fields of view, projected along z (x and y shown) and along y (x and z shown).
 
     Args:
         name: title of the picture.
         grid: the watched box.
         cameras: their fields of view are drawn to a share of the box's diagonal, but not beyond their range.
+        machine_in_world: the machine's triangles where it stands, shape (n, 3, 3) [m]; None: no machine.
 
     Returns:
         An RGB picture.
     """
     diagonal_m = float(np.linalg.norm(grid.upper_m - grid.lower_m))
     reach_m = diagonal_m * (0.75 if len(cameras) <= FEW_CAMERAS else 0.25)
+    triangles = np.zeros((0, 3, 3)) if machine_in_world is None else machine_in_world
     frusta = [frustum_in_world(camera, min(camera.max_depth_m, reach_m)) for camera in cameras]
-    everything = np.concatenate([grid.lower_m[None], grid.upper_m[None], *frusta])
+    everything = np.concatenate([grid.lower_m[None], grid.upper_m[None], triangles.reshape(-1, 3), *frusta])
     lower, upper = everything.min(axis=0), everything.max(axis=0)
     px_per_m = (VIEW_PX - 20) / float((upper - lower).max())
     picture = Image.new("RGBA", (2 * VIEW_PX + 3 * EDGE_PX, VIEW_PX + TITLE_PX + EDGE_PX), PAPER)
     for column, (axes, title) in enumerate((((0, 1), "along z: x and y"), ((0, 2), "along y: x and z"))):
         view = _View(axes, title, EDGE_PX + column * (VIEW_PX + EDGE_PX), lower[list(axes)], px_per_m)
-        _draw_view(picture, view, grid, cameras, frusta, upper)
+        _draw_view(picture, view, grid, triangles, cameras, frusta, upper)
     draw = ImageDraw.Draw(picture)
     shape = " x ".join(map(str, grid.shape))
     text = f"{name}: {len(cameras)} cameras, {shape} voxels of {grid.voxel_size_m * 100:g} cm"
@@ -86,6 +94,7 @@ def _draw_view(
     picture: Image.Image,
     view: _View,
     grid: VoxelGrid,
+    triangles_in_world: NDArray[np.float64],
     cameras: Sequence[DepthCamera],
     frusta: Sequence[NDArray[np.float64]],
     upper_m: NDArray[np.float64],
@@ -99,6 +108,7 @@ def _draw_view(
         sheet = Image.new("RGBA", picture.size, (0, 0, 0, 0))
         ImageDraw.Draw(sheet).polygon(_outline(view.at(frustum)), fill=FAN_FILL, outline=FAN_EDGE)
         picture.alpha_composite(sheet)
+    _draw_machine(picture, view, triangles_in_world)
     draw = ImageDraw.Draw(picture)
     named: list[tuple[float, float]] = []
     for camera in cameras:
@@ -108,6 +118,18 @@ def _draw_view(
             draw.text((x + 6, y - 6), camera.name, INK, font=_font(12))
             named.append((x, y))
     _draw_scale(draw, view, upper_m)
+
+
+def _draw_machine(picture: Image.Image, view: _View, triangles_in_world: NDArray[np.float64]) -> None:
+    """The shadow of all triangles, with an outline."""
+    shadow = Image.new("L", picture.size, 0)
+    pen = ImageDraw.Draw(shadow)
+    corners = view.at(triangles_in_world.reshape(-1, 3))
+    for first in range(0, len(corners), 3):
+        pen.polygon(corners[first : first + 3], fill=255)
+    outline = ImageChops.subtract(shadow, shadow.filter(ImageFilter.MinFilter(3)))
+    picture.paste(MACHINE, mask=shadow.point(lambda covered: int(covered * MACHINE_OPACITY)))
+    picture.paste(MACHINE, mask=outline)
 
 
 def _draw_scale(draw: ImageDraw.ImageDraw, view: _View, upper_m: NDArray[np.float64]) -> None:
