@@ -4,7 +4,7 @@ import pytest
 
 from elbowroom.evaluate.exact import Contact
 from elbowroom.evaluate.poses import poses_summary
-from elbowroom.evaluate.scene import Comparison
+from elbowroom.evaluate.scene import Comparison, lean
 from elbowroom.motion import Cause, Level, Motion, Verdict
 
 MOTION = Motion("turn", 1, 0.1)
@@ -39,6 +39,11 @@ def test_a_way_that_a_limit_cuts_short_is_not_truly_clear():
     assert comparison(0.1, Contact(0.5, 0.5)).truly_clear
     cut = comparison(0.05, Contact(0.2, 0.2))
     assert not cut.truly_clear and cut.true_level is Level.CLEAR
+
+
+def test_a_row_of_a_file_leaves_out_what_the_summary_says():
+    row = {"pose": 3, "seed": 2, "cameras": 21, "width": 640, "free_travel": 0.123456789, "link": None}
+    assert lean(row) == {"pose": 3, "free_travel": 0.123457, "link": None}
 
 
 def test_the_summary_counts_each_kind():

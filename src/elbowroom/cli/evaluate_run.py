@@ -170,17 +170,22 @@ def _run(
     total: int,
     json: Path | None,
     *,
-    summary: Callable[[Sequence[Row]], Sequence[Row]] = lambda rows: (),
+    summary: Callable[[Sequence[Row]], Sequence[Row]] | None = None,
     show: Callable[[Sequence[Row]], None],
 ) -> None:
-    """Writes rows and their summary, then shows them. After Ctrl-C: shows what there is, no file."""
+    """Writes rows and their summary, then shows them. After Ctrl-C: shows what there is, no file.
+
+    Where there is a summary, rows leave out what it says.
+    """
+    from elbowroom.evaluate.scene import lean
+
     rows: list[Row] = []
     try:
         with json_rows(json) as add:
             for row in _watched(what, found, total):
-                add(row)
+                add(lean(row) if summary else row)
                 rows.append(row)
-            for row in summary(rows):
+            for row in summary(rows) if summary else ():
                 add(row)
     except KeyboardInterrupt:
         if rows:

@@ -39,7 +39,7 @@ def json_rows(path: Path | None) -> Iterator[AddRow]:
 
         def add(row: Mapping[str, Any]) -> None:
             nonlocal separator
-            file.write(separator + json.dumps(_plain(row), allow_nan=False))
+            file.write(separator + json.dumps(_plain(row), allow_nan=False, separators=(",", ":")))
             separator = ",\n"
 
         yield add

@@ -54,11 +54,11 @@ def alone_rows(
                     "pose": pose,
                     "voxel_size_m": edge,
                     "detail": detail,
+                    "seed": seed,
                     "cameras": len(views),
                     "width": views[0].width,
                     "height": views[0].height,
                     "heights_m": list(heights_m),
-                    "joints": moment.joints,
                     "joint": motion.joint,
                     "direction": "-+"[motion.direction > 0],
                     "level": verdict.level.name.lower(),
@@ -66,8 +66,6 @@ def alone_rows(
                     "cause": verdict.cause.name.lower(),
                     "free_travel": verdict.free_travel,
                     "free_travel_unit": verdict.free_travel_unit,
-                    "link": verdict.link,
-                    "place_m": verdict.place_in_world,
                 }
 
 

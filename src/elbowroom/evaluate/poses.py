@@ -65,12 +65,11 @@ def poses_rows(
                 "pose": pose,
                 "voxel_size_m": voxel_size_m,
                 "detail": detail,
+                "seed": seed,
                 "cameras": len(views),
                 "width": views[0].width,
                 "height": views[0].height,
                 "heights_m": list(heights_m),
-                "time_s": moment.time_s,
-                "joints": moment.joints,
                 **compared.row(),
             }
 

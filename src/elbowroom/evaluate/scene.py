@@ -15,6 +15,12 @@ SAME = 1e-9
 """Travels that differ by less are the same: rounding [m or rad]."""
 
 
+IN_SUMMARY = ("seed", "cameras", "width", "height", "heights_m")
+"""What is the same in all rows of a run; in its file the summary alone says it."""
+DECIMALS = 6
+"""Of numbers in a file: micrometres, microradians."""
+
+
 def room_grid(voxel_size_m: float) -> VoxelGrid:
     """The watched box of the simulated room."""
     return VoxelGrid.covering(ROOM_LOWER_M, ROOM_UPPER_M, voxel_size_m)
@@ -26,9 +32,21 @@ def room_motions(machine: Machine) -> tuple[Motion, ...]:
 
 
 def settings_of(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """What a summary says of how its rows were made: its kind, and the rows' voxel size, detail and cameras."""
-    names = ("voxel_size_m", "detail", "cameras", "width", "height")
+    """What a summary says of how its rows were made: its kind, and the rows' voxel size, detail, seed and cameras."""
+    names = ("voxel_size_m", "detail", *IN_SUMMARY)
     return {"kind": "summary", **{name: rows[0][name] for name in names if rows and name in rows[0]}}
+
+
+def lean(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row as a file has it: without what the summary says, numbers rounded to `DECIMALS`.
+
+    Joint positions are not written at all: they follow from seed and number of the pose.
+    """
+    return {
+        name: round(value, DECIMALS) if isinstance(value, float) else value
+        for name, value in row.items()
+        if name not in IN_SUMMARY
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,22 +87,15 @@ class Comparison:
 
     def row(self) -> dict[str, object]:
         """The verdict, the truth, and how they compare; travels in `free_travel_unit`."""
-        place = self.verdict.place_in_world
         return {
             "joint": self.motion.joint,
             "direction": "-+"[self.motion.direction > 0],
             "level": self.verdict.level.name.lower(),
-            "band": self.verdict.band,
             "cause": self.verdict.cause.name.lower(),
             "free_travel": self.verdict.free_travel,
             "free_travel_unit": self.verdict.free_travel_unit,
-            "link": self.verdict.link,
-            "place_m": place,
             "true_level": self.true_level.name.lower(),
-            "true_band": self.true_level.band,
             "true_travel": self.contact.travel,
-            "true_link": self.contact.link,
-            "true_solid": self.contact.solid,
             "truly_clear": self.truly_clear,
             "milder": self.milder,
         }
