@@ -52,6 +52,21 @@ def of(key: str, digits: int | None = None, *, due: Due | None = None) -> Cell:
     return cell
 
 
+def same(*keys: str) -> dict[str, Cell]:
+    """Columns that are headed by the keys of their values."""
+    return {key: of(key) for key in keys}
+
+
+def at_most(figure: float) -> Due:
+    """Due of every row."""
+    return lambda row: ("≤", figure)
+
+
+def at_least(figure: float) -> Due:
+    """Due of every row."""
+    return lambda row: ("≥", figure)
+
+
 def centimetres(row: Row) -> str:
     """The edge of a voxel."""
     return "" if row.get("voxel_size_m") is None else f"{row['voxel_size_m'] * 100:g} cm"
@@ -62,6 +77,10 @@ def is_full_room(row: Row) -> bool:
     return (row.get("cameras"), row.get("width"), row.get("height")) == (21, 640, 480)
 
 
+STAGE = "cycle/"
+"""Cases that begin so are stages of the cycle."""
+KIND = ("voxel_size_m", "detail", "noise")
+"""What tells one cycle from another."""
 MEDIAN_MS = {
     ("carve", 0.05, "footprint"): 25.0,
     ("carve", 0.02, "footprint"): 130.0,
@@ -85,16 +104,13 @@ def _due_memory(row: Row) -> tuple[str, float] | None:
 def bench_tables(rows: Sequence[Row]) -> list[str]:
     """Times, then the stages of a cycle."""
     whole = [row for row in rows if "/" not in str(row.get("case"))]
-    stages = [row for row in rows if str(row.get("case")).startswith("cycle/")]
     lines = table(
         whole,
         {
-            "case": of("case"),
+            **same("case"),
             "voxel": centimetres,
             "cameras": lambda row: f"{row.get('cameras')} x {row.get('width')}x{row.get('height')}",
-            "detail": of("detail"),
-            "noise": of("noise"),
-            "threads": of("threads"),
+            **same("detail", "noise", "threads"),
             "median ms": of("median_ms", 1, due=_due_ms),
             "99 % ms": of("p99_ms", 1),
             "worst ms": of("max_ms", 1),
@@ -102,33 +118,34 @@ def bench_tables(rows: Sequence[Row]) -> list[str]:
             "ratio": of("ratio", 2),
         },
     )
-    against = [row["times_slower_than_carve"] for row in rows if row.get("times_slower_than_carve")]
-    for times in against:
-        met = "" if times >= 500 else ": missed"
-        lines += [
-            "",
-            f"OctoMap takes {times:.0f} times as long as carve on the same images (due ≥ 500{met}).",
-        ]
-    if not stages:
-        return lines
-    kinds = dict.fromkeys((row["voxel_size_m"], row["detail"], row["noise"]) for row in stages)
-    names = list(dict.fromkeys(row["case"].removeprefix("cycle/") for row in stages))
-    pivot = [
-        {
-            "voxel_size_m": voxel,
-            "detail": detail,
-            "noise": noise,
-            **{
-                row["case"].removeprefix("cycle/"): row["median_ms"]
-                for row in stages
-                if (row["voxel_size_m"], row["detail"], row["noise"]) == (voxel, detail, noise)
-            },
-        }
-        for voxel, detail, noise in kinds
-    ]
-    columns: dict[str, Cell] = {"voxel": centimetres, "detail": of("detail"), "noise": of("noise")}
+    lines += _against_octomap(rows)
+    stages = _stages(row for row in rows if str(row.get("case")).startswith(STAGE))
+    return [*lines, "", "Stages of the cycle, medians:", "", *stages] if stages else lines
+
+
+def _against_octomap(rows: Sequence[Row]) -> list[str]:
+    lines = []
+    for row in rows:
+        if times := row.get("times_slower_than_carve"):
+            met = "" if times >= 500 else ": missed"
+            lines += [
+                "",
+                f"OctoMap takes {times:.0f} times as long as carve on the same images (due ≥ 500{met}).",
+            ]
+    return lines
+
+
+def _stages(rows: Iterable[Row]) -> list[str]:
+    """A line for each kind of cycle, a column for each stage; nothing of no rows."""
+    kinds: dict[tuple[Any, ...], dict[str, Any]] = {}
+    for row in rows:
+        kind = {key: row[key] for key in KIND}
+        line = kinds.setdefault(tuple(kind.values()), kind)
+        line[row["case"].removeprefix(STAGE)] = row["median_ms"]
+    names = dict.fromkeys(name for line in kinds.values() for name in line if name not in KIND)
+    columns: dict[str, Cell] = {"voxel": centimetres, **same("detail", "noise")}
     columns |= {f"{name} ms": of(name, 1) for name in names}
-    return [*lines, "", "Stages of the cycle, medians:", "", *table(pivot, columns)]
+    return table(kinds.values(), columns) if kinds else []
 
 
 def _due_occupied(row: Row) -> tuple[str, float] | None:
@@ -153,9 +170,7 @@ def room_tables(rows: Sequence[Row]) -> list[str]:
         rows,
         {
             "voxel": centimetres,
-            "detail": of("detail"),
-            "rule": of("rule"),
-            "noise": of("noise"),
+            **same("detail", "rule", "noise"),
             "occupied kept %": of("occupied_pct", 4, due=_due_occupied),
             "falsely free voxels": lambda row: (
                 f"{row.get('false_free_voxels', 0):,} of {row.get('occupied_voxels', 0):,}"
@@ -181,9 +196,7 @@ def sevenscenes_tables(rows: Sequence[Row]) -> list[str]:
         rows,
         {
             "voxel": centimetres,
-            "rule": of("rule"),
-            "detail": of("detail"),
-            "margin": of("margin"),
+            **same("rule", "detail", "margin"),
             "false %": of("false_pct", 3, due=lambda row: ("≤", 0.30) if _due_free(row) else None),
             "free %": of("free_pct", 2, due=_due_free),
         },
@@ -200,14 +213,8 @@ def alone_tables(rows: Sequence[Row]) -> list[str]:
         _summaries(rows),
         {
             "voxel": centimetres,
-            "detail": of("detail"),
-            "poses": of("poses"),
-            "verdicts": of("verdicts"),
-            "stop": of("stop"),
-            "decelerate": of("decelerate"),
-            "inform": of("inform"),
-            "clear": of("clear"),
-            "clear %": of("clear_pct", 2, due=lambda row: ("≥", 100.0)),
+            **same("detail", "poses", "verdicts", "stop", "decelerate", "inform", "clear"),
+            "clear %": of("clear_pct", 2, due=at_least(100.0)),
         },
     )
 
@@ -218,12 +225,10 @@ def poses_tables(rows: Sequence[Row]) -> list[str]:
         _summaries(rows),
         {
             "voxel": centimetres,
-            "detail": of("detail"),
-            "poses": of("poses"),
-            "verdicts": of("verdicts"),
-            "milder than the truth": of("milder", due=lambda row: ("≤", 0)),
+            **same("detail", "poses", "verdicts"),
+            "milder than the truth": of("milder", due=at_most(0)),
             "truly clear": of("truly_clear"),
-            "of these stop %": of("stop_where_clear_pct", 2, due=lambda row: ("≤", 10.0)),
+            "of these stop %": of("stop_where_clear_pct", 2, due=at_most(10.0)),
             "the very level of the truth %": of("same_level_pct", 2),
         },
     )
@@ -235,10 +240,10 @@ def travel_tables(rows: Sequence[Row]) -> list[str]:
         _summaries(rows),
         {
             "voxel": centimetres,
-            "poses": of("poses"),
-            "more than the truth": of("more_than_truth", due=lambda row: ("≤", 0)),
+            **same("poses"),
+            "more than the truth": of("more_than_truth", due=at_most(0)),
             "something is touched": of("touching"),
-            "median shortfall, voxels": of("median_shortfall_voxels", 2, due=lambda row: ("≤", 1.5)),
+            "median shortfall, voxels": of("median_shortfall_voxels", 2, due=at_most(1.5)),
             "greatest shortfall, voxels": of("greatest_shortfall_voxels", 2),
         },
     )

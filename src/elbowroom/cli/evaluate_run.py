@@ -19,35 +19,29 @@ from elbowroom.cli.json_output import json_rows
 from elbowroom.errors import InputError
 
 Row = Mapping[str, Any]
+Rows = Sequence[Row]
+Show = Callable[[Rows], None]
+MOTIONS = 8
+"""Four joints of the C-arm in two directions."""
 
 
 def run_room(voxel_sizes_m: tuple[float, ...], cameras: int, size: str, json: Path | None) -> None:
     """Every detail, with noise and without, against the exact truth."""
     from elbowroom.evaluate.room import room_rows
 
-    def show(rows: Sequence[Row]) -> None:
-        table = _table("voxel", "detail", "noise", "occupied kept", "found")
-        for row in rows:
-            table.add_row(
-                _cm(row["voxel_size_m"]),
-                row["detail"],
-                "yes" if row["noise"] else "no",
-                f"{row['occupied_pct']:.4f} %",
-                f"{row['found_pct']:.2f} %",
-            )
-        _print(table)
-        _print(
-            "Due with 21 cameras of 640x480: occupied 100.000 % (footprint), 99.99 % (pixel); found "
-            "by pixel, above the layer at the floor, 97 % at 2 cm, 94 % at 5 cm; with noise 92 % at 2 cm."
-        )
-
-    _run(
-        "voxels",
-        room_rows(voxel_sizes_m, cameras=cameras, size=size),
-        6 * len(voxel_sizes_m),
-        json,
-        show=show,
+    show = _table_of(
+        {
+            "voxel": _voxel,
+            "detail": "{detail}",
+            "noise": lambda row: "yes" if row["noise"] else "no",
+            "occupied kept": "{occupied_pct:.4f} %",
+            "found": "{found_pct:.2f} %",
+        },
+        "Due with 21 cameras of 640x480: occupied 100.000 % (footprint), 99.99 % (pixel); found "
+        "by pixel, above the layer at the floor, 97 % at 2 cm, 94 % at 5 cm; with noise 92 % at 2 cm.",
     )
+    rows = room_rows(voxel_sizes_m, cameras=cameras, size=size)
+    _run("voxels", rows, 6 * len(voxel_sizes_m), json, show)
 
 
 def run_sevenscenes(site: Path | None, voxel_sizes_m: tuple[float, ...], json: Path | None) -> None:
@@ -58,24 +52,19 @@ def run_sevenscenes(site: Path | None, voxel_sizes_m: tuple[float, ...], json: P
     """
     from elbowroom.evaluate.sevenscenes import sevenscenes_rows
 
-    def show(rows: Sequence[Row]) -> None:
-        table = _table("voxel", "margin", "detail", "rule", "free", "false")
-        for row in rows:
-            table.add_row(
-                _cm(row["voxel_size_m"]),
-                row["margin"],
-                row["detail"],
-                row["rule"],
-                f"{row['free_pct']:.2f} %",
-                f"{row['false_pct']:.3f} %",
-            )
-        _print(table)
-        _print(
-            "Due at 5 cm, false at most 0.30 %: free 10 % by a lawful rule, 16 % by veto, 20 % by any rule."
-        )
-
+    show = _table_of(
+        {
+            "voxel": _voxel,
+            "margin": "{margin}",
+            "detail": "{detail}",
+            "rule": "{rule}",
+            "free": "{free_pct:.2f} %",
+            "false": "{false_pct:.3f} %",
+        },
+        "Due at 5 cm, false at most 0.30 %: free 10 % by a lawful rule, 16 % by veto, 20 % by any rule.",
+    )
     rows = sevenscenes_rows(site or example_site(), voxel_sizes_m)
-    _run("rules and details", rows, 24 * len(voxel_sizes_m), json, show=show)
+    _run("rules and details", rows, 24 * len(voxel_sizes_m), json, show)
 
 
 def run_alone(
@@ -84,16 +73,10 @@ def run_alone(
     """The C-arm alone in the room."""
     from elbowroom.evaluate.alone import alone_rows, alone_summary
 
-    def show(rows: Sequence[Row]) -> None:
-        levels = ("clear", "inform", "decelerate", "stop")
-        table = _table("voxel", "poses", "verdicts", *levels, "due")
-        for row in alone_summary(rows):
-            numbers = [str(row[name]) for name in ("poses", "verdicts", *levels)]
-            table.add_row(_cm(row["voxel_size_m"]), *numbers, "all clear")
-        _print(table)
-
+    counts = ("poses", "verdicts", "clear", "inform", "decelerate", "stop")
+    show = _table_of({"voxel": _voxel, **{name: f"{{{name}}}" for name in counts}, "due": "all clear"})
     rows = alone_rows(voxel_sizes_m, poses=poses, cameras=cameras, size=size, seed=seed)
-    _run("verdicts", rows, 8 * poses * len(voxel_sizes_m), json, summary=alone_summary, show=show)
+    _run("verdicts", rows, MOTIONS * poses * len(voxel_sizes_m), json, show, alone_summary)
 
 
 def run_poses(voxel_size_m: float, poses: int, cameras: int, size: str, seed: int, json: Path | None) -> None:
@@ -104,22 +87,17 @@ def run_poses(voxel_size_m: float, poses: int, cameras: int, size: str, seed: in
     """
     from elbowroom.evaluate.poses import poses_rows, poses_summary
 
-    def show(rows: Sequence[Row]) -> None:
-        _print(
-            _figures(
-                poses_summary(rows),
-                ("poses", "poses", "{}", ""),
-                ("verdicts", "verdicts", "{}", ""),
-                ("milder than exact geometry", "milder", "{}", "0"),
-                ("truly clear over the whole reach", "truly_clear", "{}", ""),
-                ("of these stop", "stop_where_clear_pct", "{:.1f} %", "10 % at most"),
-                ("of these clear", "clear_where_clear_pct", "{:.1f} %", ""),
-                ("same level as exact geometry", "same_level_pct", "{:.1f} %", ""),
-            )
-        )
-
+    show = _figures(
+        ("poses", "poses", "{}", ""),
+        ("verdicts", "verdicts", "{}", ""),
+        ("milder than exact geometry", "milder", "{}", "0"),
+        ("truly clear over the whole reach", "truly_clear", "{}", ""),
+        ("of these stop", "stop_where_clear_pct", "{:.1f} %", "10 % at most"),
+        ("of these clear", "clear_where_clear_pct", "{:.1f} %", ""),
+        ("same level as exact geometry", "same_level_pct", "{:.1f} %", ""),
+    )
     rows = poses_rows(voxel_size_m, poses=poses, cameras=cameras, size=size, seed=seed)
-    _run("verdicts", rows, 8 * poses, json, summary=lambda rows: [poses_summary(rows)], show=show)
+    _run("verdicts", rows, MOTIONS * poses, json, show, lambda rows: [poses_summary(rows)])
 
 
 def run_travel(voxel_size_m: float, poses: int, seed: int, json: Path | None) -> None:
@@ -130,26 +108,16 @@ def run_travel(voxel_size_m: float, poses: int, seed: int, json: Path | None) ->
     """
     from elbowroom.evaluate.travel import travel_rows, travel_summary
 
-    def show(rows: Sequence[Row]) -> None:
-        _print(
-            _figures(
-                travel_summary(rows),
-                ("poses", "poses", "{}", ""),
-                ("motions", "motions", "{}", ""),
-                ("more travel than the truth", "more_than_truth", "{}", "0"),
-                ("motions that touch something", "touching", "{}", ""),
-                (
-                    "median shortfall of these",
-                    "median_shortfall_voxels",
-                    "{:.2f} voxels",
-                    "1.5 voxels at most",
-                ),
-                ("greatest shortfall", "greatest_shortfall_voxels", "{:.2f} voxels", ""),
-            )
-        )
-
+    show = _figures(
+        ("poses", "poses", "{}", ""),
+        ("motions", "motions", "{}", ""),
+        ("more travel than the truth", "more_than_truth", "{}", "0"),
+        ("motions that touch something", "touching", "{}", ""),
+        ("median shortfall of these", "median_shortfall_voxels", "{:.2f} voxels", "1.5 voxels at most"),
+        ("greatest shortfall", "greatest_shortfall_voxels", "{:.2f} voxels", ""),
+    )
     rows = travel_rows(voxel_size_m, poses=poses, seed=seed)
-    _run("motions", rows, 8 * poses, json, summary=lambda rows: [travel_summary(rows)], show=show)
+    _run("motions", rows, MOTIONS * poses, json, show, lambda rows: [travel_summary(rows)])
 
 
 def example_site() -> Path:
@@ -169,13 +137,12 @@ def _run(
     found: Iterable[Row],
     total: int,
     json: Path | None,
-    *,
-    summary: Callable[[Sequence[Row]], Sequence[Row]] | None = None,
-    show: Callable[[Sequence[Row]], None],
+    show: Show,
+    summary: Callable[[Rows], Rows] | None = None,
 ) -> None:
-    """Writes rows and their summary, then shows them. After Ctrl-C: shows what there is, no file.
+    """Writes rows and their summary, then shows the summary, or else the rows.
 
-    Where there is a summary, rows leave out what it says.
+    Where there is a summary, rows leave out what it says. After Ctrl-C: shows what there is, no file.
     """
     from elbowroom.evaluate.scene import lean
 
@@ -185,14 +152,15 @@ def _run(
             for row in _watched(what, found, total):
                 add(lean(row) if summary else row)
                 rows.append(row)
-            for row in summary(rows) if summary else ():
+            shown = summary(rows) if summary else rows
+            for row in shown if summary else ():
                 add(row)
     except KeyboardInterrupt:
         if rows:
-            show(rows)
+            show(summary(rows) if summary else rows)
             _print(f"Interrupted after {len(rows)} of {total} {what}; no file was written.")
         raise
-    show(rows)
+    show(shown)
 
 
 def _watched(what: str, rows: Iterable[Row], total: int) -> Iterable[Row]:
@@ -209,6 +177,34 @@ def _watched(what: str, rows: Iterable[Row], total: int) -> Iterable[Row]:
         yield from progress.track(rows, total=total, description=what)
 
 
+def _table_of(columns: Mapping[str, str | Callable[[Row], str]], due: str = "") -> Show:
+    """Shows a line for each row, then what is due; a cell is a format of the row's values, or a function."""
+
+    def show(rows: Rows) -> None:
+        table = _table(*columns)
+        for row in rows:
+            cells = columns.values()
+            table.add_row(*(cell.format(**row) if isinstance(cell, str) else cell(row) for cell in cells))
+        _print(table)
+        if due:
+            _print(due)
+
+    return show
+
+
+def _figures(*figures: tuple[str, str, str, str]) -> Show:
+    """Shows a line for each figure of one summary: its words, its key, how it is written, what is due."""
+
+    def show(rows: Rows) -> None:
+        (summary,) = rows
+        table = _table("figure", "measured", "due")
+        for words, key, how, due in figures:
+            table.add_row(words, "-" if summary[key] is None else how.format(summary[key]), due)
+        _print(table)
+
+    return show
+
+
 def _table(*columns: str) -> Table:
     table = Table(box=None, pad_edge=False)
     words = ("detail", "noise", "margin", "rule", "figure", "due")
@@ -217,17 +213,9 @@ def _table(*columns: str) -> Table:
     return table
 
 
-def _figures(summary: Row, *figures: tuple[str, str, str, str]) -> Table:
-    """A line for each figure: its words, its key in the summary, how it is written, what is due."""
-    table = _table("figure", "measured", "due")
-    for words, key, how, due in figures:
-        table.add_row(words, "-" if summary[key] is None else how.format(summary[key]), due)
-    return table
-
-
 def _print(what: Table | str) -> None:
     Console(highlight=False).print(what)
 
 
-def _cm(metres: float) -> str:
-    return f"{metres * 100:g} cm"
+def _voxel(row: Row) -> str:
+    return f"{row['voxel_size_m'] * 100:g} cm"
