@@ -98,7 +98,7 @@ JOBS = (
     Job(
         "the machine in images",
         _machine_in_images,
-        ("elbowroom.machine._kernels_image", "explain"),
+        ("elbowroom.machine._kernels_explain", "explain"),
         "machine",
         "the machine's body",
     ),

@@ -12,8 +12,9 @@ from elbowroom.geometry import DepthCamera, VoxelGrid, bits, invert_rigid
 from elbowroom.geometry._kernels import Lattice
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.parallel import spread
-from elbowroom.machine import _kernels_image as kernels
-from elbowroom.machine._kernels_image import TILE, Around, View
+from elbowroom.machine._kernels_draw import View, draw, to_kind
+from elbowroom.machine._kernels_explain import explain
+from elbowroom.machine._kernels_returns import TILE, Around, mark_tiles
 from elbowroom.machine.body import default_growth
 from elbowroom.machine.buffers import zero_image
 from elbowroom.machine.machine import Joints, Machine
@@ -104,11 +105,11 @@ def explain_frames(
     def explain_one(n: int) -> NDArray[np.float32]:
         view = views[n]
         inverse, first, last = _spare_canvas(canvases, view)
-        kernels.draw(mesh, placed[n], view, inverse, first, last)
-        kernels.to_kind(view, inverse, first, last)
+        draw(mesh, placed[n], view, inverse, first, last)
+        to_kind(view, inverse, first, last)
         model = zero_image(view.height, view.width)
         around = near_body.around(view, placed[n], cameras[n].world_from_camera)
-        kernels.explain(view, images[n], inverse, first, last, tolerance_m, tolerance_sigmas, model, around)
+        explain(view, images[n], inverse, first, last, tolerance_m, tolerance_sigmas, model, around)
         canvases.append(inverse)
         near_body.give_back(around)
         return model
@@ -143,7 +144,7 @@ class _Near:
         tiles = (-(-view.height // TILE), -(-view.width // TILE))
         near, far = np.full(tiles, np.inf), np.zeros(tiles)
         middle, link = self._balls.cluster_centre, self._balls.cluster_link
-        kernels.mark_tiles(middle, link, self._radius, camera_from_link, view, near, far)
+        mark_tiles(middle, link, self._radius, camera_from_link, view, near, far)
         try:
             words = self._spare.pop()
         except IndexError:
