@@ -8,6 +8,7 @@ from elbowroom.cli.bench import bench
 from elbowroom.cli.check import check
 from elbowroom.cli.evaluate import evaluate_app
 from elbowroom.cli.monitor import monitor
+from elbowroom.cli.placement import placement_app
 from elbowroom.cli.reconstruct import reconstruct
 from elbowroom.cli.site import site_app
 
@@ -41,6 +42,7 @@ app.command(
 app.command(epilog=_example("elbowroom check my_room.yaml --joint larm --direction +"))(check)
 app.command(epilog=_example("elbowroom bench --json bench.json"))(bench)
 app.add_typer(evaluate_app, name="evaluate")
+app.add_typer(placement_app, name="placement")
 app.add_typer(site_app, name="site")
 
 

@@ -1,0 +1,89 @@
+"""`elbowroom placement`: where to put the cameras."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from elbowroom.cli.options import JsonFile, SitePath, VoxelSize
+
+placement_app = typer.Typer(
+    help="Where to put the cameras: verify a placement, sweep, optimise, simulate.", no_args_is_help=True
+)
+
+OptionalSite = Annotated[
+    Path | None,
+    typer.Argument(metavar="[SITE]", help="A site file (YAML). Default: the room of the thesis."),
+]
+Views = Annotated[
+    int | None,
+    typer.Option(min=1, metavar="COUNT", help="Views that a point needs. Default: the site's, or 3."),
+]
+Angle = Annotated[
+    float | None,
+    typer.Option(
+        metavar="DEGREES", help="Least angle between two views from above. Default: the site's, or 100."
+    ),
+]
+Pictures = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Write pictures into this folder.")
+]
+
+
+@placement_app.command(
+    epilog="Example: elbowroom placement verify my_room.yaml --out pictures --json verify.json"
+)
+def verify(
+    site: SitePath,
+    views: Views = None,
+    angle: Angle = None,
+    voxel_size: VoxelSize = None,
+    worst: Annotated[
+        int, typer.Option(min=0, metavar="COUNT", help="How many of the worst places to list.")
+    ] = 5,
+    out: Pictures = None,
+    json: JsonFile = None,
+) -> None:
+    """Say how many cameras see each point of the empty room, whether they are enough, and where they are not."""
+    from elbowroom.cli.placement_run import run_verify
+
+    run_verify(site, views, angle, voxel_size, worst, out, json)
+
+
+@placement_app.command(
+    epilog="Example: elbowroom placement sweep --sensor thesis --out pictures --json sweep.json"
+)
+def sweep(
+    site: OptionalSite = None,
+    sensor: Annotated[
+        list[str] | None,
+        typer.Option(help="thesis, vga, or a sensor that the site names; may be given more than once."),
+    ] = None,
+    cameras: Annotated[str, typer.Option(metavar="FROM-TO", help="Numbers of cameras.")] = "3-40",
+    walls: Annotated[
+        list[float] | None,
+        typer.Option(
+            metavar="METRES", help="Side of square walls instead of the site's; may be given more than once."
+        ),
+    ] = None,
+    height: Annotated[
+        list[float] | None, typer.Option(metavar="METRES", help="Of the cameras; several are taken in turn.")
+    ] = None,
+    aim: Annotated[
+        float | None, typer.Option(metavar="METRES", help="Height of the middle axis at which they look.")
+    ] = None,
+    share: Annotated[float, typer.Option(metavar="PERCENT", help="Of valid points that is wanted.")] = 98.9,
+    views: Views = None,
+    angle: Angle = None,
+    voxel_size: Annotated[
+        float, typer.Option("--voxel-size", metavar="METRES", help="Edge of a voxel.")
+    ] = 0.1,
+    out: Pictures = None,
+    json: JsonFile = None,
+) -> None:
+    """Spread more and more cameras evenly along the walls: the share of valid points, and the least number."""
+    from elbowroom.cli.placement_run import run_sweep
+
+    run_sweep(
+        site, sensor, cameras, walls, tuple(height or (2.4,)), aim, share, views, angle, voxel_size, out, json
+    )
