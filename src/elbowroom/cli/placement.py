@@ -87,3 +87,32 @@ def sweep(
     run_sweep(
         site, sensor, cameras, walls, tuple(height or (2.4,)), aim, share, views, angle, voxel_size, out, json
     )
+
+
+@placement_app.command(
+    epilog="Example: elbowroom placement optimise my_room.yaml --share 98.9 --seconds 60 --write placed.yaml --out pictures"
+)
+def optimise(
+    site: OptionalSite = None,
+    share: Annotated[float, typer.Option(metavar="PERCENT", help="Of valid points that is wanted.")] = 98.9,
+    cameras: Annotated[
+        int | None,
+        typer.Option(min=1, max=255, metavar="COUNT", help="So many cameras, with the best share they can have."),
+    ] = None,
+    price: Annotated[bool, typer.Option("--price", help="The cheapest layout, not the one of fewest cameras.")] = False,
+    keep: Annotated[bool, typer.Option("--keep", help="Keep the site's cameras, and add to them.")] = False,
+    seconds: Annotated[float, typer.Option(metavar="SECONDS", help="How long to look.")] = 60.0,
+    points: Annotated[int, typer.Option(min=1, metavar="COUNT", help="Points that the solver looks at.")] = 20_000,
+    views: Views = None,
+    angle: Angle = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of all random choices.")] = 1,
+    write: Annotated[
+        Path | None, typer.Option("--write", metavar="SITE", help="Write a site file with the new cameras.")
+    ] = None,
+    out: Pictures = None,
+    json: JsonFile = None,
+) -> None:
+    """Find few or cheap cameras that see the empty room well enough, or the best places for a number of them."""
+    from elbowroom.cli.placement_optimise import run_optimise
+
+    run_optimise(site, share, cameras, price, keep, seconds, points, views, angle, seed, write, out, json)
