@@ -102,8 +102,8 @@ def _row(done: Optimised, site: Site, goal: Goal, existing: int) -> dict[str, An
 
 def _say(done: Optimised, row: dict[str, Any]) -> None:
     table = Table(box=None, pad_edge=False)
-    for column in ("camera", "at [m]", "sensor", "sensor ", "mount", "cable", "price"):
-        left = column in ("camera", "at [m]", "sensor")
+    for column in ("camera", "x, y, z in m", "kind", "sensor", "mount", "cable", "price"):
+        left = column in ("camera", "x, y, z in m", "kind")
         table.add_column(column, justify="left" if left else "right", no_wrap=True)
     for item in bill(done.bought):
         total = item["kind"] == "total"
@@ -128,7 +128,7 @@ def _say(done: Optimised, row: dict[str, Any]) -> None:
         "valid_pct": f"no layout of so many of these candidates has more than {row['bound']:.2f} % of the points valid",
     }
     print(f"bound     {bound[row['bound_of']]}")
-    if row["sector_bound"] is not None:
+    if row["sector_bound"] is not None and row["sector_bound"] > row["bound"]:
         unit = {"cameras": "cameras", "price": "price", "valid_pct": "%"}[row["bound_of"]]
         print(f"          by sectors at CP-SAT's few points: {row['sector_bound']:.4g} {unit} (no proof for all layouts)")
     say_verification(row)

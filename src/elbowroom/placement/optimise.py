@@ -23,7 +23,9 @@ POINTS = 20_000
 TAKEN_M = 0.1
 """A mount so near to a camera that hangs there already is taken [m]."""
 BOUND_SHARE = 0.2
-VERIFY_TRIES = 4
+VERIFY_TRIES = 6
+LATER_SHARE = 0.25
+"""This share of the time is kept for raising the share after a verification that found less than the solver."""
 SPARE = 2e-4
 """When the verification finds less than the model, so much more than the difference is asked for next [share]."""
 
@@ -136,10 +138,12 @@ def optimise(
     course = Course(begun)
     progress("bounding what can be reached")
     bound = _bound(model, reach, aim, time.perf_counter() + BOUND_SHARE * (until - time.perf_counter()), len(existing))
-    share = aim.share_pct / 100
-    for _ in range(VERIFY_TRIES):
+    share, first = aim.share_pct / 100, list[int]()
+    for attempt in range(VERIFY_TRIES):
         if aim.cameras is None:
-            layout = cheapest(model, share, until, course, seed=seed, progress=progress)
+            # what is left of the time is for raising the share where the whole grid has less of it than the points
+            end = until - LATER_SHARE * seconds / 2**attempt
+            layout = cheapest(model, share, end, course, first=first, seed=seed + attempt, progress=progress)
         else:
             layout = fullest(model, aim.cameras - len(existing), until, course, seed=seed, progress=progress)
         progress("verifying")
@@ -149,8 +153,8 @@ def optimise(
         found = verify(grid, cameras, room, wanted)
         if aim.cameras is not None or found.valid_pct >= aim.share_pct:
             break
-        share = min(share + aim.share_pct / 100 - found.valid_pct / 100 + SPARE, reach.share)
-        until = max(until, time.perf_counter() + 0.2 * seconds)
+        share = min(max(share, layout.share) + (aim.share_pct - found.valid_pct) / 100 + SPARE, reach.share)
+        first = layout.chosen
     return Optimised(
         cameras,
         tuple(bought),

@@ -36,8 +36,8 @@ class Place:
 def worst_places(found: Verification, most: int = 5) -> list[Place]:
     """Places that fail, those with the fewest views first, and of these the largest.
 
-    Voxels belong together if they share a face, lie in one cube of half a metre, have as many views that are far enough apart, and are seen by the same
-    cameras where these are no more than three.
+    Voxels belong together if they share a face, have as many views that are far enough apart, and are seen by the same
+    cameras where these are no more than three, else lie in one cube of half a metre.
 
     Args:
         found: what was verified.
@@ -49,10 +49,7 @@ def worst_places(found: Verification, most: int = 5) -> list[Place]:
         level = failing & (found.apart == apart)
         if not level.any():
             continue
-        edge = max(1, round(BLOCK_M / found.grid.voxel_size_m))
-        parts = [
-            part for kind in _kinds(found, level) for piece in _blocks(kind, edge) for part in _parts(*piece)
-        ]
+        parts = [part for piece in _pieces(found, level) for part in _parts(*piece)]
         parts.sort(key=lambda part: -int(part[1].sum()))
         places += [_place(found, corner, mask, apart) for corner, mask in parts[: most - len(places)]]
         if len(places) >= most:
@@ -60,11 +57,11 @@ def worst_places(found: Verification, most: int = 5) -> list[Place]:
     return places
 
 
-def _kinds(found: Verification, level: NDArray[np.bool_]) -> list[NDArray[np.bool_]]:
-    """Voxels seen by the same few cameras; all that more cameras see as one."""
+def _pieces(found: Verification, level: NDArray[np.bool_]) -> list["Piece"]:
+    """Voxels seen by the same few cameras, each kind as one; all that more cameras see in blocks."""
     many = level & (found.counts > MOST_NAMES)
     few = level & ~many
-    kinds = [many] if many.any() else []
+    pieces = _blocks(many, max(1, round(BLOCK_M / found.grid.voxel_size_m))) if many.any() else []
     index = np.argwhere(few)
     if len(index):
         by_camera = np.packbits(found.seen[:, few], axis=0)
@@ -72,8 +69,8 @@ def _kinds(found: Verification, level: NDArray[np.bool_]) -> list[NDArray[np.boo
         for number in range(int(kind.max()) + 1):
             mask = np.zeros_like(level)
             mask[tuple(index[np.ravel(kind) == number].T)] = True
-            kinds.append(mask)
-    return kinds
+            pieces.append((np.zeros(3, dtype=np.int64), mask))
+    return pieces
 
 
 Piece = tuple[NDArray[np.int64], NDArray[np.bool_]]
@@ -148,4 +145,5 @@ def _who(names: tuple[str, ...], most: int, apart: int, found: Verification) -> 
         too_near = len(names) > 1 and most >= found.requirement.views
         return f"only {listed} {sees} it" + (", too near to each other" if too_near else "")
     wanted = found.requirement
-    return f"up to {most} cameras see it, but no {wanted.views} are {wanted.angle_deg:g} degrees apart (at most {apart})"
+    enough = f"no {wanted.views} are {wanted.angle_deg:g} degrees apart (at most {apart})"
+    return f"up to {most} cameras see it, but {enough}"

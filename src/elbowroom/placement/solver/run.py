@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -42,7 +42,14 @@ class Course:
 
 
 def cheapest(
-    model: Model, share: float, until: float, course: Course, *, seed: int = 1, progress: Callable[[str], None]
+    model: Model,
+    share: float,
+    until: float,
+    course: Course,
+    *,
+    first: Sequence[int] = (),
+    seed: int = 1,
+    progress: Callable[[str], None],
 ) -> Layout:
     """The cheapest layout that is found with this share of valid points.
 
@@ -51,13 +58,15 @@ def cheapest(
         share: wanted, 0 to 1; it must be within reach.
         until: when to come to an end [s, time.perf_counter].
         course: is told of every better layout.
+        first: a choice to start from; without one, CP-SAT's.
         seed: of the random choices. The result also depends on how much is done in the time.
         progress: called with what is being done.
     """
     rng = np.random.default_rng(seed)
-    progress("choosing by CP-SAT on a few points")
-    exact = _exact(model, rng, until, course, share=share)
-    starts = [prune(repair(Layout.of(model, first), share), share) for first in ((), *([exact] if exact else []))]
+    if not first:
+        progress("choosing by CP-SAT on a few points")
+        first = _exact(model, rng, until, course, share=share) or ()
+    starts = [prune(repair(Layout.of(model, start), share), share) for start in ((), first)]
     best = min(starts, key=lambda layout: (layout.price, len(layout.chosen)))
     course.note(best)
     some = _some(model, rng)
@@ -83,13 +92,19 @@ def cheapest(
 
 
 def fullest(
-    model: Model, budget: float, until: float, course: Course, *, seed: int = 1, progress: Callable[[str], None]
+    model: Model,
+    budget: float,
+    until: float,
+    course: Course,
+    *,
+    seed: int = 1,
+    progress: Callable[[str], None],
 ) -> Layout:
     """The layout with most valid points that is found for at most this price; arguments as of `cheapest`."""
     rng = np.random.default_rng(seed)
     progress("choosing by CP-SAT on a few points")
-    exact = _exact(model, rng, until, course, budget=budget)
-    starts = [repair(Layout.of(model, first), 1.0, budget) for first in ((), *([exact] if exact else []))]
+    exact = _exact(model, rng, until, course, budget=budget) or ()
+    starts = [repair(Layout.of(model, start), 1.0, budget) for start in ((), exact)]
     best = max(starts, key=lambda layout: layout.valid)
     course.note(best)
     some = _some(model, rng)

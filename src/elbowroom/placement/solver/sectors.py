@@ -95,6 +95,8 @@ def sector_layout(
         if turns:
             point = problem.new_bool_var("")
             problem.add_bool_or([*turns, point.negated()])
+            # follows from the sectors; it is what the solver's linear relaxation works with
+            problem.add(sum(chosen[c] for c in np.flatnonzero(model.sees[:, p])) >= views * point)
             valid.append(point)
     scale = 1000 / max(float(model.price.max()), 1e-9)
     price = sum(round(float(model.price[c]) * scale) * chosen[c] for c in range(model.candidates) if c not in model.kept)
