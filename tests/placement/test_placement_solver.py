@@ -36,14 +36,18 @@ def model_of(sees, azimuth_deg, *, views=3, angle=100.0, price=None, kept=()):
     sees = np.array(sees, dtype=np.uint8)
     azimuth = np.radians(np.broadcast_to(np.array(azimuth_deg, dtype=float), sees.T.shape).T)
     price = np.ones(len(sees)) if price is None else np.array(price, dtype=float)
-    return Model(Requirement(views, angle), sees, np.mod(azimuth, 2 * math.pi), np.arange(len(sees)), price, kept)
+    return Model(
+        Requirement(views, angle), sees, np.mod(azimuth, 2 * math.pi), np.arange(len(sees)), price, kept
+    )
 
 
 @pytest.fixture
 def site(tmp_path):
     """The thesis' room, coarse, with fewer candidates."""
     text = THESIS_ROOM.read_text().replace("voxel_size_m: 0.05", "voxel_size_m: 0.25")
-    text = text.replace("wall_spacing_m: 0.5", "wall_spacing_m: 1.25").replace("ceiling_spacing_m: 1.25", "ceiling_spacing_m: 2.5")
+    text = text.replace("wall_spacing_m: 0.5", "wall_spacing_m: 1.25").replace(
+        "ceiling_spacing_m: 1.25", "ceiling_spacing_m: 2.5"
+    )
     path = tmp_path / "room.yaml"
     path.write_text(text)
     return Site.load(path)
@@ -75,7 +79,9 @@ def test_gains_and_losses_are_what_adding_and_leaving_out_do(seed):
             assert gains[c] == pytest.approx(more.worth[more.apart].sum() - total)
     for member, loss in zip(layout.chosen, layout.losses(), strict=True):
         less = layout.without([member])
-        np.testing.assert_array_equal(less.apart, Layout.of(model, [c for c in layout.chosen if c != member]).apart)
+        np.testing.assert_array_equal(
+            less.apart, Layout.of(model, [c for c in layout.chosen if c != member]).apart
+        )
         assert loss == pytest.approx(total - less.worth[less.apart].sum())
 
 
@@ -86,7 +92,8 @@ def test_the_least_arc_is_the_least_of_all():
         starts, sums = np.zeros(1), np.zeros(1)
         kernels.least_arcs(angles, np.argsort(angles), weight, 6, np.array([2.8]), starts, sums)
         tried = [
-            weight[np.mod(angles - begin, 2 * np.pi) <= 2.8].sum() for begin in np.linspace(0, 2 * np.pi, 20_001)
+            weight[np.mod(angles - begin, 2 * np.pi) <= 2.8].sum()
+            for begin in np.linspace(0, 2 * np.pi, 20_001)
         ]
         assert sums[0] == pytest.approx(min(tried))
 
@@ -117,8 +124,10 @@ def test_model_and_verification_agree_though_they_share_no_code(grid, ring):
 
 
 def test_range_and_missing_background_are_the_same_in_model_and_verification(grid):
-    cameras = [camera_at(f"c{n}", (2.4, y, 1.2), (0, 0, 1.0), max_depth_m=4.4, depth_kind=kind)
-               for n, (y, kind) in enumerate([(0.3, "planar"), (-0.8, "radial")])]
+    cameras = [
+        camera_at(f"c{n}", (2.4, y, 1.2), (0, 0, 1.0), max_depth_m=4.4, depth_kind=kind)
+        for n, (y, kind) in enumerate([(0.3, "planar"), (-0.8, "radial")])
+    ]
     room = room_of()
     found = verify(grid, cameras, room)
     index = np.argwhere(found.asked)
@@ -169,7 +178,9 @@ def test_hard_points_are_those_that_few_places_see_from_behind():
 
 def test_repair_reaches_the_share_and_prune_leaves_nothing_to_spare():
     rng = np.random.default_rng(5)
-    model = model_of(rng.random((20, 300)) < 0.9, rng.uniform(0, 360, 20), price=rng.uniform(1, 5, 20), kept=(4,))
+    model = model_of(
+        rng.random((20, 300)) < 0.9, rng.uniform(0, 360, 20), price=rng.uniform(1, 5, 20), kept=(4,)
+    )
     layout = prune(repair(Layout.of(model, range(9)), 0.95), 0.95)
     assert layout.share >= 0.95 and 4 in layout.chosen
     for member in layout.chosen:
@@ -201,14 +212,17 @@ def test_what_exists_is_kept_and_its_mount_is_taken(site):
 
 def test_a_number_of_cameras_gets_the_best_share_it_can_within_its_bound(site):
     grid, room = site.grid(), room_of()
-    done = optimise(grid, room, candidates_of(site, grid, room), goal=Goal(cameras=7), points=400, seconds=3.0)
+    done = optimise(
+        grid, room, candidates_of(site, grid, room), goal=Goal(cameras=7), points=400, seconds=3.0
+    )
     assert len(done.cameras) <= 7
     assert 60 < done.model_pct <= done.bound <= 100
 
 
 def test_the_cheapest_layout_costs_no_more_than_the_one_of_fewest_cameras(site, tmp_path):
     text = site.path.read_text().replace(
-        "  sensors:\n    - {name: vga, price: 700}", "  sensors:\n    - {name: wide, price: 900}\n    - {name: narrow, fx: 420.0, fy: 420.0, cx: 319.5, cy: 239.5, price: 100}"
+        "    - {name: vga, price: 700}",
+        "    - {name: wide, price: 900}\n    - {name: narrow, fx: 420.0, fy: 420.0, cx: 319.5, cy: 239.5, price: 100}",
     )
     (tmp_path / "two.yaml").write_text(text)
     two = Site.load(tmp_path / "two.yaml")
@@ -230,7 +244,11 @@ def test_a_requirement_out_of_reach_says_at_once_what_is_and_who_sees_nothing(si
         optimise(grid, room, candidates, points=500, seconds=600.0)
     assert time.perf_counter() - begun < 10
     text = str(caught.value)
-    assert "98.9 % is out of reach" in text and "nobody can see, within x -1.88 to -1.12" in text and "\n" not in text
+    assert (
+        "98.9 % is out of reach" in text
+        and "nobody can see, within x -1.88 to -1.12" in text
+        and "\n" not in text
+    )
 
 
 def test_no_candidates_is_one_line(site):

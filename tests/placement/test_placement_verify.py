@@ -76,7 +76,7 @@ def test_turning_the_whole_room_about_z_changes_nothing(grid, ring, quarters):
     for _ in range(quarters):
         box = np.stack([-box[:, 1], box[:, 0]], axis=1)
     low, high = box.min(axis=0), box.max(axis=0)
-    turned_room = room_of(((( *low.tolist(), 0.0), (*high.tolist(), 1.2)),))
+    turned_room = room_of((((*low.tolist(), 0.0), (*high.tolist(), 1.2)),))
     plain = verify(grid, cameras, room)
     other = verify(grid, [turned(c, quarters * np.pi / 2) for c in cameras], turned_room)
     for name in ("counts", "apart", "valid", "asked"):
@@ -147,7 +147,10 @@ def test_a_distorted_camera_sees_by_its_pinhole_twin(grid):
 def test_a_camera_straight_above_counts_as_a_view_but_has_no_direction():
     grid = VoxelGrid((-0.25, -0.25, 0), (1, 1, 1), 0.5)
     above = camera_at("above", (0, 1e-12, 2.4), (0, 1e-12 + 1e-6, 0.0))
-    sides = [camera_at(f"c{n}", (np.cos(a), np.sin(a), 1.0), (0, 0, 0.3)) for n, a in enumerate(np.radians([0, 120]))]
+    sides = [
+        camera_at(f"c{n}", (np.cos(a), np.sin(a), 1.0), (0, 0, 0.3))
+        for n, a in enumerate(np.radians([0, 120]))
+    ]
     found = verify(grid, [above, *sides])
     assert found.counts.item() == 3 and found.apart.item() == 2
     assert verify(grid, [above]).apart.item() == 1
@@ -162,7 +165,9 @@ def test_points_inside_furniture_are_not_asked(grid, ring):
 
 def test_a_camera_inside_furniture_is_refused_in_one_line(grid):
     camera = camera_at("north", (0.0, 0.1, 0.6), (1, 0, 0.6))
-    with pytest.raises(CameraError, match=r"camera north: at \[0.0, 0.1, 0.6\] m it is inside box 0; move it"):
+    with pytest.raises(
+        CameraError, match=r"camera north: at \[0.0, 0.1, 0.6\] m it is inside box 0; move it"
+    ):
         verify(grid, [camera], room_of((PILLAR,)))
 
 
@@ -194,7 +199,10 @@ def test_no_camera_is_refused(grid):
 def test_worst_places_say_who_sees_them(grid):
     """One voxel that only one camera sees, a layer that nobody sees."""
     names = ("north", "south", "east")
-    cameras = [camera_at(n, (2.0 * np.cos(a), 2.0 * np.sin(a), 1), (0, 0, 1)) for n, a in zip(names, np.radians([0, 120, 240]), strict=True)]
+    cameras = [
+        camera_at(n, (2.0 * np.cos(a), 2.0 * np.sin(a), 1), (0, 0, 1))
+        for n, a in zip(names, np.radians([0, 120, 240]), strict=True)
+    ]
     seen = np.ones((3, *grid.shape), dtype=bool)
     seen[:, :, :, 0] = False
     seen[1:, 3, 4, 5] = False

@@ -97,12 +97,18 @@ def optimise(
     share: Annotated[float, typer.Option(metavar="PERCENT", help="Of valid points that is wanted.")] = 98.9,
     cameras: Annotated[
         int | None,
-        typer.Option(min=1, max=255, metavar="COUNT", help="So many cameras, with the best share they can have."),
+        typer.Option(
+            min=1, max=255, metavar="COUNT", help="So many cameras, with the best share they can have."
+        ),
     ] = None,
-    price: Annotated[bool, typer.Option("--price", help="The cheapest layout, not the one of fewest cameras.")] = False,
+    price: Annotated[
+        bool, typer.Option("--price", help="The cheapest layout, not the one of fewest cameras.")
+    ] = False,
     keep: Annotated[bool, typer.Option("--keep", help="Keep the site's cameras, and add to them.")] = False,
     seconds: Annotated[float, typer.Option(metavar="SECONDS", help="How long to look.")] = 60.0,
-    points: Annotated[int, typer.Option(min=1, metavar="COUNT", help="Points that the solver looks at.")] = 20_000,
+    points: Annotated[
+        int, typer.Option(min=1, metavar="COUNT", help="Points that the solver looks at.")
+    ] = 20_000,
     views: Views = None,
     angle: Angle = None,
     seed: Annotated[int, typer.Option(min=0, help="Of all random choices.")] = 1,
@@ -116,3 +122,27 @@ def optimise(
     from elbowroom.cli.placement_optimise import run_optimise
 
     run_optimise(site, share, cameras, price, keep, seconds, points, views, angle, seed, write, out, json)
+
+
+@placement_app.command(
+    epilog="Example: elbowroom placement simulate placed.yaml --scenes 20 --json simulate.json"
+)
+def simulate(
+    site: Annotated[
+        Path | None,
+        typer.Argument(metavar="[SITE]", help="A site file (YAML). Default: the simulated room."),
+    ] = None,
+    scenes: Annotated[int, typer.Option(min=1, metavar="COUNT", help="How many random scenes.")] = 10,
+    people: Annotated[
+        int, typer.Option(min=0, metavar="COUNT", help="In a room that is not the simulated one.")
+    ] = 3,
+    table: Annotated[bool, typer.Option(help="Whether such a room gets a table.")] = True,
+    voxel_size: VoxelSize = None,
+    by_camera: Annotated[bool, typer.Option(help="Also what each camera contributes.")] = True,
+    seed: Annotated[int, typer.Option(min=0, help="Of scenes and noise.")] = 1,
+    json: JsonFile = None,
+) -> None:
+    """Carve many random scenes: free space found, false stops, what each camera is worth."""
+    from elbowroom.cli.placement_simulate import run_simulate
+
+    run_simulate(site, scenes, people, table, voxel_size, by_camera, seed, json)

@@ -121,7 +121,9 @@ def _say(done: Optimised, row: dict[str, Any]) -> None:
         shown.width = 120
     shown.print(table)
     kept = f", {row['existing_cameras']} of them there already" if row["existing_cameras"] else ""
-    print(f"cameras   {row['cameras']}{kept}; found in {row['seconds']:.0f} s among {row['candidates']} candidates")
+    print(
+        f"cameras   {row['cameras']}{kept}; found in {row['seconds']:.0f} s among {row['candidates']} candidates"
+    )
     bound = {
         "cameras": f"no layout of these candidates with the share at the solver's points has fewer than {row['bound']:g} cameras",
         "price": f"no layout of these candidates with the share at the solver's points costs less than {row['bound']:.2f}",
@@ -130,5 +132,7 @@ def _say(done: Optimised, row: dict[str, Any]) -> None:
     print(f"bound     {bound[row['bound_of']]}")
     if row["sector_bound"] is not None and row["sector_bound"] > row["bound"]:
         unit = {"cameras": "cameras", "price": "price", "valid_pct": "%"}[row["bound_of"]]
-        print(f"          by sectors at CP-SAT's few points: {row['sector_bound']:.4g} {unit} (no proof for all layouts)")
+        print(
+            f"          by sectors at CP-SAT's few points: {row['sector_bound']:.4g} {unit} (no proof for all layouts)"
+        )
     say_verification(row)

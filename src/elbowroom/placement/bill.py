@@ -29,5 +29,7 @@ def bill(bought: Sequence[Candidate]) -> list[dict[str, Any]]:
         for item in bought
     ]
     keys = ("sensor_price", "mount_price", "cable_m", "cable_price", "price")
-    rows.append({"kind": "total", "cameras": len(bought), **{key: sum(row[key] for row in rows) for key in keys}})
+    rows.append(
+        {"kind": "total", "cameras": len(bought), **{key: sum(row[key] for row in rows) for key in keys}}
+    )
     return rows

@@ -57,7 +57,9 @@ class Candidate:
     cable_price: float
 
 
-def candidates_of(site: Site, grid: VoxelGrid, room: FixedRoom | None, *, seed: int = 1) -> tuple[Candidate, ...]:
+def candidates_of(
+    site: Site, grid: VoxelGrid, room: FixedRoom | None, *, seed: int = 1
+) -> tuple[Candidate, ...]:
     """Every kind of sensor at every mount with every aim, as the site's key `placement` says.
 
     Where it lists no mounts, they are along the walls every half metre at 2.4 m and on the ceiling.
@@ -123,14 +125,18 @@ def _mounts(given: PlacementEntry, room: FixedRoom | None, seed: int) -> list[Mo
 def _along(along: AlongEntry, room: FixedRoom | None, seed: int) -> list[tuple[str, NDArray[np.float64]]]:
     """Names and places of the mounts along walls, ceiling and mesh."""
     if room is None or room.walls_m is None:
-        raise InputError("placement: no walls to mount cameras on; give room.walls in the site file, or list mounts")
+        raise InputError(
+            "placement: no walls to mount cameras on; give room.walls in the site file, or list mounts"
+        )
     lower, upper = room.walls_m[0] + FROM_WALL_M, room.walls_m[1] - FROM_WALL_M
     places: list[tuple[str, NDArray[np.float64]]] = []
     if along.wall_spacing_m is not None:
         for height in along.heights_m:
             at = f"-{height:g}" if len(along.heights_m) > 1 else ""
             ring = _ring(lower[:2], upper[:2], along.wall_spacing_m)
-            places += [(f"wall{number:02d}{at}", np.array([x, y, height])) for number, (x, y) in enumerate(ring)]
+            places += [
+                (f"wall{number:02d}{at}", np.array([x, y, height])) for number, (x, y) in enumerate(ring)
+            ]
     if along.ceiling_spacing_m is not None:
         axes = [_inner(lower[axis], upper[axis], along.ceiling_spacing_m) for axis in (0, 1)]
         spots = [(x, y) for x in axes[0] for y in axes[1]]
@@ -159,7 +165,9 @@ def _inner(low: float, high: float, spacing: float) -> NDArray[np.float64]:
 def _on_mesh(count: int, room: FixedRoom, seed: int) -> list[tuple[str, NDArray[np.float64]]]:
     """Places on the surfaces of the room, a little before them, evenly by area; within the walls."""
     triangles = room.triangles
-    mesh = trimesh.Trimesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3), process=False)
+    mesh = trimesh.Trimesh(
+        triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3), process=False
+    )
     points, faces = trimesh.sample.sample_surface(mesh, 40 * count, seed=seed)
     assert room.walls_m is not None
     points = points + mesh.face_normals[faces] * FROM_WALL_M

@@ -126,7 +126,9 @@ def optimise(
     ortools()
     free = [c for c in candidates if not _is_taken(c, existing)]
     if not free:
-        raise InputError("placement: no candidates; every mount is taken by a camera that hangs there already")
+        raise InputError(
+            "placement: no candidates; every mount is taken by a camera that hangs there already"
+        )
     if aim.cameras is not None and aim.cameras < len(existing):
         raise InputError(f"placement: {aim.cameras} cameras wanted, {len(existing)} hang there already")
     sample = sample_points(grid, room, points, seed)
@@ -137,7 +139,9 @@ def optimise(
     until = begun + seconds
     course = Course(begun)
     progress("bounding what can be reached")
-    bound = _bound(model, reach, aim, time.perf_counter() + BOUND_SHARE * (until - time.perf_counter()), len(existing))
+    bound = _bound(
+        model, reach, aim, time.perf_counter() + BOUND_SHARE * (until - time.perf_counter()), len(existing)
+    )
     share, first = aim.share_pct / 100, list[int]()
     for attempt in range(VERIFY_TRIES):
         if aim.cameras is None:
@@ -177,7 +181,9 @@ def sample_points(grid: VoxelGrid, room: FixedRoom | None, count: int, seed: int
     """
     if count < 1:
         raise InputError(f"placement: {count} points, at least 1 is needed")
-    asked = np.flatnonzero((np.ones(grid.shape, dtype=bool) if room is None else ~room.occupied(grid)).reshape(-1))
+    asked = np.flatnonzero(
+        (np.ones(grid.shape, dtype=bool) if room is None else ~room.occupied(grid)).reshape(-1)
+    )
     if not len(asked):
         raise InputError("placement: the watched box lies wholly inside walls or furniture; correct the room")
     rng = np.random.default_rng(seed)
@@ -195,7 +201,9 @@ def _model(
     progress: Callable[[str], None],
 ) -> Model:
     """Existing cameras first, each at a place of its own, then the candidates by mount."""
-    mounts = {name: n for n, name in enumerate(dict.fromkeys(c.mount.name for c in free), start=len(existing))}
+    mounts = {
+        name: n for n, name in enumerate(dict.fromkeys(c.mount.name for c in free), start=len(existing))
+    }
     return build_model(
         [*existing, *(c.camera for c in free)],
         [*range(len(existing)), *(mounts[c.mount.name] for c in free)],
@@ -243,7 +251,9 @@ def _named(bought: Sequence[Candidate], existing: Sequence[DepthCamera]) -> list
     return named
 
 
-def _out_of_reach(share_pct: float, reach: Layout, sample: NDArray[np.float64], requirement: Requirement) -> str:
+def _out_of_reach(
+    share_pct: float, reach: Layout, sample: NDArray[np.float64], requirement: Requirement
+) -> str:
     """One line: what is within reach, and where nobody can see."""
     model = reach.model
     unseen = sample[~model.sees.any(axis=0)]

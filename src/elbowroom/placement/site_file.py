@@ -65,7 +65,9 @@ def camera_entry(camera: DepthCamera) -> dict[str, Any]:
         "fy": k.fy,
         "cx": k.cx,
         "cy": k.cy,
-        "world_from_camera": [[round(float(v), DIGITS) + 0.0 for v in row] for row in camera.world_from_camera],
+        "world_from_camera": [
+            [round(float(v), DIGITS) + 0.0 for v in row] for row in camera.world_from_camera
+        ],
         "depth_kind": camera.depth_kind,
         "min_depth_m": camera.min_depth_m,
     }

@@ -141,7 +141,9 @@ def _solve(
         (np.ones(model.candidates), (np.searchsorted(places, model.place_of), np.arange(model.candidates))),
         shape=(len(places), model.candidates + len(points)),
     )
-    bounds = [(1.0 if c in model.kept else 0.0, 1.0) for c in range(model.candidates)] + [(0.0, 1.0)] * len(points)
+    bounds = [(1.0 if c in model.kept else 0.0, 1.0) for c in range(model.candidates)] + [(0.0, 1.0)] * len(
+        points
+    )
     best = -np.inf
     for _ in range(ROUNDS):
         left = until - time.perf_counter()
@@ -150,7 +152,12 @@ def _solve(
         matrix = vstack([extra, one_each, *relaxation.rows], format="csr")
         limits = np.concatenate([[extra_limit], np.ones(len(places)), np.zeros(len(relaxation.rows))])
         found = linprog(
-            cost, A_ub=matrix, b_ub=limits, bounds=bounds, method="highs", options={"time_limit": max(left, 0.1)}
+            cost,
+            A_ub=matrix,
+            b_ub=limits,
+            bounds=bounds,
+            method="highs",
+            options={"time_limit": max(left, 0.1)},
         )
         if found.status != 0:
             break

@@ -124,13 +124,25 @@ def fullest(
 
 
 def _exact(
-    model: Model, rng: np.random.Generator, until: float, course: Course, *, share: float = 1.0, budget: float | None = None
+    model: Model,
+    rng: np.random.Generator,
+    until: float,
+    course: Course,
+    *,
+    share: float = 1.0,
+    budget: float | None = None,
 ) -> list[int] | None:
     seconds = min(SECTOR_LONGEST_S, SECTOR_SHARE * (until - time.perf_counter()))
     few = model.at(np.sort(rng.choice(model.points, min(SECTOR_POINTS, model.points), replace=False)))
     hint = repair(Layout.of(few, ()), share, np.inf if budget is None else budget).chosen
     found = sector_layout(
-        few, share, max(seconds, 0.1), budget=budget, hint=hint, seed=int(rng.integers(2**31)), threads=default_threads()
+        few,
+        share,
+        max(seconds, 0.1),
+        budget=budget,
+        hint=hint,
+        seed=int(rng.integers(2**31)),
+        threads=default_threads(),
     )
     if found is None:
         return None

@@ -89,7 +89,11 @@ def improve(
 def _rebuilt(layout: Layout, budget: float, rng: np.random.Generator) -> Layout:
     """The layout with a few members replaced."""
     spare = [c for c in layout.chosen if c not in layout.model.kept]
-    out = rng.choice(spare, size=min(len(spare), int(rng.integers(1, MOST_OUT + 1))), replace=False) if spare else []
+    out = (
+        rng.choice(spare, size=min(len(spare), int(rng.integers(1, MOST_OUT + 1))), replace=False)
+        if spare
+        else []
+    )
     tried = layout.without([int(c) for c in out])
     price = tried.model.price
     among = int(rng.integers(1, AMONG + 1))

@@ -99,7 +99,11 @@ def sector_layout(
             problem.add(sum(chosen[c] for c in np.flatnonzero(model.sees[:, p])) >= views * point)
             valid.append(point)
     scale = 1000 / max(float(model.price.max()), 1e-9)
-    price = sum(round(float(model.price[c]) * scale) * chosen[c] for c in range(model.candidates) if c not in model.kept)
+    price = sum(
+        round(float(model.price[c]) * scale) * chosen[c]
+        for c in range(model.candidates)
+        if c not in model.kept
+    )
     if budget is None:
         wanted = int(np.floor(share * model.points))
         problem.add(sum(valid) >= min(wanted, len(valid)))
