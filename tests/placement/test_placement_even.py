@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from placement.conftest import room_of
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid
@@ -11,6 +10,7 @@ from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.requirement import Requirement
 from elbowroom.placement.sensor import across_deg, known_sensors
 from elbowroom.simulate import wall_cameras
+from reference.placement_rooms import room_of
 
 COARSE = VoxelGrid((-2.0, -2.0, 0.0), (16, 16, 10), 0.25)
 

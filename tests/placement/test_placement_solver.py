@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from placement.conftest import camera_at, room_of
-from reference.placement_views import blocked_by_box, directions, in_view, largest_set
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid
@@ -26,6 +24,8 @@ from elbowroom.placement.solver.sectors import sector_layout
 from elbowroom.placement.verify import verify
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
+from reference.placement_rooms import camera_at, room_of
+from reference.placement_views import blocked_by_box, directions, in_view, largest_set
 
 pytest.importorskip("ortools")
 PILLAR = ((-0.3, -0.2, 0.0), (0.2, 0.4, 1.5))

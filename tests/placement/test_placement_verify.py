@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from placement.conftest import camera_at, room_of, turned
-from reference.placement_views import any_triple, blocked_by_box, directions, in_view, largest_set
 
 from elbowroom.errors import CameraError, InputError
 from elbowroom.geometry import Intrinsics, VoxelGrid
@@ -16,6 +14,8 @@ from elbowroom.placement.requirement import TIE_RAD, Requirement
 from elbowroom.placement.sight import sights
 from elbowroom.placement.verify import judge, verify
 from elbowroom.placement.worst import worst_places
+from reference.placement_rooms import camera_at, room_of, turned
+from reference.placement_views import any_triple, blocked_by_box, directions, in_view, largest_set
 
 PILLAR = ((-0.3, -0.2, 0.0), (0.2, 0.4, 1.5))
 

@@ -146,3 +146,22 @@ def simulate(
     from elbowroom.cli.placement_simulate import run_simulate
 
     run_simulate(site, scenes, people, table, voxel_size, by_camera, seed, json)
+
+
+@placement_app.command(epilog="Example: elbowroom placement capability placed.yaml --views 3 --out pictures")
+def capability(
+    site: SitePath,
+    views: Annotated[
+        int, typer.Option(min=1, metavar="COUNT", help="So many cameras must see the object.")
+    ] = 1,
+    voxel_size: VoxelSize = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Write pictures and capability.npz into this folder."),
+    ] = None,
+    json: JsonFile = None,
+) -> None:
+    """Say how small an object the cameras will see, place by place, and what ISO 13855 adds to the distance for it."""
+    from elbowroom.cli.placement_capability import run_capability
+
+    run_capability(site, views, voxel_size, out, json)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError, SiteError
 from elbowroom.geometry import DepthCamera, VoxelGrid
-from elbowroom.simulate._kernels import touch_surface
 from elbowroom.simulate import InterventionRoom, Moment, Solid, true_occupancy
+from elbowroom.simulate._kernels import touch_surface
 from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Mesh
 from elbowroom.simulate.truth import SHRINK_M, touched_by

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from elbowroom.geometry import DepthCamera
+from elbowroom.placement.capability import Capability
 from elbowroom.placement.even import Sweep
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.verify import Verification
@@ -33,6 +34,17 @@ COUNT_COLOURS = np.array(
     dtype=np.uint8,
 )
 """Viridis in eight steps: few views dark, many light."""
+SIZES_MM = (14, 20, 30, 40, 70, 100, 150)
+"""Steps of the map of detection capability; 14, 40 and 70 mm are those of ISO 13855 [mm]."""
+SIZE_COLOURS: tuple[Colour, ...] = (
+    (8, 69, 148),
+    (33, 113, 181),
+    (66, 146, 198),
+    (107, 174, 214),
+    (158, 202, 225),
+    (198, 219, 239),
+    (239, 243, 255),
+)
 MARGIN_M = 0.3
 SIGHT_M = 7.0
 HEIGHT_M = 1.0
@@ -168,6 +180,38 @@ def section(
         plot,
         f"{what} at {'xyz'[normal]} = {centre:.2f} m",
         f"{len(found.cameras)} cameras; {found.valid_pct:.2f} % of the volume: {found.requirement.words}",
+    )
+    _legend(plot, swatches, {})
+    return plot.picture
+
+
+def capability_section(result: Capability, room: FixedRoom | None, normal: int, layer: int) -> Image.Image:
+    """One layer of voxels, coloured by the thickness of the smallest object that is seen there.
+
+    Args:
+        result: the map.
+        room: drawn where the section cuts it; None: not drawn.
+        normal: axis that is cut: 0 x, 1 y, 2 z.
+        layer: index along it.
+    """
+    plane = [axis for axis in range(3) if axis != normal]
+    sizes, asked = (np.take(volume, layer, axis=normal) for volume in (result.smallest_mm, result.asked))
+    step = np.searchsorted(SIZES_MM, sizes, side="left")
+    colours = np.array([*SIZE_COLOURS, INVALID], dtype=np.uint8)[step]
+    colours = np.where(asked[..., None], colours, np.uint8(FIXED)).astype(np.uint8)
+    ends = ["up to " + f"{SIZES_MM[0]} mm", *(f"{size}" for size in SIZES_MM[1:])]
+    swatches = dict(zip(ends, SIZE_COLOURS, strict=True)) | {"larger, unseen": INVALID, "fixed": FIXED}
+    centre = float(result.grid.centre_of(np.eye(3)[normal] * layer)[normal])
+    plot = Plot.of_cells(colours, result.grid.lower_m[plane], result.grid.voxel_size_m)
+    if room is not None:
+        plot.draw_segments(cut_lines(room.triangles, normal, centre)[:, :, plane], INK, 2)
+    plot.draw_axes("xyz"[plane[0]], "xyz"[plane[1]])
+    views = f"{result.views} camera{'s' * (result.views > 1)}"
+    _title(
+        plot,
+        f"Smallest object that {views} see{'s' * (result.views == 1)}, at {'xyz'[normal]} = {centre:.2f} m",
+        f"three pixel pitches, six sigmas of noise, and a voxel's diagonal of "
+        f"{result.grid.voxel_size_m * 1732:.0f} mm at least",
     )
     _legend(plot, swatches, {})
     return plot.picture

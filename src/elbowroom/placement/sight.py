@@ -91,7 +91,7 @@ def _with_coarse_pixels(camera: DepthCamera) -> DepthCamera:
     """The camera with squares of its pixels joined to one, so that its image reaches exactly as far; exact."""
     common = math.gcd(camera.width, camera.height)
     step = max(
-        n for n in range(1, common + 1) if common % n == 0 and camera.width >= n * BACKGROUND_PX or n == 1
+        n for n in range(1, common + 1) if (common % n == 0 and camera.width >= n * BACKGROUND_PX) or n == 1
     )
     k = camera.intrinsics
     return replace(

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import yaml
 
 from elbowroom.errors import SiteError
@@ -88,7 +89,17 @@ def camera_entry(camera: DepthCamera) -> dict[str, Any]:
         }
     if camera.flying_pixels != (camera.noise is not None):
         entry["flying_pixels"] = camera.flying_pixels
-    return entry
+    plain: dict[str, Any] = _plain(entry)
+    return plain
+
+
+def _plain(value: Any) -> Any:
+    """The same value in what YAML knows."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_plain(item) for item in value]
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def _moved(value: Any, old: Path, new: Path) -> Any:

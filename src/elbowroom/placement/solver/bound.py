@@ -104,14 +104,17 @@ def price_bound(model: Model, share: float, until: float) -> float:
         until: when to come to an end [s, time.perf_counter].
 
     Returns:
-        The bound; 0 if there was no time for any.
+        The bound; the price of as many cameras as views if there was no time for more.
     """
     points = hard_points(model)
     needed = max(0.0, math.ceil(share * model.points - 1e-9) - (model.points - len(points)))
     cost = np.concatenate([model.price, np.zeros(len(points))])
     cost[list(model.kept)] = 0.0
     count = csr_matrix(np.concatenate([np.zeros(model.candidates), -np.ones(len(points))]))
-    return max(0.0, _solve(model, points, cost, count, -needed, until))
+    # a single valid point needs as many cameras as views: that is known without solving anything
+    new = np.sort(np.delete(model.price, list(model.kept)))
+    fewest = float(new[: max(0, model.requirement.views - len(model.kept))].sum()) if share > 0 else 0.0
+    return max(fewest, _solve(model, points, cost, count, -needed, until))
 
 
 def share_bound(model: Model, budget: float, until: float) -> float:
