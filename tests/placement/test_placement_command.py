@@ -11,7 +11,7 @@ from PIL import Image
 from elbowroom.cli import run
 from elbowroom.placement.cameras import cameras_of
 from elbowroom.placement.fixed_room import FixedRoom
-from elbowroom.placement.verify import verify
+from elbowroom.placement.verification import verify
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
 
@@ -239,5 +239,5 @@ def test_a_camera_in_the_cupboard_is_one_line(placed, capsys):
 
 
 def test_placement_is_there_without_ortools():
-    code = "import sys; sys.modules['ortools'] = None; import elbowroom.cli.placement_run, elbowroom.placement.optimise"
+    code = "import sys; sys.modules['ortools'] = None; import elbowroom.cli.placement_optimise, elbowroom.placement"
     subprocess.run([sys.executable, "-c", code], check=True)

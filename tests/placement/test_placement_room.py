@@ -260,7 +260,7 @@ def test_meshes_that_cannot_be_read_are_one_line(load, tmp_path):
     with pytest.raises(SiteError, match="correct the path of the room's mesh"):
         FixedRoom.of_site(load(text))
     (tmp_path / "room.stl").write_text("no mesh")
-    with pytest.raises(SiteError, match="room.stl"):
+    with pytest.raises(SiteError, match=r"room\.stl"):
         FixedRoom.of_site(load(text))
 
 

@@ -9,10 +9,10 @@ import pytest
 from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.motion import Level
-from elbowroom.placement.capability import capability, intrusion_mm, save_capability
+from elbowroom.placement.detection import capability, intrusion_mm, save_capability
+from elbowroom.placement.rehearsal import Settings, evidence_by_camera, rehearse
 from elbowroom.placement.scenes import random_scenes
-from elbowroom.placement.simulate import Settings, evidence_by_camera, rehearse
-from elbowroom.placement.verify import verify
+from elbowroom.placement.verification import verify
 from elbowroom.reconstruct import merge, reconstruct, resolve
 from elbowroom.sensing import NoiseModel
 from elbowroom.simulate import render, true_occupancy, wall_cameras
@@ -185,7 +185,7 @@ def test_more_cameras_never_see_less_and_more_views_never_more(grid, ring, tmp_p
 
 
 def test_planes_of_bits_are_counted_right():
-    from elbowroom.placement.simulate import _count
+    from elbowroom.placement.rehearsal import _count
 
     mask = np.random.default_rng(0).random(GRID.shape) < 0.3
     assert _count(bits.pack(mask, GRID)) == mask.sum()

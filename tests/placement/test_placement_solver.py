@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.placement.candidates import candidates_of
-from elbowroom.placement.optimise import Goal, optimise, sample_points
+from elbowroom.placement.optimisation import Goal, optimise, sample_points
 from elbowroom.placement.requirement import TIE_RAD, Requirement
 from elbowroom.placement.solver import _kernels as kernels
 from elbowroom.placement.solver.bound import hard_points, price_bound, share_bound
@@ -21,7 +21,7 @@ from elbowroom.placement.solver.layout import Layout
 from elbowroom.placement.solver.model import Model, build_model
 from elbowroom.placement.solver.search import prune, repair
 from elbowroom.placement.solver.sectors import sector_layout
-from elbowroom.placement.verify import verify
+from elbowroom.placement.verification import verify
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
 from reference.placement_rooms import camera_at, room_of

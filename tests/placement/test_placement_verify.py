@@ -12,7 +12,7 @@ from elbowroom.geometry import Intrinsics, VoxelGrid
 from elbowroom.placement import _kernels_views as kernels
 from elbowroom.placement.requirement import TIE_RAD, Requirement
 from elbowroom.placement.sight import sights
-from elbowroom.placement.verify import judge, verify
+from elbowroom.placement.verification import judge, verify
 from elbowroom.placement.worst import worst_places
 from reference.placement_rooms import camera_at, room_of, turned
 from reference.placement_views import any_triple, blocked_by_box, directions, in_view, largest_set

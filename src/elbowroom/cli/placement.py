@@ -90,7 +90,7 @@ def sweep(
 
 
 @placement_app.command(
-    epilog="Example: elbowroom placement optimise my_room.yaml --share 98.9 --seconds 60 --write placed.yaml --out pictures"
+    epilog="Example: elbowroom placement optimise my_room.yaml --share 98.9 --write placed.yaml --out pictures"
 )
 def optimise(
     site: OptionalSite = None,
@@ -105,6 +105,12 @@ def optimise(
         bool, typer.Option("--price", help="The cheapest layout, not the one of fewest cameras.")
     ] = False,
     keep: Annotated[bool, typer.Option("--keep", help="Keep the site's cameras, and add to them.")] = False,
+    scenes: Annotated[
+        int,
+        typer.Option(
+            min=0, metavar="COUNT", help="Judge by the free space found in so many random scenes instead."
+        ),
+    ] = 0,
     seconds: Annotated[float, typer.Option(metavar="SECONDS", help="How long to look.")] = 60.0,
     points: Annotated[
         int, typer.Option(min=1, metavar="COUNT", help="Points that the solver looks at.")
@@ -119,6 +125,11 @@ def optimise(
     json: JsonFile = None,
 ) -> None:
     """Find few or cheap cameras that see the empty room well enough, or the best places for a number of them."""
+    if scenes:
+        from elbowroom.cli.placement_in_use import run_in_use
+
+        run_in_use(site, share, cameras, price, keep, scenes, seconds, seed, write, json)
+        return
     from elbowroom.cli.placement_optimise import run_optimise
 
     run_optimise(site, share, cameras, price, keep, seconds, points, views, angle, seed, write, out, json)

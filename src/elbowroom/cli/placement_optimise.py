@@ -1,6 +1,7 @@
 """The run of `elbowroom placement optimise`."""
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,9 @@ from elbowroom.cli.placement_run import NO_WALLS, say_verification, verification
 from elbowroom.errors import InputError
 from elbowroom.placement.bill import bill
 from elbowroom.placement.cameras import cameras_of, requirement_of
-from elbowroom.placement.candidates import candidates_of
+from elbowroom.placement.candidates import Candidate, candidates_of
 from elbowroom.placement.fixed_room import FixedRoom
-from elbowroom.placement.optimise import Goal, Optimised, optimise
+from elbowroom.placement.optimisation import Goal, Optimised, optimise
 from elbowroom.placement.pictures import save_pictures
 from elbowroom.placement.site_file import write_site
 from elbowroom.site import Site
@@ -100,12 +101,13 @@ def _row(done: Optimised, site: Site, goal: Goal, existing: int) -> dict[str, An
     }
 
 
-def _say(done: Optimised, row: dict[str, Any]) -> None:
+def bill_table(bought: Sequence[Candidate]) -> None:
+    """Prints what each camera costs."""
     table = Table(box=None, pad_edge=False)
     for column in ("camera", "x, y, z in m", "kind", "sensor", "mount", "cable", "price"):
         left = column in ("camera", "x, y, z in m", "kind")
         table.add_column(column, justify="left" if left else "right", no_wrap=True)
-    for item in bill(done.bought):
+    for item in bill(bought):
         total = item["kind"] == "total"
         table.add_row(
             "all" if total else item["camera"],
@@ -120,13 +122,18 @@ def _say(done: Optimised, row: dict[str, Any]) -> None:
     if not shown.is_terminal:
         shown.width = 120
     shown.print(table)
+
+
+def _say(done: Optimised, row: dict[str, Any]) -> None:
+    bill_table(done.bought)
     kept = f", {row['existing_cameras']} of them there already" if row["existing_cameras"] else ""
     print(
         f"cameras   {row['cameras']}{kept}; found in {row['seconds']:.0f} s among {row['candidates']} candidates"
     )
+    with_share = "no layout of these candidates with this share of the solver's points valid"
     bound = {
-        "cameras": f"no layout of these candidates with the share at the solver's points has fewer than {row['bound']:g} cameras",
-        "price": f"no layout of these candidates with the share at the solver's points costs less than {row['bound']:.2f}",
+        "cameras": f"{with_share} has fewer than {row['bound']:g} cameras",
+        "price": f"{with_share} costs less than {row['bound']:.2f}",
         "valid_pct": f"no layout of so many of these candidates has more than {row['bound']:.2f} % of the points valid",
     }
     print(f"bound     {bound[row['bound_of']]}")

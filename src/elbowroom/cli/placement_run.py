@@ -16,7 +16,7 @@ from elbowroom.placement.even import Sweep, sweep
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.pictures import curve, save, save_pictures
 from elbowroom.placement.sensor import Sensor, known_sensors, sensors_of
-from elbowroom.placement.verify import Verification, verify
+from elbowroom.placement.verification import Verification, verify
 from elbowroom.placement.worst import worst_places
 from elbowroom.site import Site
 from elbowroom.site.room_entry import BoxEntry, RoomEntry

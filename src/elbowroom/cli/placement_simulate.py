@@ -11,8 +11,8 @@ from elbowroom.cli.json_output import json_rows
 from elbowroom.errors import InputError
 from elbowroom.placement.cameras import cameras_of
 from elbowroom.placement.fixed_room import FixedRoom
+from elbowroom.placement.rehearsal import Rehearsal, Settings, rehearse
 from elbowroom.placement.scenes import random_scenes
-from elbowroom.placement.simulate import Rehearsal, Settings, rehearse
 from elbowroom.reconstruct import Rule
 from elbowroom.reconstruct.carve import Detail
 from elbowroom.site import Site
@@ -30,21 +30,13 @@ def run_simulate(
 ) -> None:
     """Carves random scenes of a site and prints what is found of their free space."""
     site = Site.simulated_room() if site_path is None else Site.load(site_path)
-    cameras, room, machine = cameras_of(site), FixedRoom.of_site(site), site.machine()
+    cameras, room = cameras_of(site), FixedRoom.of_site(site)
     if room is None:
         raise InputError(
             f"{site.path}: room: missing; scenes need walls, or no ray that meets nobody returns"
         )
     room.refuse_inside(cameras)
-    settings = Settings(
-        site.grid(voxel_size_m),
-        cast(Rule, site.rule),
-        cast(Detail, site.detail),
-        site.margin(),
-        site.explain_tolerance_m,
-        machine,
-        site.motions(machine) if machine is not None else (),
-    )
+    settings = settings_of(site, voxel_size_m)
     moments = random_scenes(site, settings.grid, room, scenes, people=people, table=table, seed=seed)
     begun = time.perf_counter()
     with json_rows(json_file) as add:
@@ -61,6 +53,20 @@ def run_simulate(
         for name, (stops, of) in done.false_stops().items():
             add({"kind": "motion", "motion": name, "false_stops": stops, "scenes_without_stop": of})
     _say(row, done)
+
+
+def settings_of(site: Site, voxel_size_m: float | None) -> Settings:
+    """How a site declares space free, with its machine and motions; voxels of another edge unless None [m]."""
+    machine = site.machine()
+    return Settings(
+        site.grid(voxel_size_m),
+        cast(Rule, site.rule),
+        cast(Detail, site.detail),
+        site.margin(),
+        site.explain_tolerance_m,
+        machine,
+        site.motions(machine) if machine is not None else (),
+    )
 
 
 def _row(site: Site, done: Rehearsal, settings: Settings, cameras: int, seconds: float) -> dict[str, Any]:
@@ -94,7 +100,7 @@ def _say(row: dict[str, Any], done: Rehearsal) -> None:
     print(f"kept      {row['occupied_pct']:.3f} % of the occupied voxels")
     if row["judged_motions"]:
         print(
-            f"stops     {row['false_stop_pct']:.1f} % of {row['judged_motions']} motions stop though the truth would not"
+            f"stops     {row['false_stop_pct']:.1f} % of {row['judged_motions']} motions stop where the truth would not"
         )
         for name, (stops, of) in done.false_stops().items():
             print(f"          {name}: {stops} of {of}")

@@ -12,7 +12,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.requirement import Requirement
 from elbowroom.placement.sensor import Sensor
-from elbowroom.placement.verify import Verification, verify
+from elbowroom.placement.verification import Verification, verify
 from elbowroom.simulate.cameras import looking_at
 
 FROM_WALL_M = 0.01

@@ -71,7 +71,7 @@ class FixedRoom:
         if entry.walls is not None:
             walls = np.array([entry.walls.lower_m, entry.walls.upper_m])
             solids += _shell(walls)
-        solids += [_static(item.name, Mesh(*box(item.lower_m, item.upper_m))) for item in entry.furniture]
+        solids += [_static(item.name, join([box(item.lower_m, item.upper_m)])) for item in entry.furniture]
         path = entry.mesh_path(beside)
         if path is not None:
             mesh, is_closed = _read(path, entry.is_y_up)

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from elbowroom.geometry import DepthCamera
-from elbowroom.placement.capability import Capability
+from elbowroom.placement.detection import Capability
 from elbowroom.placement.even import Sweep
 from elbowroom.placement.fixed_room import FixedRoom
-from elbowroom.placement.verify import Verification
+from elbowroom.placement.verification import Verification
 from elbowroom.view.atomic import folder, whole_file
 from elbowroom.view.outline import cut_lines
 from elbowroom.view.palette import CAMERA_INK, INK, PAPER, SOFT_INK, Colour
@@ -162,11 +162,13 @@ def section(
             if low <= high
         }
     else:
-        colours = np.where(valid[..., None], np.uint8(VALID), np.uint8(INVALID))
+        colours = np.where(
+            valid[..., None], np.array(VALID, dtype=np.uint8), np.array(INVALID, dtype=np.uint8)
+        )
         asked_here = max(int(asked.sum()), 1)
         share = 100 * valid.sum() / asked_here
         swatches = {f"valid {share:.1f} %": VALID, f"not valid {100 - share:.1f} %": INVALID}
-    colours = np.where(asked[..., None], colours, np.uint8(FIXED)).astype(np.uint8)
+    colours = np.where(asked[..., None], colours, np.array(FIXED, dtype=np.uint8)).astype(np.uint8)
     swatches["walls, furniture"] = FIXED
     centre = float(found.grid.centre_of(np.eye(3)[normal] * layer)[normal])
     plot = Plot.of_cells(colours, found.grid.lower_m[plane], found.grid.voxel_size_m)
@@ -198,7 +200,7 @@ def capability_section(result: Capability, room: FixedRoom | None, normal: int, 
     sizes, asked = (np.take(volume, layer, axis=normal) for volume in (result.smallest_mm, result.asked))
     step = np.searchsorted(SIZES_MM, sizes, side="left")
     colours = np.array([*SIZE_COLOURS, INVALID], dtype=np.uint8)[step]
-    colours = np.where(asked[..., None], colours, np.uint8(FIXED)).astype(np.uint8)
+    colours = np.where(asked[..., None], colours, np.array(FIXED, dtype=np.uint8)).astype(np.uint8)
     ends = ["up to " + f"{SIZES_MM[0]} mm", *(f"{size}" for size in SIZES_MM[1:])]
     swatches = dict(zip(ends, SIZE_COLOURS, strict=True)) | {"larger, unseen": INVALID, "fixed": FIXED}
     centre = float(result.grid.centre_of(np.eye(3)[normal] * layer)[normal])

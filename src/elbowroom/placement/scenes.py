@@ -86,7 +86,7 @@ def _scene(
     for n in range(people):
         height = float(rng.uniform(*HEIGHTS_M))
         person = Person(f"person {n + 1}", NOWHERE, round(height, 2), float(rng.choice([0.3, 1.2])))
-        solids += _placed(coarse, taken, lambda who=person: who.solids(_stance(grid, rng)), person.name)  # type: ignore[misc]
+        solids += _placed(coarse, taken, lambda who=person: who.solids(_stance(grid, rng)), person.name)
     return Moment(float(number), (*fixed, *solids), joints)
 
 

@@ -38,7 +38,7 @@ class Sensor:
 
 @cache
 def known_sensors() -> dict[str, Sensor]:
-    """Sensors by name: `thesis` (64x48, distance from the camera's centre, up to 7 m) and `vga`, both 90 degrees wide."""
+    """Sensors by name, 90 degrees wide: `thesis` (64x48, distance from the camera's centre, up to 7 m) and `vga`."""
     return {
         "thesis": Sensor("thesis", wall_cameras(1, size="thesis", max_depth_m=THESIS_RANGE_M)[0]),
         "vga": Sensor("vga", wall_cameras(1, size="vga")[0]),

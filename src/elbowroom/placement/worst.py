@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from elbowroom.placement.verify import Verification
+from elbowroom.placement.verification import Verification
 
 MOST_NAMES = 3
 BLOCK_M = 0.5
@@ -102,7 +102,7 @@ def _place(found: Verification, corner: NDArray[np.int64], mask: NDArray[np.bool
     lower = grid.lower_m + corner * grid.voxel_size_m
     upper = lower + np.array(mask.shape) * grid.voxel_size_m
     span = tuple(slice(first, first + n) for first, n in zip(corner, mask.shape, strict=True))
-    seeing = found.seen[(slice(None), *span)][:, mask].any(axis=1)
+    seeing = [bool(seen[span][mask].any()) for seen in found.seen]
     names = tuple(camera.name for camera, sees in zip(found.cameras, seeing, strict=True) if sees)
     most = int(found.counts[span][mask].max())
     words = f"{_where(found, lower, upper)}: {_who(names, most, apart, found)}"

@@ -1,1 +1,1 @@
-"""Finds placements. Its model of what cameras see is its own: `placement.verify` judges the result independently."""
+"""Finds placements by a model of its own; `placement.verification` judges the result independently."""

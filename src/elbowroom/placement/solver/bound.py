@@ -1,9 +1,9 @@
 """What no layout of the candidates can do better: a linear relaxation that holds for all points.
 
 Of views pairwise at least an angle A apart, an arc that leaves out j A of the circle must hold all but j: the arc left
-out, open and j A long, has room for no more than j. Chosen candidates become numbers from 0 to 1, points that need not be
-valid too, and of the arcs only those are written down that a solution so far violates. Points that are not written down
-count as valid. So the optimum is never above the price of any layout that reaches the share.
+out, open and j A long, has room for no more than j. Chosen candidates become numbers from 0 to 1, points that need not
+be valid too, and of the arcs only those are written down that a solution so far violates. Points that are not written
+down count as valid. So the optimum is never above the price of any layout that reaches the share.
 """
 
 import math

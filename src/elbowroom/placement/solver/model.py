@@ -1,6 +1,6 @@
 """Points, candidates, and which candidate sees which point from which direction: geometry in closed form.
 
-Nothing here is shared with `placement.verify`, which projects through the code that carves.
+Nothing here is shared with `placement.verification`, which projects through the code that carves.
 """
 
 import math
@@ -66,7 +66,7 @@ class Model:
 
 def build_model(
     cameras: Sequence[DepthCamera],
-    place_of: Sequence[int],
+    place_of: Sequence[int] | NDArray[np.int64],
     price: Sequence[float],
     points_in_world: NDArray[np.float64],
     triangles: NDArray[np.float64] | None,
@@ -87,7 +87,7 @@ def build_model(
         kept: candidates that are always chosen.
         progress: called with what is being done.
     """
-    places = int(max(place_of)) + 1
+    places = int(np.max(place_of)) + 1
     sees = np.zeros((len(cameras), len(points_in_world)), dtype=np.uint8)
     azimuth = np.zeros((places, len(points_in_world)))
     for place in range(places):

@@ -10,7 +10,8 @@ import numpy as np
 from elbowroom.geometry.parallel import default_threads, spread
 from elbowroom.placement.solver.layout import Layout
 from elbowroom.placement.solver.model import Model
-from elbowroom.placement.solver.search import ROUNDING, improve, prune, repair
+from elbowroom.placement.solver.scene_layout import SceneLayout, SceneModel
+from elbowroom.placement.solver.search import ROUNDING, Found, Searched, improve, prune, repair
 from elbowroom.placement.solver.sectors import sector_layout
 
 SECTOR_POINTS, SECTOR_SHARE, SECTOR_LONGEST_S = 300, 0.2, 20.0
@@ -35,7 +36,7 @@ class Course:
     steps: list[tuple[float, int, float, float]] = field(default_factory=list)
     sector_bound: float | None = None
 
-    def note(self, layout: Layout) -> None:
+    def note(self, layout: Searched) -> None:
         """Adds a better layout."""
         row = (time.perf_counter() - self.begun, len(layout.chosen), layout.price, layout.share)
         self.steps.append(row)
@@ -123,6 +124,46 @@ def fullest(
     return best
 
 
+def in_scenes(
+    model: SceneModel,
+    share: float | None,
+    budget: float,
+    until: float,
+    course: Course,
+    *,
+    seed: int = 1,
+    progress: Callable[[str], None],
+) -> SceneLayout:
+    """The cheapest layout with a share of the free space of scenes, or with None the one that finds most for a price.
+
+    The other arguments are as of `cheapest`.
+    """
+    rng = np.random.default_rng(seed)
+    wanted = 1.0 if share is None else share
+    best = repair(SceneLayout.of(model, ()), wanted, budget)
+    best = best if share is None else prune(best, share)
+    course.note(best)
+    here = best
+    while time.perf_counter() < until and best.share < 1.0:
+        progress(f"{len(best.chosen)} cameras find {best.share:.2%}")
+        if share is None:
+            left = until - time.perf_counter()
+            here = _search(here, budget, 1.0, rng, time.perf_counter() + max(left / 4, 0.5))
+            if here.valid > best.valid:
+                best = here
+                course.note(best)
+            continue
+        less = best.price - _step(model)
+        if less < -ROUNDING:
+            break
+        here = _search(_within(best, less), less, share, rng, until)
+        if here.share < share:
+            break
+        best = prune(here, share)
+        course.note(best)
+    return best
+
+
 def _exact(
     model: Model,
     rng: np.random.Generator,
@@ -156,7 +197,7 @@ def _some(model: Model, rng: np.random.Generator) -> Model:
     return model.at(np.sort(rng.choice(model.points, SEARCH_POINTS, replace=False)))
 
 
-def _step(model: Model) -> float:
+def _step(model: Model | SceneModel) -> float:
     """By how much less a layout must cost to be worth looking for: the least price, a thousandth of all at least."""
     prices = model.price[model.price > 0]
     if not len(prices):
@@ -164,7 +205,7 @@ def _step(model: Model) -> float:
     return float(prices.min()) if np.ptp(prices) < ROUNDING else 0.01 * float(np.median(prices))
 
 
-def _within(layout: Layout, budget: float) -> Layout:
+def _within(layout: Found, budget: float) -> Found:
     """The layout without what is worth least for its price, until the budget is kept."""
     while layout.price > budget + ROUNDING:
         loss = layout.losses() / np.maximum(layout.model.price[layout.chosen], ROUNDING)
@@ -173,11 +214,11 @@ def _within(layout: Layout, budget: float) -> Layout:
     return layout
 
 
-def _search(layout: Layout, budget: float, share: float, rng: np.random.Generator, until: float) -> Layout:
+def _search(layout: Found, budget: float, share: float, rng: np.random.Generator, until: float) -> Found:
     """Several searches side by side, one a core; the first that reaches the share ends all."""
     done = threading.Event()
 
-    def one(seed: int) -> Layout:
+    def one(seed: int) -> Found:
         found = improve(layout, budget, share, np.random.default_rng(seed), until, done.is_set)
         if found.share >= share:
             done.set()

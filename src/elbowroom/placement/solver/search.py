@@ -2,11 +2,10 @@
 
 import time
 from collections.abc import Callable, Sequence
+from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
-
-from elbowroom.placement.solver.layout import Layout
-from elbowroom.placement.solver.model import Model
+from numpy.typing import NDArray
 
 MOST_OUT = 4
 """So many cameras at most are taken out at once."""
@@ -18,7 +17,45 @@ ROUND = 150
 ROUNDING = 1e-9
 
 
-def repair(layout: Layout, share: float, budget: float = np.inf) -> Layout:
+class Searched(Protocol):
+    """What the search asks of a layout, whatever its points are: `Layout`, `SceneLayout`."""
+
+    model: Any
+    chosen: list[int]
+
+    @property
+    def valid(self) -> int:
+        """Number of points that are as wanted."""
+
+    @property
+    def share(self) -> float:
+        """Their share, 0 to 1."""
+
+    @property
+    def value(self) -> float:
+        """What is compared between layouts: the share, or more finely."""
+
+    @property
+    def price(self) -> float:
+        """Of what is chosen and not there already."""
+
+    def without(self, members: Sequence[int]) -> Self:
+        """The layout without some members."""
+
+    def add(self, candidate: int) -> None:
+        """Takes a candidate in."""
+
+    def gains(self) -> NDArray[np.float64]:
+        """What each candidate would add."""
+
+    def losses(self) -> NDArray[np.float64]:
+        """What each member is worth."""
+
+
+Found = TypeVar("Found", bound=Searched)
+
+
+def repair(layout: Found, share: float, budget: float = np.inf) -> Found:
     """Adds the candidate that improves most for its price, until the share is reached or nothing helps.
 
     Args:
@@ -37,7 +74,7 @@ def repair(layout: Layout, share: float, budget: float = np.inf) -> Layout:
     return layout
 
 
-def prune(layout: Layout, share: float) -> Layout:
+def prune(layout: Found, share: float) -> Found:
     """Takes out what the share does not need, the dearest first; what is kept stays."""
     while True:
         spare = [c for c in layout.chosen if c not in layout.model.kept]
@@ -51,13 +88,13 @@ def prune(layout: Layout, share: float) -> Layout:
 
 
 def improve(
-    layout: Layout,
+    layout: Found,
     budget: float,
     share: float,
     rng: np.random.Generator,
     until: float,
     stop: Callable[[], bool] = lambda: False,
-) -> Layout:
+) -> Found:
     """Large-neighbourhood search for more valid points at no more than a price.
 
     Args:
@@ -86,10 +123,10 @@ def improve(
     return best
 
 
-def _rebuilt(layout: Layout, budget: float, rng: np.random.Generator) -> Layout:
+def _rebuilt(layout: Found, budget: float, rng: np.random.Generator) -> Found:
     """The layout with a few members replaced."""
     spare = [c for c in layout.chosen if c not in layout.model.kept]
-    out = (
+    out: NDArray[np.int64] | list[int] = (
         rng.choice(spare, size=min(len(spare), int(rng.integers(1, MOST_OUT + 1))), replace=False)
         if spare
         else []
@@ -106,8 +143,3 @@ def _rebuilt(layout: Layout, budget: float, rng: np.random.Generator) -> Layout:
         if not len(ranked):
             return tried
         tried.add(int(rng.choice(ranked)))
-
-
-def starts(model: Model, share: float, first: Sequence[int] | None) -> Layout:
-    """A layout that reaches the share if any by adding does: from a first choice, or from nothing; pruned."""
-    return prune(repair(Layout.of(model, first or ()), share), share)

@@ -1,7 +1,7 @@
-"""An exact choice on a few sampled points, by CP-SAT: three narrow sectors, far enough apart however one takes from each.
+"""An exact choice on a few points, by CP-SAT: narrow sectors that are far enough apart, whatever is taken from each.
 
 A point with a view in each of `views` sectors of width 360 / views - angle, whose middles are 360 / views apart, has
-views that are pairwise at least the angle apart. That is sufficient, not necessary: a few points could be valid otherwise.
+views that are pairwise at least the angle apart. That is sufficient, not necessary: some points are valid otherwise.
 """
 
 from collections.abc import Sequence
@@ -83,14 +83,14 @@ def sector_layout(
     for p in range(model.points):
         turns = []
         for turn in range(ROTATIONS):
-            members = [
+            sectors = [
                 np.flatnonzero(model.sees[:, p].astype(bool) & inside[turn][sector][model.place_of, p])
                 for sector in range(views)
             ]
-            if all(len(m) for m in members):
+            if all(len(some) for some in sectors):
                 met = problem.new_bool_var("")
-                for m in members:
-                    problem.add_bool_or([chosen[c] for c in m]).only_enforce_if(met)
+                for some in sectors:
+                    problem.add_bool_or([chosen[c] for c in some]).only_enforce_if(met)
                 turns.append(met)
         if turns:
             point = problem.new_bool_var("")

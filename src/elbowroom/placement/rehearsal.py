@@ -183,7 +183,7 @@ def _scene(
 def evidence_by_camera(
     cameras: Sequence[DepthCamera], moment: Moment, settings: Settings, seed: int
 ) -> list[Evidence]:
-    """What each camera knows of a scene, as `reconstruct` would carve it; merged it is what `reconstruct` decides by."""
+    """What each camera knows of a scene as `reconstruct` carves it; merged, it is what `reconstruct` decides by."""
     frames = render(cameras, moment, seed=seed)
     model_depth, unexplained = {}, None
     if settings.machine is not None:

@@ -1,8 +1,8 @@
 """Detection capability: at each place the smallest object that the cameras as placed will see (docs/safety.md).
 
 An object is seen by a camera if it is as thick as some pixels at its range, so that no pair of rays passes it by on
-both sides, and stands out from the depth noise. Where `views` cameras are needed, the one of them that needs the thickest
-object decides. No object thinner than a voxel's diagonal is told apart from its voxel.
+both sides, and stands out from the depth noise. Where `views` cameras are needed, the one of them that needs the
+thickest object decides. No object thinner than a voxel's diagonal is told apart from its voxel.
 """
 
 import math
@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.parallel import spread
-from elbowroom.placement.verify import Verification
+from elbowroom.placement.verification import Verification
 from elbowroom.view.atomic import whole_file
 
 PIXELS = 3.0
 """An object must be so many pixel pitches thick (docs/safety.md, "Detection capability")."""
 SIGMAS = 3.0
-"""Its depth must differ from what is behind by so many sigmas on each side, where the camera has no margin of its own."""
+"""Its depth must differ from what is behind by so many sigmas on each side; a camera's own margin goes before."""
 FINE_MM, COARSE_MM = 40.0, 70.0
 """Limits of ISO 13855: up to the first C = 8 (d - 14), up to the second C = 850 mm."""
 
@@ -33,7 +33,7 @@ class Capability:
     Args:
         grid: the watched box.
         views: so many cameras must see it.
-        smallest_mm: float32, shape of the grid: thickness of the smallest object [mm]; infinite where fewer cameras see.
+        smallest_mm: float32, shape of the grid: thickness of the smallest object [mm]; infinite if fewer cameras see.
         pitch_mm: the part of it that pixels ask for, of the camera that decides [mm].
         noise_mm: the part that noise asks for [mm].
         asked: bool, shape of the grid: nothing fixed is there.

@@ -17,7 +17,7 @@ from elbowroom.placement.solver.layout import Layout
 from elbowroom.placement.solver.model import Model, build_model
 from elbowroom.placement.solver.run import Course, cheapest, fullest
 from elbowroom.placement.solver.sectors import ortools
-from elbowroom.placement.verify import Verification, verify
+from elbowroom.placement.verification import Verification, verify
 
 POINTS = 20_000
 TAKEN_M = 0.1
@@ -118,17 +118,13 @@ def optimise(
         progress: called with what is being done.
 
     Raises:
-        InputError: no candidates, CP-SAT is not installed, or a goal that no choice of the candidates can meet: then the
-            message says where nobody can see, and what share is within reach.
+        InputError: no candidates, CP-SAT is not installed, or a goal that no choice of the candidates can meet: then
+            the message says where nobody can see, and what share is within reach.
     """
     begun = time.perf_counter()
     wanted, aim = requirement or Requirement(), goal or Goal()
     ortools()
-    free = [c for c in candidates if not _is_taken(c, existing)]
-    if not free:
-        raise InputError(
-            "placement: no candidates; every mount is taken by a camera that hangs there already"
-        )
+    free = free_candidates(candidates, existing)
     if aim.cameras is not None and aim.cameras < len(existing):
         raise InputError(f"placement: {aim.cameras} cameras wanted, {len(existing)} hang there already")
     sample = sample_points(grid, room, points, seed)
@@ -152,7 +148,7 @@ def optimise(
             layout = fullest(model, aim.cameras - len(existing), until, course, seed=seed, progress=progress)
         progress("verifying")
         bought = [free[c - len(existing)] for c in layout.chosen if c >= len(existing)]
-        bought = _named(bought, existing)
+        bought = named(bought, existing)
         cameras = (*existing, *(candidate.camera for candidate in bought))
         found = verify(grid, cameras, room, wanted)
         if aim.cameras is not None or found.valid_pct >= aim.share_pct:
@@ -201,12 +197,9 @@ def _model(
     progress: Callable[[str], None],
 ) -> Model:
     """Existing cameras first, each at a place of its own, then the candidates by mount."""
-    mounts = {
-        name: n for n, name in enumerate(dict.fromkeys(c.mount.name for c in free), start=len(existing))
-    }
     return build_model(
         [*existing, *(c.camera for c in free)],
-        [*range(len(existing)), *(mounts[c.mount.name] for c in free)],
+        places_of(free, existing),
         [*[0.0] * len(existing), *(c.price if goal.by_price else 1.0 for c in free)],
         sample,
         None if room is None else room.triangles,
@@ -233,12 +226,30 @@ def _in_unit_of(goal: Goal, bound: float | None, existing: int) -> float | None:
     return bound if goal.by_price else float(np.ceil(bound - 1e-6)) + existing
 
 
-def _is_taken(candidate: Candidate, existing: Sequence[DepthCamera]) -> bool:
-    at = candidate.mount.position_m
-    return any(float(np.linalg.norm(camera.centre_in_world - at)) < TAKEN_M for camera in existing)
+def free_candidates(candidates: Sequence[Candidate], existing: Sequence[DepthCamera]) -> list[Candidate]:
+    """Those whose mount is not taken by a camera that hangs there already.
+
+    Raises:
+        InputError: there is none.
+    """
+    eyes = [camera.centre_in_world for camera in existing]
+    free = [c for c in candidates if all(np.linalg.norm(eye - c.mount.position_m) >= TAKEN_M for eye in eyes)]
+    if not free:
+        raise InputError(
+            "placement: no candidates; every mount is taken by a camera that hangs there already"
+        )
+    return free
 
 
-def _named(bought: Sequence[Candidate], existing: Sequence[DepthCamera]) -> list[Candidate]:
+def places_of(free: Sequence[Candidate], existing: Sequence[DepthCamera]) -> NDArray[np.int64]:
+    """The place of each existing camera, one each, and of each candidate, one a mount; shape (n,)."""
+    mounts = {
+        name: n for n, name in enumerate(dict.fromkeys(c.mount.name for c in free), start=len(existing))
+    }
+    return np.array([*range(len(existing)), *(mounts[c.mount.name] for c in free)], dtype=np.int64)
+
+
+def named(bought: Sequence[Candidate], existing: Sequence[DepthCamera]) -> list[Candidate]:
     """Names that no camera there has."""
     taken = {camera.name for camera in existing}
     named = []
