@@ -101,6 +101,19 @@ than exact, as the way of the point that touches.
         tables.travel_tables,
     ),
     Section(
+        "placement_figures.json",
+        "Placement",
+        """
+The room of the thesis: 4 x 4 x 2.5 m watched, walls of 5 x 5 m, sensors of 640x480 and 90 degrees, up to 7 m
+([placement](placement.md)). *bound*: no layout of the candidates has fewer cameras. *predicted*: free space found
+in random scenes of the simulated room, as `placement simulate` says; *found*: by `reconstruct` at six moments of its
+own course.
+Measured by `python benchmarks/placement_figures.py`.
+""",
+        "",
+        tables.placement_tables,
+    ),
+    Section(
         "thin_solids.json",
         "Thin solids",
         """

@@ -34,17 +34,21 @@ COUNT_COLOURS = np.array(
     dtype=np.uint8,
 )
 """Viridis in eight steps: few views dark, many light."""
-SIZES_MM = (14, 20, 30, 40, 70, 100, 150)
+SIZES_MM = (14, 20, 30, 35, 40, 45, 50, 60, 70, 100)
 """Steps of the map of detection capability; 14, 40 and 70 mm are those of ISO 13855 [mm]."""
 SIZE_COLOURS: tuple[Colour, ...] = (
-    (8, 69, 148),
-    (33, 113, 181),
-    (66, 146, 198),
-    (107, 174, 214),
-    (158, 202, 225),
-    (198, 219, 239),
-    (239, 243, 255),
+    (68, 1, 84),
+    (72, 36, 117),
+    (65, 68, 135),
+    (53, 95, 141),
+    (42, 120, 142),
+    (33, 145, 140),
+    (34, 168, 132),
+    (68, 191, 112),
+    (122, 209, 81),
+    (253, 231, 37),
 )
+"""Viridis: small things dark, large ones light."""
 MARGIN_M = 0.3
 SIGHT_M = 7.0
 HEIGHT_M = 1.0
@@ -201,8 +205,8 @@ def capability_section(result: Capability, room: FixedRoom | None, normal: int, 
     step = np.searchsorted(SIZES_MM, sizes, side="left")
     colours = np.array([*SIZE_COLOURS, INVALID], dtype=np.uint8)[step]
     colours = np.where(asked[..., None], colours, np.array(FIXED, dtype=np.uint8)).astype(np.uint8)
-    ends = ["up to " + f"{SIZES_MM[0]} mm", *(f"{size}" for size in SIZES_MM[1:])]
-    swatches = dict(zip(ends, SIZE_COLOURS, strict=True)) | {"larger, unseen": INVALID, "fixed": FIXED}
+    ends = [f"{SIZES_MM[0]} mm", *(f"{size}" for size in SIZES_MM[1:])]
+    swatches = dict(zip(ends, SIZE_COLOURS, strict=True)) | {"larger": INVALID, "fixed": FIXED}
     centre = float(result.grid.centre_of(np.eye(3)[normal] * layer)[normal])
     plot = Plot.of_cells(colours, result.grid.lower_m[plane], result.grid.voxel_size_m)
     if room is not None:
