@@ -6,12 +6,13 @@ Writes benchmarks/results/placement_figures.json. Takes some five minutes on two
 import json
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from elbowroom.cli.json_output import json_rows
+from elbowroom.cli.json_output import meta
 from elbowroom.geometry import VoxelGrid
 from elbowroom.placement import (
     FixedRoom,
@@ -30,6 +31,7 @@ from elbowroom.reconstruct import reconstruct
 from elbowroom.simulate import InterventionRoom, render, true_occupancy, wall_cameras
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
+from elbowroom.view.atomic import whole_file
 
 OUT = Path(__file__).resolve().parent / "results" / "placement_figures.json"
 AIM_M = 0.4
@@ -127,27 +129,26 @@ def prediction_row(size: str) -> dict[str, Any]:
     }
 
 
+def rows() -> Iterator[dict[str, Any]]:
+    """All figures, one after the other."""
+    verified = verify_row()
+    yield verified
+    yield sweep_row()
+    yield optimise_row(98.9, 60.0, "98.9 % in 60 s")
+    yield optimise_row(verified["valid_pct"], 60.0, "the share of 21 evenly spread")
+    for size in ("vga", "qqvga"):
+        yield prediction_row(size)
+
+
 def main() -> None:
     """Measures all of it."""
-    even = None
-    with json_rows(OUT) as add:
-        for make in (verify_row, sweep_row):
-            row = make()
-            print(json.dumps(row), file=sys.stderr)
-            even = row.get("valid_pct", even)
-            add(row)
-        assert even is not None
-        for share, seconds, what in (
-            (98.9, 60.0, "98.9 % in 60 s"),
-            (even, 60.0, "the share of 21 evenly spread"),
-        ):
-            row = optimise_row(share, seconds, what)
-            print(json.dumps(row), file=sys.stderr)
-            add(row)
-        for size in ("vga", "qqvga"):
-            row = prediction_row(size)
-            print(json.dumps(row), file=sys.stderr)
-            add(row)
+    said = meta() | {"command": "python benchmarks/placement_figures.py"}
+    done = []
+    for row in rows():
+        print(json.dumps(row), file=sys.stderr)
+        done.append(row)
+    with whole_file(OUT) as unfinished:
+        unfinished.write_text(json.dumps({"meta": said, "rows": done}, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

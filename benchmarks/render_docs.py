@@ -108,7 +108,6 @@ The room of the thesis: 4 x 4 x 2.5 m watched, walls of 5 x 5 m, sensors of 640x
 ([placement](placement.md)). *bound*: no layout of the candidates has fewer cameras. *predicted*: free space found
 in random scenes of the simulated room, as `placement simulate` says; *found*: by `reconstruct` at six moments of its
 own course.
-Measured by `python benchmarks/placement_figures.py`.
 """,
         "",
         tables.placement_tables,

@@ -217,7 +217,7 @@ def test_capability_writes_pictures_and_arrays(placed, tmp_path, capsys):
         (["verify", "PLACED", "--voxel-size", "nan"], "voxel_size_m is nan"),
         (["sweep", "--cameras", "40-3"], "write FROM-TO"),
         (["sweep", "--share", "0"], "--share: 0 %"),
-        (["sweep", "--sensor", "lidar"], "'lidar' is unknown, there are thesis, vga"),
+        (["sweep", "--sensor", "lidar"], "'lidar' is unknown, there are thesis, vga, square"),
         (["sweep", "--walls", "-1"], "--walls: -1 m"),
         (["optimise", "PLACED", "--share", "100", "--points", "300"], "100 % is out of reach"),
         (["optimise", "PLACED", "--cameras", "4", "--keep"], "4 cameras wanted, 5 hang there already"),

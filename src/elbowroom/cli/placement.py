@@ -57,7 +57,9 @@ def sweep(
     site: OptionalSite = None,
     sensor: Annotated[
         list[str] | None,
-        typer.Option(help="thesis, vga, or a sensor that the site names; may be given more than once."),
+        typer.Option(
+            help="thesis, vga, square, or a sensor that the site names; may be given more than once."
+        ),
     ] = None,
     cameras: Annotated[str, typer.Option(metavar="FROM-TO", help="Numbers of cameras.")] = "3-40",
     walls: Annotated[

@@ -206,7 +206,7 @@ def _sensors(site: Site, names: list[str] | None, both: bool) -> list[Sensor]:
     """The sensors that are named; without names those of the site, or the two known ones."""
     known = known_sensors()
     if not names:
-        return list(known.values()) if both else list(sensors_of(site))
+        return [known["thesis"], known["vga"]] if both else list(sensors_of(site))
     offered = known | {
         sensor.name: sensor for sensor in (sensors_of(site) if set(names) - set(known) else ())
     }

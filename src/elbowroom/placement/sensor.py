@@ -38,10 +38,14 @@ class Sensor:
 
 @cache
 def known_sensors() -> dict[str, Sensor]:
-    """Sensors by name, 90 degrees wide: `thesis` (64x48, distance from the camera's centre, up to 7 m) and `vga`."""
+    """Sensors by name, 90 degrees wide.
+
+    `thesis` (64x48, distance from the camera's centre, up to 7 m), `vga` (640x480), `square` (480x480: 90 degrees high too).
+    """
     return {
         "thesis": Sensor("thesis", wall_cameras(1, size="thesis", max_depth_m=THESIS_RANGE_M)[0]),
         "vga": Sensor("vga", wall_cameras(1, size="vga")[0]),
+        "square": Sensor("square", wall_cameras(1, width=480, height=480)[0]),
     }
 
 
