@@ -40,7 +40,7 @@ class Sensor:
 def known_sensors() -> dict[str, Sensor]:
     """Sensors by name, 90 degrees wide.
 
-    `thesis` (64x48, distance from the camera's centre, up to 7 m), `vga` (640x480), `square` (480x480: as high as wide).
+    `thesis` (64x48, distance from the camera's centre, up to 7 m), `vga` (640x480), `square` (480x480).
     """
     return {
         "thesis": Sensor("thesis", wall_cameras(1, size="thesis", max_depth_m=THESIS_RANGE_M)[0]),
