@@ -18,7 +18,8 @@ from elbowroom.placement import (
     sweep,
     verify,
 )
-from elbowroom.placement.pictures import capability_section, curve, plan, section
+from elbowroom.placement.charts import capability_section, curve
+from elbowroom.placement.pictures import plan, section
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.site import Site
 from elbowroom.site.room_entry import RoomEntry

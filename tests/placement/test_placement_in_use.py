@@ -1,6 +1,7 @@
 """Optimising by scenes: planes of each candidate alone decide as merged evidence does."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,8 +9,9 @@ import pytest
 from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.placement.candidates import candidates_of
+from elbowroom.placement.coarse import with_joined_pixels
 from elbowroom.placement.fixed_room import FixedRoom
-from elbowroom.placement.in_use import coarsened, optimise_in_use
+from elbowroom.placement.in_use import optimise_in_use
 from elbowroom.placement.optimisation import Goal
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera, rehearse
 from elbowroom.placement.scenes import random_scenes
@@ -51,7 +53,7 @@ def scenes(site):
 def model(site, scenes):
     """Candidates of one scene, exactly as they are."""
     candidates = candidates_of(site, GRID, FixedRoom.of_site(site))
-    cameras = [coarsened(c.camera, f"{n}") for n, c in enumerate(candidates)]
+    cameras = [replace(with_joined_pixels(c.camera, 64), name=f"{n}") for n, c in enumerate(candidates)]
     parts = evidence_by_camera(cameras, scenes[0], Settings(GRID), seed=1)
     truth = true_occupancy(GRID, scenes[0])
     truly = bits.pack(~truth.occupied, GRID)
@@ -113,8 +115,8 @@ def test_a_share_is_reached_with_few_cameras_and_what_exists_is_kept(site, scene
 
 def test_pixels_are_joined_so_that_the_image_reaches_as_far():
     camera = camera_at("c", (2, 0, 2), (0, 0, 1), width=640, height=480)
-    small = coarsened(camera, "s")
-    assert (small.width, small.height, small.name) == (128, 96, "s")
+    small = with_joined_pixels(camera, 96)
+    assert (small.width, small.height, small.name) == (128, 96, "c")
     for side in (-0.5, 639.5):
         at = (side - camera.intrinsics.cx) / camera.intrinsics.fx
         assert ((side + 0.5) / 5 - 0.5 - small.intrinsics.cx) / small.intrinsics.fx == pytest.approx(at)

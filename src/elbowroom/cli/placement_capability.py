@@ -8,9 +8,10 @@ import numpy as np
 
 from elbowroom.cli.json_output import json_rows
 from elbowroom.placement.cameras import cameras_of
+from elbowroom.placement.charts import capability_section
 from elbowroom.placement.detection import Capability, capability, save_capability
 from elbowroom.placement.fixed_room import FixedRoom
-from elbowroom.placement.pictures import capability_section, save
+from elbowroom.placement.pictures import save
 from elbowroom.placement.verification import verify
 from elbowroom.site import Site
 from elbowroom.view.atomic import folder

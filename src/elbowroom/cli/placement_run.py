@@ -12,9 +12,10 @@ from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.errors import InputError
 from elbowroom.placement.cameras import cameras_of, requirement_of
+from elbowroom.placement.charts import curve
 from elbowroom.placement.even import Sweep, sweep
 from elbowroom.placement.fixed_room import FixedRoom
-from elbowroom.placement.pictures import curve, save, save_pictures
+from elbowroom.placement.pictures import save, save_pictures
 from elbowroom.placement.sensor import Sensor, known_sensors, sensors_of
 from elbowroom.placement.verification import Verification, verify
 from elbowroom.placement.worst import worst_places

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from elbowroom.errors import InputError
-from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, bits
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.placement.candidates import Candidate
+from elbowroom.placement.coarse import with_joined_pixels
 from elbowroom.placement.optimisation import Goal, free_candidates, named, places_of
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera
 from elbowroom.placement.solver.run import Course, in_scenes
@@ -111,8 +112,10 @@ def _model(
         settings.grid.lower_m, settings.grid.upper_m, max(COARSE_VOXEL_M, settings.grid.voxel_size_m)
     )
     coarse = replace(settings, grid=grid)
+    everything = [*existing, *(candidate.camera for candidate in free)]
     cameras = [
-        coarsened(camera, f"{number}") for number, camera in enumerate([*existing, *(c.camera for c in free)])
+        replace(with_joined_pixels(camera, COARSE_PX), name=f"{number}")
+        for number, camera in enumerate(everything)
     ]
     through, disputed, truly = [], [], []
     for number, moment in enumerate(scenes):
@@ -131,17 +134,4 @@ def _model(
         places_of(free, existing),
         np.array([*[0.0] * len(existing), *(c.price if goal.by_price else 1.0 for c in free)]),
         tuple(range(len(existing))),
-    )
-
-
-def coarsened(camera: DepthCamera, name: str) -> DepthCamera:
-    """The camera with squares of its pixels joined to one, as long as `COARSE_PX` stay across, under another name."""
-    common = math.gcd(camera.width, camera.height)
-    steps = [n for n in range(1, common + 1) if common % n == 0 and camera.width >= n * COARSE_PX]
-    step, k = max(steps, default=1), camera.intrinsics
-    intrinsics = Intrinsics(
-        k.fx / step, k.fy / step, (k.cx + 0.5) / step - 0.5, (k.cy + 0.5) / step - 0.5, k.distortion
-    )
-    return replace(
-        camera, name=name, width=camera.width // step, height=camera.height // step, intrinsics=intrinsics
     )

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from elbowroom.geometry import DepthCamera
-from elbowroom.placement.detection import Capability
-from elbowroom.placement.even import Sweep
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.verification import Verification
 from elbowroom.view.atomic import folder, whole_file
@@ -34,27 +32,12 @@ COUNT_COLOURS = np.array(
     dtype=np.uint8,
 )
 """Viridis in eight steps: few views dark, many light."""
-SIZES_MM = (14, 20, 30, 35, 40, 45, 50, 60, 70, 100)
-"""Steps of the map of detection capability; 14, 40 and 70 mm are those of ISO 13855 [mm]."""
-SIZE_COLOURS: tuple[Colour, ...] = (
-    (68, 1, 84),
-    (72, 36, 117),
-    (65, 68, 135),
-    (53, 95, 141),
-    (42, 120, 142),
-    (33, 145, 140),
-    (34, 168, 132),
-    (68, 191, 112),
-    (122, 209, 81),
-    (253, 231, 37),
-)
-"""Viridis: small things dark, large ones light."""
 MARGIN_M = 0.3
 SIGHT_M = 7.0
 HEIGHT_M = 1.0
 
 
-def save_pictures(found: Verification, room: FixedRoom | None, out_dir: Path | str, title: str) -> list[Path]:
+def save_pictures(found: Verification, room: FixedRoom | None, out_dir: Path | str, name: str) -> list[Path]:
     """Writes plan.png and sections views_z.png, views_x.png, valid_z.png, valid_x.png; returns their paths.
 
     The horizontal section is the layer with the fewest valid points, the vertical one goes through the middle.
@@ -63,7 +46,7 @@ def save_pictures(found: Verification, room: FixedRoom | None, out_dir: Path | s
         found: what was verified.
         room: drawn where sections cut it; None: not drawn.
         out_dir: folder to write into; made if it is not there.
-        title: of the pictures.
+        name: of the room.
 
     Raises:
         InputError: the folder cannot be written to.
@@ -73,13 +56,13 @@ def save_pictures(found: Verification, room: FixedRoom | None, out_dir: Path | s
     worst = int(np.argmax(failing)) if failing.any() else found.grid.shape[2] // 2
     middle = found.grid.shape[0] // 2
     pictures = {
-        "plan": plan(found, room, title),
+        "plan": plan(found, room, name),
         "views_z": section(found, room, 2, worst, by_count=True),
         "valid_z": section(found, room, 2, worst, by_count=False),
         "views_x": section(found, room, 0, middle, by_count=True),
         "valid_x": section(found, room, 0, middle, by_count=False),
     }
-    return [save(picture, out_dir / f"{name}.png") for name, picture in pictures.items()]
+    return [save(picture, out_dir / f"{file}.png") for file, picture in pictures.items()]
 
 
 def save(picture: Image.Image, path: Path) -> Path:
@@ -93,7 +76,7 @@ def save(picture: Image.Image, path: Path) -> Path:
     return path
 
 
-def plan(found: Verification, room: FixedRoom | None, title: str) -> Image.Image:
+def plan(found: Verification, room: FixedRoom | None, name: str) -> Image.Image:
     """The room from above: cameras with the edges of their fields of view, walls, the watched box (thesis Fig. 5).
 
     The floor of the watched box is coloured by the share of valid points above it.
@@ -121,12 +104,12 @@ def plan(found: Verification, room: FixedRoom | None, title: str) -> Image.Image
     for camera in found.cameras:
         plot.draw_wedge(camera.centre_in_world[:2], camera.world_from_camera[:2, 2], CAMERA_INK)
     plot.draw_axes("x", "y")
-    _title(
+    title(
         plot,
-        f"{title}: {len(found.cameras)} cameras",
+        f"{name}: {len(found.cameras)} cameras",
         f"{found.valid_pct:.2f} % of the watched points are valid: {found.requirement.words}",
     )
-    _legend(
+    legend(
         plot,
         {"all points above are valid": VALID, "none is": INVALID},
         {
@@ -182,83 +165,12 @@ def section(
         plot.draw_wedge(camera.centre_in_world[plane], camera.world_from_camera[plane, 2], CAMERA_INK)
     plot.draw_axes("xyz"[plane[0]], "xyz"[plane[1]])
     what = "Number of cameras that see it" if by_count else "Valid points"
-    _title(
+    title(
         plot,
         f"{what} at {'xyz'[normal]} = {centre:.2f} m",
         f"{len(found.cameras)} cameras; {found.valid_pct:.2f} % of the volume: {found.requirement.words}",
     )
-    _legend(plot, swatches, {})
-    return plot.picture
-
-
-def capability_section(result: Capability, room: FixedRoom | None, normal: int, layer: int) -> Image.Image:
-    """One layer of voxels, coloured by the thickness of the smallest object that is seen there.
-
-    Args:
-        result: the map.
-        room: drawn where the section cuts it; None: not drawn.
-        normal: axis that is cut: 0 x, 1 y, 2 z.
-        layer: index along it.
-    """
-    plane = [axis for axis in range(3) if axis != normal]
-    sizes, asked = (np.take(volume, layer, axis=normal) for volume in (result.smallest_mm, result.asked))
-    step = np.searchsorted(SIZES_MM, sizes, side="left")
-    colours = np.array([*SIZE_COLOURS, INVALID], dtype=np.uint8)[step]
-    colours = np.where(asked[..., None], colours, np.array(FIXED, dtype=np.uint8)).astype(np.uint8)
-    ends = [f"{SIZES_MM[0]} mm", *(f"{size}" for size in SIZES_MM[1:])]
-    swatches = dict(zip(ends, SIZE_COLOURS, strict=True)) | {"larger": INVALID, "fixed": FIXED}
-    centre = float(result.grid.centre_of(np.eye(3)[normal] * layer)[normal])
-    plot = Plot.of_cells(colours, result.grid.lower_m[plane], result.grid.voxel_size_m)
-    if room is not None:
-        plot.draw_segments(cut_lines(room.triangles, normal, centre)[:, :, plane], INK, 2)
-    plot.draw_axes("xyz"[plane[0]], "xyz"[plane[1]])
-    views = f"{result.views} camera{'s' * (result.views > 1)}"
-    _title(
-        plot,
-        f"Smallest object that {views} see{'s' * (result.views == 1)}, at {'xyz'[normal]} = {centre:.2f} m",
-        f"three pixel pitches, six sigmas of noise, and a voxel's diagonal of "
-        f"{result.grid.voxel_size_m * 1732:.0f} mm at least",
-    )
-    _legend(plot, swatches, {})
-    return plot.picture
-
-
-def curve(sweeps: Mapping[str, Sweep], views: int) -> Image.Image:
-    """The share of valid points over the number of cameras (thesis Fig. 4), a line for each sweep."""
-    inks = (LINE_INK, INVALID, WATCHED_INK, CAMERA_INK)
-    cells = np.full((100, 60, 3), 255, dtype=np.uint8)
-    plot = Plot.of_cells(cells, np.zeros(2), 1.0)
-    pen = ImageDraw.Draw(plot.picture)
-    width, height = plot.size_px
-    left, top = plot.left_px, plot.top_px
-    counts = [n for one in sweeps.values() for n in one.counts]
-    low, high = min(counts), max(max(counts), min(counts) + 1)
-
-    def at(count: float, share: float) -> tuple[float, float]:
-        return left + (count - low) / (high - low) * width, top + (100 - share) / 100 * height
-
-    small = font(17)
-    for share in range(0, 101, 20):
-        x, y = at(low, share)
-        pen.line((x, y, x + width, y), fill=(225, 228, 231))
-        pen.text((x - 10, y), f"{share}", fill=INK, font=small, anchor="rm")
-    for count in range(5 * -(-low // 5), high + 1, 5):
-        x, y = at(count, 0)
-        pen.line((x, y, x, y + 6), fill=INK)
-        pen.text((x, y + 9), f"{count}", fill=INK, font=small, anchor="mt")
-    for number, one in enumerate(sweeps.values()):
-        ink = inks[number % len(inks)]
-        places = [at(n, share) for n, share in zip(one.counts, one.valid_pct, strict=True)]
-        pen.line(places, fill=ink, width=3)
-        for x, y in places:
-            pen.ellipse((x - 4, y - 4, x + 4, y + 4), fill=ink)
-    pen.rectangle((left - 1, top - 1, left + width, top + height), outline=INK)
-    pen.text(
-        (left + width / 2, top + height + 32), "number of cameras", fill=SOFT_INK, font=small, anchor="mt"
-    )
-    pen.text((left - 8, top - 8), "[%]", fill=SOFT_INK, font=small, anchor="rb")
-    _title(plot, "Valid points of the empty room, cameras evenly along the walls", "Thesis, Fig. 4")
-    _legend(plot, {}, {name: inks[number % len(inks)] for number, name in enumerate(sweeps)})
+    legend(plot, swatches, {})
     return plot.picture
 
 
@@ -299,13 +211,15 @@ def _mix(low: NDArray[np.int64], high: NDArray[np.int64], share: NDArray[np.floa
     return np.asarray(low + (high - low) * share[..., None]).round().astype(np.uint8)
 
 
-def _title(plot: Plot, title: str, below: str) -> None:
+def title(plot: Plot, words: str, below: str) -> None:
+    """Two lines above the area."""
     pen = ImageDraw.Draw(plot.picture)
-    pen.text((LEFT_PX, 14), title, fill=INK, font=font(28))
+    pen.text((LEFT_PX, 14), words, fill=INK, font=font(28))
     pen.text((LEFT_PX, 52), below, fill=SOFT_INK, font=font(17))
 
 
-def _legend(plot: Plot, swatches: Mapping[str, Colour], lines: Mapping[str, Colour]) -> None:
+def legend(plot: Plot, swatches: Mapping[str, Colour], lines: Mapping[str, Colour]) -> None:
+    """Filled squares, and below them lines, each with its words."""
     pen = ImageDraw.Draw(plot.picture)
     text = font(18)
     y = plot.picture.height - 84

@@ -11,9 +11,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, bits
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.parallel import spread
+from elbowroom.placement.coarse import with_joined_pixels
 from elbowroom.placement.fixed_room import FixedRoom, clear_sight
 from elbowroom.reconstruct import carve
 from elbowroom.sensing import DepthFrame
@@ -65,7 +66,9 @@ def sights(
 
 def _reached(grid: VoxelGrid, camera: DepthCamera, room: FixedRoom | None) -> NDArray[np.bool_]:
     """Voxels whose centre falls on a pixel that has a return, within range: carved from an image of the far end."""
-    coarse = _with_coarse_pixels(camera)
+    coarse = replace(
+        with_joined_pixels(camera, BACKGROUND_PX), noise=None, margin=NO_MARGIN, flying_pixels=False
+    )
     returned = np.ones((coarse.height, coarse.width), dtype=bool)
     if room is not None:
         (frame,) = render([coarse], room.moment, noise=False, threads=1)
@@ -85,23 +88,3 @@ def _nearer_than(grid: VoxelGrid, camera: DepthCamera, depth_m: NDArray[np.float
     """Voxels whose centre lies before the depth of the pixel that it falls on, shape of the grid."""
     evidence = carve(grid, [camera], [DepthFrame(camera.name, 0, depth_m)], detail="point", threads=1)
     return bits.unpack(evidence.through[0], grid)
-
-
-def _with_coarse_pixels(camera: DepthCamera) -> DepthCamera:
-    """The camera with squares of its pixels joined to one, so that its image reaches exactly as far; exact."""
-    common = math.gcd(camera.width, camera.height)
-    step = max(
-        n for n in range(1, common + 1) if (common % n == 0 and camera.width >= n * BACKGROUND_PX) or n == 1
-    )
-    k = camera.intrinsics
-    return replace(
-        camera,
-        width=camera.width // step,
-        height=camera.height // step,
-        intrinsics=Intrinsics(
-            k.fx / step, k.fy / step, (k.cx + 0.5) / step - 0.5, (k.cy + 0.5) / step - 0.5, k.distortion
-        ),
-        noise=None,
-        margin=NO_MARGIN,
-        flying_pixels=False,
-    )
