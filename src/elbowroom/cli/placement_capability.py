@@ -68,23 +68,20 @@ def _row(site: Site, result: Capability, cameras: int) -> dict[str, Any]:
 
 
 def _say(row: dict[str, Any]) -> None:
-    views = f"{row['views']} camera{'s' * (row['views'] > 1)}"
-    print(
-        f"smallest  object that {views} of {row['cameras']} see, voxels of {row['voxel_size_m'] * 100:g} cm:"
-    )
+    who = f"{row['views']} of {row['cameras']} cameras see{'s' * (row['views'] == 1)}"
+    print(f"smallest  object that {who}, voxels of {row['voxel_size_m'] * 100:g} cm:")
     for percent, size in row["smallest_mm"].items():
+        intrusion = _mm(row["intrusion_mm"][percent], "not defined beyond 70 mm")
         at = percent.removesuffix("_pct")
-        print(
-            f"          at {at} % of the places {_mm(size)}; ISO 13855 C {_mm(row['intrusion_mm'][percent])}"
-        )
+        print(f"          at {at} % of the places {_mm(size, 'none')}; ISO 13855 C {intrusion}")
     for size, share in row["share_pct"].items():
         print(f"share     {share:.1f} % of the places see {size.removesuffix('_mm')} mm")
     x, y, z = row["worst_m"]
-    print(f"worst     {_mm(row['worst_mm'])} at x {x:.2f}, y {y:.2f}, z {z:.2f}")
+    print(f"worst     {_mm(row['worst_mm'], 'none')} at x {x:.2f}, y {y:.2f}, z {z:.2f}")
     print(
         "note      check formulas in the standard; see docs/safety.md. This is no certified safety function."
     )
 
 
-def _mm(size: float) -> str:
-    return f"{size:.0f} mm" if math.isfinite(size) else "none (not told by the formula, or not seen)"
+def _mm(size: float, otherwise: str) -> str:
+    return f"{size:.0f} mm" if math.isfinite(size) else otherwise

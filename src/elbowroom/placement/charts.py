@@ -13,7 +13,7 @@ from elbowroom.view.outline import cut_lines
 from elbowroom.view.palette import CAMERA_INK, INK, SOFT_INK, Colour
 from elbowroom.view.plot import Plot, font
 
-SIZES_MM = (14, 20, 30, 35, 40, 45, 50, 60, 70, 100)
+SIZES_MM = (14, 20, 30, 35, 40, 50, 60, 70, 100, 200)
 """Steps of the map of detection capability; 14, 40 and 70 mm are those of ISO 13855 [mm]."""
 SIZE_COLOURS: tuple[Colour, ...] = (
     (68, 1, 84),
@@ -45,7 +45,7 @@ def capability_section(result: Capability, room: FixedRoom | None, normal: int, 
     colours = np.array([*SIZE_COLOURS, INVALID], dtype=np.uint8)[step]
     colours = np.where(asked[..., None], colours, np.array(FIXED, dtype=np.uint8)).astype(np.uint8)
     ends = [f"{SIZES_MM[0]} mm", *(f"{size}" for size in SIZES_MM[1:])]
-    swatches = dict(zip(ends, SIZE_COLOURS, strict=True)) | {"larger": INVALID, "fixed": FIXED}
+    swatches = dict(zip(ends, SIZE_COLOURS, strict=True)) | {"larger or unseen": INVALID, "fixed": FIXED}
     centre = float(result.grid.centre_of(np.eye(3)[normal] * layer)[normal])
     plot = Plot.of_cells(colours, result.grid.lower_m[plane], result.grid.voxel_size_m)
     if room is not None:
