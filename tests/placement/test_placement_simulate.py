@@ -9,6 +9,7 @@ import pytest
 from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.motion import Level
+from elbowroom.placement.charts import steps_mm
 from elbowroom.placement.detection import capability, intrusion_mm, save_capability
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera, rehearse
 from elbowroom.placement.scenes import random_scenes
@@ -189,3 +190,17 @@ def test_planes_of_bits_are_counted_right():
 
     mask = np.random.default_rng(0).random(GRID.shape) < 0.3
     assert _count(bits.pack(mask, GRID)) == mask.sum()
+
+
+@pytest.mark.parametrize(
+    ("sizes", "wanted"),
+    [
+        ([36.0, 44.0], (40, 45)),
+        ([np.inf], (14,)),
+        ([5.0], (14,)),
+        ([5000.0], (1000,)),
+        ([90.0] * 5 + [400.0] * 5 + [np.inf], (90, 100, 120, 150, 250, 300, 400)),
+    ],
+)
+def test_steps_of_the_map_part_what_is_seen(sizes, wanted):
+    assert steps_mm(np.array(sizes)) == wanted

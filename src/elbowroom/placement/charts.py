@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from elbowroom.placement.detection import Capability
@@ -13,8 +14,8 @@ from elbowroom.view.outline import cut_lines
 from elbowroom.view.palette import CAMERA_INK, INK, SOFT_INK, Colour
 from elbowroom.view.plot import Plot, font
 
-SIZES_MM = (14, 20, 30, 35, 40, 50, 60, 70, 100, 200)
-"""Steps of the map of detection capability; 14, 40 and 70 mm are those of ISO 13855 [mm]."""
+ROUND_MM = (14, 20, 25, 30, 35, 40, 45, 50, 60, 70, 80, 90, 100, 120, 150, 200, 250, 300, 400, 500, 700, 1000)
+"""Steps of the map of detection capability are taken from these; 14, 40 and 70 mm are those of ISO 13855 [mm]."""
 SIZE_COLOURS: tuple[Colour, ...] = (
     (68, 1, 84),
     (72, 36, 117),
@@ -41,11 +42,13 @@ def capability_section(result: Capability, room: FixedRoom | None, normal: int, 
     """
     plane = [axis for axis in range(3) if axis != normal]
     sizes, asked = (np.take(volume, layer, axis=normal) for volume in (result.smallest_mm, result.asked))
-    step = np.searchsorted(SIZES_MM, sizes, side="left")
-    colours = np.array([*SIZE_COLOURS, INVALID], dtype=np.uint8)[step]
+    steps = steps_mm(sizes[asked])
+    colours_used = [SIZE_COLOURS[n * len(SIZE_COLOURS) // len(steps)] for n in range(len(steps))]
+    step = np.searchsorted(steps, sizes, side="left")
+    colours = np.array([*colours_used, INVALID], dtype=np.uint8)[step]
     colours = np.where(asked[..., None], colours, np.array(FIXED, dtype=np.uint8)).astype(np.uint8)
-    ends = [f"{SIZES_MM[0]} mm", *(f"{size}" for size in SIZES_MM[1:])]
-    swatches = dict(zip(ends, SIZE_COLOURS, strict=True)) | {"larger or unseen": INVALID, "fixed": FIXED}
+    ends = [f"up to {steps[0]} mm", *(f"{size}" for size in steps[1:])]
+    swatches = dict(zip(ends, colours_used, strict=True)) | {"larger or unseen": INVALID, "fixed": FIXED}
     centre = float(result.grid.centre_of(np.eye(3)[normal] * layer)[normal])
     plot = Plot.of_cells(colours, result.grid.lower_m[plane], result.grid.voxel_size_m)
     if room is not None:
@@ -99,3 +102,14 @@ def curve(sweeps: Mapping[str, Sweep], views: int) -> Image.Image:
     title(plot, "Valid points of the empty room, cameras evenly along the walls", "Thesis, Fig. 4")
     legend(plot, {}, {name: inks[number % len(inks)] for number, name in enumerate(sweeps)})
     return plot.picture
+
+
+def steps_mm(sizes_mm: NDArray[np.floating]) -> tuple[int, ...]:
+    """Up to seven round sizes that part what is seen: from the least to that of 99 % of the places."""
+    seen = sizes_mm[np.isfinite(sizes_mm)]
+    if not len(seen):
+        return ROUND_MM[:1]
+    ends = np.searchsorted(ROUND_MM, [seen.min(), np.quantile(seen, 0.99)])
+    first, last = (min(int(end), len(ROUND_MM) - 1) for end in ends)
+    picked = np.unique(np.linspace(first, last, min(7, last - first + 1)).round().astype(int))
+    return tuple(ROUND_MM[n] for n in picked)
