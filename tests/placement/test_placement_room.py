@@ -137,6 +137,11 @@ def test_the_simulated_room_has_walls_and_its_own_sensor():
     assert (sensor.camera.width, sensor.camera.height) == (96, 72)
 
 
+def test_no_camera_of_the_simulated_room_hangs_inside_its_furniture():
+    site = Site.simulated_room()
+    FixedRoom.of_site(site).refuse_inside(cameras_of(site))
+
+
 def test_the_requirement_is_the_sites_or_the_commands(load):
     site = load(SITE.replace("placement:", "placement:\n  views: 2\n  angle_deg: 90.0"))
     assert (requirement_of(site).views, requirement_of(site).angle_deg) == (2, 90.0)
