@@ -314,3 +314,26 @@ def placement_tables(rows: Sequence[Row]) -> list[str]:
 
 def _due_cameras(row: Row) -> tuple[str, float]:
     return ("≤", EVEN_CAMERAS if row["wanted_share_pct"] == 98.9 else EVEN_CAMERAS * 3 // 4)
+
+
+def sweep_tables(rows: Sequence[Row]) -> list[str]:
+    """A row for each room and sensor: the share at some numbers of cameras, the least number, the time."""
+    shares = {
+        (row["room"], row["sensor"], row["cameras"]): row["valid_pct"]
+        for row in rows
+        if row["kind"] == "layout"
+    }
+
+    def share(count: int) -> Cell:
+        return lambda row: plain(round(shares[row["room"], row["sensor"], count], 2))
+
+    return table(
+        [row for row in rows if row["kind"] == "sweep"],
+        {
+            "room": of("room"),
+            "sensor": of("sensor"),
+            **{f"{count} cameras [%]": share(count) for count in (8, 12, 16, 21, 30, 40)},
+            "least": lambda row: plain(row["least_cameras"]) or "none",
+            "seconds": of("seconds", 1, due=lambda _: ("≤", 60.0)),
+        },
+    )
