@@ -116,8 +116,8 @@ own course.
         "placement_sweep.json",
         "Evenly spread cameras",
         """
-Fig. 4 of the thesis: share of valid points over the number of cameras, evenly along the walls at 2.4 m, each with the best of six aims;
-voxels of 10 cm. *square*: 90 degrees high as well as wide. *least*: the smallest number with 98.9 %.
+Fig. 4 of the thesis: share of valid points over the number of cameras, evenly along the walls at 2.4 m, each with the
+best of six aims; voxels of 10 cm. *square*: 90 degrees high as well as wide. *least*: the smallest number with 98.9 %.
 """,
         "elbowroom placement sweep --walls 4 --walls 5 --sensor square --sensor vga --sensor thesis",
         tables.sweep_tables,
