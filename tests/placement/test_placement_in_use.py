@@ -17,7 +17,6 @@ from elbowroom.placement.rehearsal import Settings, evidence_by_camera, rehearse
 from elbowroom.placement.scenes import random_scenes
 from elbowroom.placement.solver.scene_layout import SceneLayout, SceneModel
 from elbowroom.reconstruct import merge, resolve
-from elbowroom.reconstruct._kernels_carve import DISPUTED, ONE
 from elbowroom.simulate import true_occupancy
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
@@ -57,7 +56,7 @@ def model(site, scenes):
     parts = evidence_by_camera(cameras, scenes[0], Settings(GRID), seed=1)
     truth = true_occupancy(GRID, scenes[0])
     truly = bits.pack(~truth.occupied, GRID)
-    planes = [np.array([part.planes[plane] for part in parts]) for plane in (ONE, DISPUTED)]
+    planes = [np.array(rows) for rows in zip(*((p.through[0], p.disputed) for p in parts), strict=True)]
     count = int((~truth.occupied).sum())
     places = np.arange(len(parts)) // 2
     return SceneModel(planes[0], planes[1], truly, count, places, np.ones(len(parts))), cameras, parts

@@ -15,7 +15,6 @@ from elbowroom.placement.optimisation import Goal, free_candidates, named, place
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera
 from elbowroom.placement.solver.run import Course, in_scenes
 from elbowroom.placement.solver.scene_layout import SceneModel
-from elbowroom.reconstruct._kernels_carve import DISPUTED, ONE
 from elbowroom.simulate import Moment, true_occupancy
 
 COARSE_VOXEL_M, COARSE_PX = 0.1, 96
@@ -121,8 +120,8 @@ def _model(
     for number, moment in enumerate(scenes):
         progress(f"scene {number + 1} of {len(scenes)}: carving {len(cameras)} candidates")
         parts = evidence_by_camera(cameras, moment, coarse, seed + number)
-        through.append(np.array([part.planes[ONE] for part in parts]))
-        disputed.append(np.array([part.planes[DISPUTED] for part in parts]))
+        through.append(np.array([part.through[0] for part in parts]))
+        disputed.append(np.array([part.disputed for part in parts]))
         truth = true_occupancy(grid, moment)
         truly.append(bits.pack(~truth.occupied & ~truth.machine, grid))
     plane = np.concatenate(truly)
