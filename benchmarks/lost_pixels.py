@@ -2,10 +2,10 @@
 
     python benchmarks/lost_pixels.py
 
-Writes benchmarks/results/lost_pixels.json, from the recordings `sevenscenes` and `piv_table_2cam` under $ELBOWROOM_DATA
-(../shared/data by default). The simulator's shares of lost pixels are set by it. A pixel counts where inverse depth runs
-straight through those two and three pixels to both sides of it, along its row or its column: a plane, since inverse
-depth is linear over the image of one. Holes of more than three pixels, as behind edges, are not counted.
+Writes benchmarks/results/lost_pixels.json, from the recordings sevenscenes and piv_table_2cam under $ELBOWROOM_DATA
+(../shared/data by default). The simulator's shares of lost pixels are set by it. A pixel counts where inverse depth
+runs straight through those two and three pixels to both sides of it, along its row or its column: a plane, since
+inverse depth is linear over the image of one. Holes of more than three pixels, as behind edges, are not counted.
 """
 
 import json
