@@ -6,7 +6,8 @@ from reference import reconstruct_pyramid as naive
 from reference.reconstruct_pyramid import NO_RETURN, bounds_of, packed
 
 SHAPES = [(1, 1), (1, 7), (6, 1), (2, 2), (5, 3), (9, 16), (23, 18)]
-NONE = np.zeros((0, 0), dtype=np.uint32)
+NO_MODEL = np.zeros((0, 0), dtype=np.float32)
+NO_MARGIN = np.zeros(5)
 
 
 def random_texels(shape, seed=0):
@@ -53,7 +54,7 @@ def test_steps_fall_to_the_nearest_neighbour(shape, ignoring):
     ignored = rng.random(shape) < (0.3 if ignoring else 0.0)
     quantum, margin = 1e-4, np.array([0.2, 0.05, 0.01, 0.02, 1.0])
     got = np.zeros_like(texels)
-    mask = np.where(ignored, kernels.NEUTRAL, texels) if ignoring else NONE
+    mask = np.where(ignored, kernels.NEUTRAL, texels)
     kernels.lower_at_steps(texels, mask, quantum, margin, got)
     least, greatest = bounds_of(texels)
     z = least * quantum
@@ -97,24 +98,55 @@ def test_a_window_reaches_far_enough_and_holds_the_window_of_the_level_below():
             assert set(below) <= set(seen)
 
 
+def test_specks_are_as_free_as_their_neighbours_less_a_pitch():
+    rng = np.random.default_rng(4)
+    least = rng.integers(20000, 30000, (30, 41))
+    greatest = least + 10
+    holes, near = rng.random(least.shape) < 0.08, rng.random(least.shape) < 0.05
+    least[near] //= 10
+    least[holes], greatest[holes] = 0, NO_RETURN
+    got = np.zeros(least.shape, dtype=np.uint32)
+    kernels.pass_over_specks(packed(least, greatest), 0.01, NO_MODEL, NO_MARGIN, 1e-4, got)
+    expected = naive.past_specks(least, 0.01)
+    np.testing.assert_array_equal(bounds_of(got)[0], expected)
+    np.testing.assert_array_equal(bounds_of(got)[1], greatest)
+    assert (expected > least)[holes].mean() > 0.3
+
+
+@pytest.mark.parametrize(
+    "size, passed", [((1, 1), True), ((1, 2), True), ((2, 1), True), ((1, 3), False), ((2, 2), False)]
+)
+def test_what_is_wider_than_two_pixels_is_no_speck(size, passed):
+    least = np.full((12, 14), 20000)
+    speck = (slice(5, 5 + size[0]), slice(6, 6 + size[1]))
+    least[speck] = 3000
+    got = np.zeros(least.shape, dtype=np.uint32)
+    kernels.pass_over_specks(packed(least, least + 2), 0.01, NO_MODEL, NO_MARGIN, 1e-4, got)
+    assert (bounds_of(got)[0][speck] > 19000).all() == passed
+
+
+def test_where_the_machine_is_about_a_pixel_it_says_how_far_a_speck_is_free():
+    quantum, margin = 1e-4, np.array([0.01, 0.0, 0.0, 0.0, 0.0])
+    least = np.full((5, 6), 20000)
+    least[2, 2:4] = 0
+    model = np.zeros(least.shape, dtype=np.float32)
+    model[2, 2], model[2, 3] = -1.5, -1e-6
+    got = np.zeros(least.shape, dtype=np.uint32)
+    kernels.pass_over_specks(packed(least, least + 2), 0.01, model, margin, quantum, got)
+    assert bounds_of(got)[0][2, 2] * quantum == pytest.approx(1.51, abs=3 * quantum)
+    assert bounds_of(got)[0][2, 3] == 0
+
+
 def test_an_explained_pixel_is_free_up_to_the_model_and_silent():
     quantum, margin = 1e-4, np.array([0.01, 0.002, 0.0, 0.0, 0.0])
-    model = np.array([[0.0, 1.5, 3.0]], dtype=np.float32)
+    model = np.array([[0.0, -1e-6, np.inf, -1.5, 1.5, 3.0]], dtype=np.float32)
     texels = random_texels(model.shape, 3)
     trust, doubt = texels.copy(), texels.copy()
-    assert kernels.mark_explained(model, margin, quantum, trust, doubt)
-    assert trust[0, 0] == texels[0, 0]
-    assert doubt[0, 0] == texels[0, 0]
-    assert (doubt[0, 1:] == kernels.NEUTRAL).all()
+    kernels.mark_explained(model, margin, quantum, trust, doubt)
+    np.testing.assert_array_equal(trust[0, :4], texels[0, :4])
+    np.testing.assert_array_equal(doubt[0, :2], texels[0, :2])
+    assert (doubt[0, 2:] == kernels.NEUTRAL).all()
     # a voxel whose far side plus margin lies at this depth is compared with it, so the margin is in it
-    up_to = bounds_of(trust)[0][0, 1:] * quantum - (0.01 + 0.002 * model[0, 1:])
-    assert (up_to <= model[0, 1:]).all()
-    np.testing.assert_allclose(up_to, model[0, 1:], atol=3 * quantum)
-
-
-def test_a_model_that_is_nowhere_explains_nothing():
-    texels = random_texels((4, 5))
-    trust, doubt = texels.copy(), texels.copy()
-    assert not kernels.mark_explained(np.zeros((4, 5), np.float32), np.zeros(5), 1e-4, trust, doubt)
-    np.testing.assert_array_equal(trust, texels)
-    np.testing.assert_array_equal(doubt, texels)
+    up_to = bounds_of(trust)[0][0, 4:] * quantum - (0.01 + 0.002 * model[0, 4:])
+    assert (up_to <= model[0, 4:]).all()
+    np.testing.assert_allclose(up_to, model[0, 4:], atol=3 * quantum)

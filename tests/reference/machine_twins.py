@@ -170,33 +170,52 @@ def has_support(depth, camera, explained, v, u):
                 continue
             beyond = not (0 <= nv < camera.height and 0 <= nu < camera.width)
             lost = beyond or not is_return(camera, depth[nv, nu])
-            if lost or (not explained[nv, nu] and abs(depth[nv, nu] - d) <= slack):
+            if lost or (explained[nv, nu] <= 0 and abs(depth[nv, nu] - d) <= slack):
                 support += 1
     return support >= (4 if camera.flying_pixels else 1)
 
 
 def with_mixed_pixels(model, depth, camera, explained):
-    """Returns behind the machine's edge with fewer than four neighbours like them are explained too."""
+    """What flying pixels add, where the model is about a pixel without fitting.
+
+    Returns behind the machine's edge with fewer than four neighbours like them: infinity. Else specks, which all about
+    them, or about them and one neighbour, is explained or farther than the model in them: minus that depth. Else
+    minus a millionth.
+    """
     settled = explained.copy()
-    for v in range(camera.height):
-        for u in range(camera.width):
-            about = model[max(0, v - 1) : v + 2, max(0, u - 1) : u + 2]
-            d = depth[v, u]
-            if (
-                explained[v, u]
-                or not is_return(camera, d)
-                or not np.isfinite(about).any()
-                or d <= about.min()
-            ):
-                continue
-            if not has_support(depth, camera, explained, v, u):
-                settled[v, u] = about.min()
+    candidates = []
+    for v, u in np.ndindex(depth.shape):
+        about = model[max(0, v - 1) : v + 2, max(0, u - 1) : u + 2]
+        if explained[v, u] or not np.isfinite(about).any():
+            continue
+        free_to = model[v, u] if np.isfinite(model[v, u]) else about.min()
+        candidates.append((v, u, free_to))
+        past = is_return(camera, depth[v, u]) and depth[v, u] > free_to
+        if past and not has_support(depth, camera, explained, v, u):
+            settled[v, u] = np.inf
+    base = settled.copy()
+    for v, u, free_to in candidates:
+        if base[v, u] == 0:
+            speck = any(
+                surrounded(base, depth, camera, {(v, u), (v + dv, u + du)}, free_to)
+                for dv, du in np.ndindex(3, 3)
+                for dv, du in [(dv - 1, du - 1)]
+            )
+            settled[v, u] = -free_to if speck else -1e-6
     return settled
+
+
+def surrounded(explained, depth, camera, pixels, free_to):
+    """Whether all eight neighbours of all these pixels lie in the image and are explained or farther."""
+    if any(not (0 < v < camera.height - 1 and 0 < u < camera.width - 1) for v, u in pixels):
+        return False
+    about = {(v + dv - 1, u + du - 1) for v, u in pixels for dv, du in np.ndindex(3, 3)} - pixels
+    return all(explained[p] > 0 or (is_return(camera, depth[p]) and depth[p] > free_to) for p in about)
 
 
 def unexplained_voxels(camera, depth, explained, grid):
     """Voxels that hold the measured point of a pixel that is not explained and has support; shape of the grid."""
-    valid = np.isfinite(depth) & (depth > 0) & (explained == 0)
+    valid = np.isfinite(depth) & (depth > 0) & (explained <= 0) & (explained >= -1e-5)
     valid &= (depth >= camera.min_depth_m) & (depth <= camera.max_depth_m)
     for v, u in np.argwhere(valid):
         valid[v, u] = has_support(depth, camera, explained, v, u)

@@ -5,9 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.placement.fixed_room import FixedRoom
-from elbowroom.simulate.cameras import looking_at
 from elbowroom.site.room_entry import RoomEntry
 
 WALLS = {"lower_m": [-2.5, -2.5, 0.0], "upper_m": [2.5, 2.5, 2.9]}

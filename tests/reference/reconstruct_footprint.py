@@ -72,7 +72,7 @@ class Boxes:
             (np.abs(self.y) + self.ey) * rn - np.abs(self.y) * rz,
         )
         widest = int((np.where(counted, np.minimum(aside, F(32768)), F(0)) * F(1024)).max()) / 1024
-        reach = np.ceil(widest + image.lateral_px + 1.5 + 0.02) - 1
+        self.reach = reach = int(np.ceil(widest + image.lateral_px + 1.5 + 0.02)) - 1
         self.level = image.lowest
         while (2 << self.level) < reach:
             self.level += 1
@@ -115,6 +115,23 @@ class Boxes:
             greatest[lane] = F(high) * F(self.image.quantum) if high < NO_RETURN else np.inf
         return least, greatest
 
+    def measured(self):
+        """Least and greatest depth [m] that unexplained pixels measured about each lane's centre pixel.
+
+        In whole tiles of 4 x 4.
+        """
+        image, camera = self.image, self.image.camera
+        least, greatest = np.zeros(64, dtype=F), np.zeros(64, dtype=F)
+        for lane in range(64):
+            span = []
+            for middle, size in ((int(self.v[lane]), camera.height), (int(self.u[lane]), camera.width)):
+                first, last = max(middle - self.reach, 0), min(middle + self.reach, size - 1)
+                span.append(slice(first // 4 * 4, last // 4 * 4 + 4))
+            low, high = (bound[tuple(span)] for bound in image.doubt)
+            least[lane] = F(low.min()) * F(image.quantum)
+            greatest[lane] = F(high.max()) * F(image.quantum) if high.max() < NO_RETURN else np.inf
+        return least, greatest
+
     def decided(self):
         """Lanes (through, unsure, cut): seen through; mixed; all seen through but not all in the image."""
         if self.state_of_all == OUTSIDE:
@@ -132,17 +149,18 @@ class Boxes:
             return says
         if self.image.blank:
             return says + np.where(unsure, DISPUTES | BLIND, 0)
-        least, greatest = self.looked_up(self.image.doubt)
-        settled = (least > self.far) | (greatest < self.near)
+        greatest = self.looked_up(self.image.trust)[1]
+        lowest, highest = self.measured()
+        settled = (lowest > self.far) | (highest < self.near)
         for lane in np.flatnonzero(unsure):
             crossing = self.state[lane] == CROSSING
-            if self.image.split and settled[lane] and not crossing:
-                continue
-            says[lane] |= DISPUTES
+            crossing = self.state[lane] == CROSSING
+            if crossing or not (self.image.split and settled[lane]):
+                says[lane] |= DISPUTES
             if crossing:
                 continue
-            here = tuple(int(bound[int(self.v[lane]), int(self.u[lane])]) for bound in self.image.doubt)
             says[lane] |= BLIND if np.isinf(greatest[lane]) else 0
+            here = tuple(int(bound[int(self.v[lane]), int(self.u[lane])]) for bound in self.image.doubt)
             measured = here[1] * self.image.quantum
             if here != NEUTRAL and here[1] != NO_RETURN and self.near[lane] <= measured <= self.far[lane]:
                 says[lane] |= SURFACE

@@ -93,15 +93,10 @@ def say_of_voxel(image, centre, edge):
     speaks = ~((least == NEUTRAL[0]) & (greatest == NEUTRAL[1]))
     blind = blocked & speaks & (greatest == NO_RETURN)
     hidden = blocked & speaks & ~blind & is_before(greatest)
-    past = speaks & ~hidden & ~blind & is_past(least)
-    unsure = blocked & speaks & ~blind & ~hidden & ~past
-    surface = unsure & ~is_past(greatest)
-    if surface.any():
+    measured_here = blocked & speaks & ~blind & ~hidden & ~is_past(least)
+    if measured_here.any():
         return DISPUTES | SURFACE
-    say = (DISPUTES if unsure.any() else 0) | (DISPUTES | BLIND if blind.any() else 0)
-    if not say and hidden.any() and past.any():
-        return DISPUTES
-    return say
+    return DISPUTES | BLIND if blind.any() else 0
 
 
 def squares_meeting(points, u, v, wide):

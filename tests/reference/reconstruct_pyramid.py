@@ -27,6 +27,21 @@ def lowered(least, ignored, threshold):
     return out
 
 
+def past_specks(least, pitch):
+    """Least depths where one pixel, or two side by side, may be less than all pixels about them."""
+    out = least.copy()
+    rows, columns = least.shape
+    for v, u in np.ndindex(least.shape):
+        for dv, du in np.ndindex(3, 3):
+            speck = {(v, u), (v + dv - 1, u + du - 1)}
+            if any(not (0 < y < rows - 1 and 0 < x < columns - 1) for y, x in speck):
+                continue
+            about = {(y + j - 1, x + i - 1) for y, x in speck for j, i in np.ndindex(3, 3)} - speck
+            short = int(min(least[p] for p in about) * (1 - pitch) - 1)
+            out[v, u] = max(out[v, u], short)
+    return out
+
+
 def level(least, greatest, k):
     """Bounds over 2^k x 2^k pixels each, of fewer at the edge."""
     rows, columns = (-(-n // 2**k) for n in least.shape)

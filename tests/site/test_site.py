@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from elbowroom.errors import SiteError
+from elbowroom.geometry import looking_at
 from elbowroom.sensing import Margin, NoiseModel
 from elbowroom.site import Site
-from elbowroom.site.camera_entry import looking_at
 from elbowroom.site.paths import expand
 from elbowroom.site.site import NEW_SITE
 

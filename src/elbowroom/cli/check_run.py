@@ -4,6 +4,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from elbowroom.cli.compiling import compile_kernels
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.reconstruct_run import scene_at, space_of
@@ -28,9 +29,11 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
         known = ", ".join(dict.fromkeys(m.joint for m in motions))
         raise InputError(f"{room.site.path}: joints.{joint}: no speed; joints with a speed are {known}")
     with json_rows(json_file) as add:
-        with Steps(Console(stderr=True), 4) as steps:
+        console = Console(stderr=True)
+        compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
+        with Steps(console, 4) as steps:
             steps.begin("compiling kernels")
-            warm_up(machine)
+            warm_up(machine, [room.detail])
             steps.begin("reading images")
             scene = scene_at(room, moment)
             steps.begin("reconstructing")

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
+from elbowroom.cli.compiling import compile_kernels
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.reconstruct_run import space_of
@@ -22,7 +23,7 @@ from elbowroom.geometry import bits
 from elbowroom.geometry.parallel import default_threads
 from elbowroom.monitor import Cycle, CycleResult
 from elbowroom.motion import check_motions
-from elbowroom.reconstruct import FreeSpace, warm_up
+from elbowroom.reconstruct import FreeSpace
 from elbowroom.view import save_sections
 from elbowroom.view.atomic import folder
 from elbowroom.view.run_log import RunLog
@@ -90,14 +91,13 @@ def _warm_up(room: Room, cycle: Cycle, console: Console) -> None:
     Raises:
         InputError: the first cycle failed, so that all would.
     """
-    with Steps(console, 4) as steps:
-        steps.begin("compiling kernels")
-        warm_up(room.machine)
+    compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
+    with Steps(console, 3) as steps:
         steps.begin("first frames")
         scene = next(room.scenes(), None)
         if scene is None:
             return
-        steps.begin("compiling kernels of motion")
+        steps.begin("motions that are blocked")
         nothing = bits.empty(room.grid)
         all_blocked = FreeSpace(room.grid, nothing, nothing, nothing, nothing)
         check_motions(all_blocked, cycle.machine, scene.joints or {}, cycle.motions)

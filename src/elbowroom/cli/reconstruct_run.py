@@ -7,6 +7,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from elbowroom.cli.compiling import compile_kernels
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.room import Room, Scene
@@ -56,9 +57,16 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
     """
     folder(out_dir)
     with json_rows(json_file) as add:
-        with Steps(Console(stderr=True), 6) as steps:
+        console = Console(stderr=True)
+        compile_kernels(
+            console,
+            machine=room.machine is not None,
+            motion=False,
+            simulator=room.site.simulated is not None,
+        )
+        with Steps(console, 6) as steps:
             steps.begin("compiling kernels")
-            warm_up(room.machine)
+            warm_up(room.machine, [room.detail])
             steps.begin("reading images")
             scene = scene_at(room, moment)
             steps.begin("reconstructing")

@@ -3,6 +3,6 @@
 from elbowroom.geometry.camera import DepthCamera
 from elbowroom.geometry.grid import VoxelGrid
 from elbowroom.geometry.intrinsics import Intrinsics
-from elbowroom.geometry.transforms import invert_rigid, nearest_rigid
+from elbowroom.geometry.transforms import invert_rigid, looking_at, nearest_rigid
 
-__all__ = ["DepthCamera", "Intrinsics", "VoxelGrid", "invert_rigid", "nearest_rigid"]
+__all__ = ["DepthCamera", "Intrinsics", "VoxelGrid", "invert_rigid", "looking_at", "nearest_rigid"]

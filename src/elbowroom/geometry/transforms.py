@@ -1,6 +1,7 @@
 """Rigid transforms as 4x4 matrices, named `<to>_from_<from>`."""
 
 import warnings
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -74,3 +75,36 @@ def nearest_rigid(matrix: ArrayLike, what: str, error: type[InputError] = Camera
     rigid[:3, :3] = rotation
     rigid[:3, 3] = given[:3, 3]
     return rigid
+
+
+def looking_at(
+    position_m: Sequence[float],
+    look_at_m: Sequence[float],
+    up: Sequence[float] = (0.0, 0.0, 1.0),
+    error: type[InputError] = CameraError,
+) -> NDArray[np.float64]:
+    """Pose of a camera that looks at a point and whose image stands upright.
+
+    Args:
+        position_m, look_at_m: where it is and what lies in the middle of its image, world frame [m].
+        up: direction that is up in the image, world frame; straight up or down, the image's up is +y.
+        error: the class of error to raise.
+
+    Returns:
+        world_from_camera, shape (4, 4); x right, y down, z forward.
+
+    Raises:
+        InputError: both points are the same, or `up` is no direction.
+    """
+    forward = np.asarray(look_at_m, dtype=float) - np.asarray(position_m, dtype=float)
+    if np.linalg.norm(forward) < 1e-9 or np.linalg.norm(up) < 1e-9:
+        raise error(f"position_m {position_m} and look_at_m {look_at_m} give no direction; they must differ")
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, up)
+    if np.linalg.norm(right) < 1e-6 * np.linalg.norm(up):
+        right = np.cross(forward, (0.0, 1.0, 0.0) if abs(forward[1]) < 0.9 else (1.0, 0.0, 0.0))
+    right /= np.linalg.norm(right)
+    world_from_camera = np.eye(4)
+    world_from_camera[:3, :3] = np.stack([right, np.cross(forward, right), forward], axis=1)
+    world_from_camera[:3, 3] = position_m
+    return world_from_camera

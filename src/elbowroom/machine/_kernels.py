@@ -32,11 +32,15 @@ def place_links(tree, world_from_base, positions, world_from_link):
         for row in range(tree.parent.size):
             parent = tree.parent[row]
             if parent < 0:
-                world_from_link[n, row] = world_from_base
+                for i in range(4):
+                    for j in range(4):
+                        world_from_link[n, row, i, j] = world_from_base[i, j]
                 continue
             fixed = tree.parent_from_joint[row]
             if tree.kind[row] == FIXED:
-                moved[:] = fixed[:3]
+                for i in range(3):
+                    for j in range(4):
+                        moved[i, j] = fixed[i, j]
             else:
                 position = positions[n, tree.column[row]] * tree.multiplier[row] + tree.offset[row]
                 _move(fixed, tree.axis[row], position, tree.kind[row] == SLIDES, moved)
@@ -58,7 +62,8 @@ def _move(fixed, axis, position, slides, moved):
     x, y, z = axis[0], axis[1], axis[2]
     if slides:
         for i in range(3):
-            moved[i, :3] = fixed[i, :3]
+            for j in range(3):
+                moved[i, j] = fixed[i, j]
             moved[i, 3] = fixed[i, 3] + position * (fixed[i, 0] * x + fixed[i, 1] * y + fixed[i, 2] * z)
     else:
         c, s = math.cos(position), math.sin(position)

@@ -12,6 +12,8 @@ NEAR_M = 0.001
 MOST_M = 1e6
 EDGE_PX = 1e-7
 TILE = 16
+UNSAFE = np.float32(-1e-6)
+"""In place of a depth where the model is about a pixel, but what is about it is not all explained or farther [m]."""
 
 
 SUPPORT = 4
@@ -260,7 +262,7 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around)
         first, last: (height,) columns drawn in each row.
         tolerance, sigmas: a depth d fits if it lies within tolerance [m] + sigmas * sigma(d).
         model: (height, width) float32 zeros; where a pixel fits, the depth drawn in it, or else nearest about it
-            [m, same kind].
+            [m, same kind]. Of a camera whose pixels fly, also what `_settle_edges` says.
         around: where to look for other returns, and the plane for their voxels; without tiles: nowhere.
     """
     height, width = view.height, view.width
@@ -345,13 +347,13 @@ def _compare(view, depth, drawn, across, start, stop, tolerance, sigmas, model):
         d = depth[u]
         beyond = max(d - offset, zero)
         slack = fixed + factor * d + square * beyond * beyond
-        valid = (d > zero) & (d >= low) & (d <= high) & (nearest > zero)
-        fits = valid & ((d + slack) * nearest >= one) & ((d - slack) * farthest <= one)
+        valid = (d > zero) & (d >= low) & (d <= high)
+        fits = valid & (nearest > zero) & ((d + slack) * nearest >= one) & ((d - slack) * farthest <= one)
         # behind the model's nearest surface and beside it: perhaps a mixed pixel of its edge (`_settle_edges`)
-        edge = view.flying & valid & (not fits) & (d * nearest > one)
         # up to the surface drawn in the pixel itself; beside the drawn edge up to the nearest one about it
         free_to = one / (drawn[u] if drawn[u] > zero else nearest)
-        model[u] = free_to if fits else (-one / nearest if edge else zero)
+        unfit = -free_to if view.flying & (nearest > zero) else zero
+        model[u] = free_to if fits else unfit
 
 
 @njit(nogil=True, error_model="numpy")
@@ -382,25 +384,62 @@ def _has_support(view, depth, model, u, v):
 
 @njit(nogil=True, error_model="numpy")
 def _settle_edges(view, depth, first, last, model):
-    """Of the returns behind the machine's edge, those that stand alone are mixed pixels of the edge: explained.
+    """Pixels that the model is about without fitting, below zero on entry by the depth that the model frees.
 
-    On entry negative depths mark what is to be settled.
+    Those that see past the machine's edge and stand alone are mixed pixels of the edge: explained, infinity. Others
+    about which all is explained or farther are specks, and explained as well: they stay below zero. The rest becomes
+    `UNSAFE`.
     """
-    height, width = view.height, view.width
-    for turn in range(2):
-        for v in range(height):
-            start, stop = width, -1
-            for row in range(max(0, v - 1), min(height, v + 2)):
+    for turn in range(3):
+        for v in range(view.height):
+            start, stop = view.width, -1
+            for row in range(max(0, v - 1), min(view.height, v + 2)):
                 start, stop = min(start, first[row]), max(stop, last[row])
-            for u in range(max(0, start - 1), min(width - 1, stop + 1) + 1 if stop >= 0 else 0):
+            for u in range(max(0, start - 1), min(view.width - 1, stop + 1) + 1 if stop >= 0 else 0):
                 if model[v, u] >= 0.0:
                     continue
-                if turn == 1:
-                    # supported ones were set to minus infinity, so that all were judged by the same neighbours
-                    model[v, u] = np.float32(0.0) if model[v, u] == -np.inf else -model[v, u]
-                    continue
-                if _has_support(view, depth, model, u, v):
-                    model[v, u] = -np.inf
+                if turn == 0:
+                    # with another mark first, so that all are judged by the same neighbours
+                    d = depth[v, u]
+                    past = _is_return(view, d) and d > -model[v, u]
+                    if past and not _has_support(view, depth, model, u, v):
+                        model[v, u] = -np.inf
+                elif turn == 1:
+                    if model[v, u] == -np.inf:
+                        model[v, u] = np.inf
+                elif not _is_speck(view, depth, model, u, v):
+                    model[v, u] = UNSAFE
+
+
+@njit(nogil=True, error_model="numpy")
+def _is_speck(view, depth, model, u, v):
+    """Whether all neighbours of a pixel, or of it and one beside it, are explained or see past the model in it."""
+    least = -model[v, u]
+    for dv in range(-1, 2):
+        for du in range(-1, 2):
+            ov, ou = v + dv, u + du
+            if not (0 < v < view.height - 1 and 0 < u < view.width - 1):
+                return False
+            if not (0 < ov < view.height - 1 and 0 < ou < view.width - 1):
+                continue
+            clear = True
+            for nv in range(min(v, ov) - 1, max(v, ov) + 2):
+                for nu in range(min(u, ou) - 1, max(u, ou) + 2):
+                    near_one = abs(nv - v) <= 1 and abs(nu - u) <= 1
+                    near_other = abs(nv - ov) <= 1 and abs(nu - ou) <= 1
+                    own = (nv == v and nu == u) or (nv == ov and nu == ou)
+                    if (near_one or near_other) and not own:
+                        d = depth[nv, nu]
+                        clear &= model[nv, nu] > 0.0 or (_is_return(view, d) and d > least)
+            if clear:
+                return True
+    return False
+
+
+@njit(nogil=True, error_model="numpy")
+def _is_return(view, d):
+    """Whether a depth was measured at all."""
+    return d > 0.0 and d >= view.min_depth and d <= view.max_depth and d <= MOST_M
 
 
 @njit(nogil=True, error_model="numpy")
@@ -454,6 +493,8 @@ def _mark_row_of_tiles(view, depth, model, row, around, limits, found):
     if row >= around.near.shape[0]:
         return
     width, least, most = view.width, limits[0], limits[1]
+    # taken out of the tuple once: each look into it counts references, which costs more than the arithmetic below
+    sigmas, pose, cells, words = around.sigmas, around.world_from_camera, around.cells, around.words
     for column in range(around.near.shape[1]):
         start, stop = column * TILE, min(column * TILE + TILE, width)
         _set(least, start, stop, np.float32(max(around.near[row, column], view.min_depth)))
@@ -464,8 +505,13 @@ def _mark_row_of_tiles(view, depth, model, row, around, limits, found):
         for n in range(eight.size):
             if eight[n] != 0:
                 for u in range(8 * n, 8 * n + 8):
-                    if found[u] != 0 and _has_support(view, depth, model, u, v):
-                        _mark_return(view, u, v, depth[v, u], around)
+                    # the voxels first: neighbours mostly lie in the same ones
+                    if (
+                        found[u] != 0
+                        and _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words, False)
+                        and _has_support(view, depth, model, u, v)
+                    ):
+                        _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words, True)
 
 
 @njit(nogil=True, error_model="numpy")
@@ -474,13 +520,18 @@ def _find(depth, model, least, most, width, found):
     for n in range(width):
         u = np.uint64(n)
         d = depth[u]
-        found[u] = (d > np.float32(0.0)) & (d >= least[u]) & (d <= most[u]) & (model[u] == np.float32(0.0))
+        found[u] = (
+            (d > np.float32(0.0))
+            & (d >= least[u])
+            & (d <= most[u])
+            & (model[u] <= np.float32(0.0))
+            & (model[u] >= UNSAFE)
+        )
 
 
 @njit(nogil=True, error_model="numpy")
-def _mark_return(view, u, v, d, around):
-    """Sets the voxels that one return may lie in."""
-    cells, words, pose = around.cells, around.words, around.world_from_camera
+def _mark_return(view, u, v, d, sigmas, pose, cells, words, sets):
+    """Sets the voxels that one return may lie in, or only says whether any of them is not set yet."""
     x, y = (u - view.cx) / view.fx, (v - view.cy) / view.fy
     z = d / math.sqrt(1.0 + x * x + y * y) if view.radial else float(d)
     half = 0.5 * z / min(view.fx, view.fy) / cells.edge
@@ -494,7 +545,7 @@ def _mark_return(view, u, v, d, around):
     rx = (pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]) * scale
     ry = (pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]) * scale
     rz = (pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]) * scale
-    spread = around.sigmas * _sigma(view, d) * z / d
+    spread = sigmas * _sigma(view, d) * z / d
     # steps of at most half a voxel
     steps = min(math.ceil(4.0 * spread / cells.edge), 1000)
     for n in range(steps + 1):
@@ -507,4 +558,9 @@ def _mark_return(view, u, v, d, around):
         for i in range(max(0, math.floor(px - half)), min(cells.nx - 1, math.floor(px + half)) + 1):
             for j in range(max(0, math.floor(py - half)), min(cells.ny - 1, math.floor(py + half)) + 1):
                 for k in range(max(0, math.floor(pz - half)), min(cells.nz - 1, math.floor(pz + half)) + 1):
-                    words[word_of(i, j, k, cells.cubes_y, cells.cubes_z)] |= bit_of(i, j, k)
+                    word, bit = word_of(i, j, k, cells.cubes_y, cells.cubes_z), bit_of(i, j, k)
+                    if sets:
+                        words[word] |= bit
+                    elif not words[word] & bit:
+                        return True
+    return False

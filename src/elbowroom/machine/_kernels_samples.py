@@ -181,7 +181,9 @@ def cluster(points, size, order, stops):
         along = np.empty(part.size, dtype=points.dtype)
         for p in range(part.size):
             along[p] = points[part[p], axis]
-        order[start:stop] = part[np.argsort(along)]
+        rank = np.argsort(along)
+        for p in range(part.size):
+            order[start + p] = part[rank[p]]
         clusters = (stop - start + size - 1) // size
         middle = start + (clusters // 2) * size
         stack[depth, 0], stack[depth, 1] = middle, stop
@@ -201,6 +203,7 @@ def mark_surface(triangles, lower, edge, surface):
         surface: bool (nx, ny, nz) to fill.
     """
     corners = np.empty((3, 3))
+    normal = np.empty(3)
     first = np.empty(3, dtype=np.int64)
     last = np.empty(3, dtype=np.int64)
     for t in range(triangles.shape[0]):
@@ -211,7 +214,10 @@ def mark_surface(triangles, lower, edge, surface):
             high = max(corners[0, k], corners[1, k], corners[2, k])
             first[k] = max(0, math.floor(low - 1e-9))
             last[k] = min(surface.shape[k] - 1, math.floor(high + 1e-9))
-        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        for k in range(3):
+            one, two = (k + 1) % 3, (k + 2) % 3
+            normal[k] = (corners[1, one] - corners[0, one]) * (corners[2, two] - corners[0, two])
+            normal[k] -= (corners[1, two] - corners[0, two]) * (corners[2, one] - corners[0, one])
         main = 0
         for k in range(1, 3):
             if abs(normal[k]) > abs(normal[main]):

@@ -36,7 +36,11 @@ class Explained:
     Args:
         model_depth: by camera, float32, shape (height, width) [m, the camera's kind]: 0 where the pixel is
             not explained; else the depth up to which its ray is free, the model's depth in it, or beside the
-            model's edge the nearest within the 3 x 3 pixels about it.
+            model's edge the nearest within the 3 x 3 pixels about it. In cameras with flying pixels also: infinity
+            for a mixed pixel of the machine's edge, explained and free up to what it measured; below zero for one or
+            two pixels that do not fit amid others that do or see farther, explained all the same and free up to what
+            they measured or the absolute value; and next to nothing below zero for other pixels that the machine is
+            about, which are not explained.
         unexplained_words: plane of the grid with every voxel, near the grown body, that may hold a return
             that the machine does not explain; such voxels must not be freed as body. Voxels farther from the
             body may be set too. None if no grid was given.

@@ -269,7 +269,8 @@ def first_block(
     counts = np.zeros(depth_limit + 1, dtype=np.int64)
     placed = np.empty((1, tree.parent.size, 4, 4))
     place = np.zeros(3)
-    clusters[0] = moving
+    for n in range(moving.size):
+        clusters[0, n] = moving[n]
     depth, index = 0, 0
     while True:
         half = length / 2.0 ** (depth + 1)

@@ -68,7 +68,11 @@ def list_patches(points, start, stop, centre, radius, reach, first, last, triang
                 count += 1
         for sample in range(start[cluster], stop[cluster]):
             before = written
-            x, y, z = float(points[sample, 0]), float(points[sample, 1]), float(points[sample, 2])
+            x, y, z = (
+                np.float64(points[sample, 0]),
+                np.float64(points[sample, 1]),
+                np.float64(points[sample, 2]),
+            )
             for triangle in some[:count]:
                 if triangle_meets_box(triangles[triangle], x, y, z, reach):
                     if fill:

@@ -8,12 +8,11 @@ import trimesh
 from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError, InputError
-from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry import DepthCamera, VoxelGrid, looking_at
 from elbowroom.placement.even import FROM_WALL_M
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.sensor import Sensor, sensors_of
 from elbowroom.site import Site
-from elbowroom.site.camera_entry import looking_at
 from elbowroom.site.placement_entry import AlongEntry, PlacementEntry, PricesEntry
 
 WALL_SPACING_M, CEILING_SPACING_M = 0.5, 1.25
@@ -85,7 +84,7 @@ def candidates_of(
             for aim in aims:
                 if np.linalg.norm(aim - mount.position_m) < TOO_NEAR:
                     continue
-                camera = sensor.at(mount.name, looking_at(mount.position_m, aim))
+                camera = sensor.at(mount.name, looking_at(mount.position_m.tolist(), aim.tolist()))
                 cable = mount.cable_m * prices.cable_per_m
                 made.append(Candidate(camera, mount, sensor, sensor.price + mount.price + cable, cable))
     if not made:

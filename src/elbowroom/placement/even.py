@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry import DepthCamera, VoxelGrid, looking_at
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.requirement import Requirement
 from elbowroom.placement.sensor import Sensor
 from elbowroom.placement.verification import Verification, verify
-from elbowroom.simulate.cameras import looking_at
 
 FROM_WALL_M = 0.01
 """Cameras hang so far before the wall's inner face [m]."""

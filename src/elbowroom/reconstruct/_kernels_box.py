@@ -41,22 +41,22 @@ class Views(NamedTuple):
 
     numbers (n, COLUMNS) float64: camera_from_world (3 x 4), fx fy cx cy, width height, margin (see `margin_at`),
     lateral [px], quantum [m], whether depth is radial, whether nothing was delivered, the finest level of windows,
-    whether `doubt` differs from `trust`, half extents of a voxel along the camera axes and its half diagonal [m], the
+    whether the machine explains some of its pixels, half extents of a voxel along the camera axes and its half
+    diagonal [m], the
     same of a block of 4 voxels, the camera's centre in the world [m], and how a pixel's
     direction turns in the world: d_a = D0 + D1 u + D2 v along axis a, and its half width over a widened pixel, as
     D0 (3), D1 (3), D2 (3), half width (3); least cosine between a pixel's ray and the optical axis.
     levels (n, levels, 2) int64: where each level of windows begins, and its row length.
     offset (n, 2, 3, 64) float32: from child 0 to each child of a block (0) or cube (1), in camera axes, x times fx and
-    y times fy. trust: windows over all pixels, what may be carved. doubt: over unexplained pixels, what disputes.
-    texel_first (n,): where each camera's level 0 begins in trust_texels and doubt_texels; tile_first (n,) the same of
-    level 2, tiles of 4 x 4 pixels.
+    y times fy. windows: over what pixels free. texel_first (n,): where each camera's level 0 begins in trust_texels,
+    what its pixels free, and in doubt_texels, what they measured of anything but the machine; tile_first (n,) the same
+    of level 2, tiles of 4 x 4 pixels.
     """
 
     numbers: np.ndarray
     levels: np.ndarray
     offset: np.ndarray
-    trust: np.ndarray
-    doubt: np.ndarray
+    windows: np.ndarray
     texel_first: np.ndarray
     trust_texels: np.ndarray
     doubt_texels: np.ndarray
@@ -147,7 +147,10 @@ def _add_margin(numbers, offset, c, scale, px, py, pz, floats):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
-    """Depth bounds and windows of the 64 children of a cube that lies wholly inside the image."""
+    """Depth bounds and windows of the 64 children of a cube that lies wholly inside the image.
+
+    Returns how many pixels a child may reach to every side of its centre pixel.
+    """
     fx, fy = np.float32(numbers[c, LENS + 0]), np.float32(numbers[c, LENS + 1])
     ox, oy = np.float32(numbers[c, LENS + 2]) + HALF, np.float32(numbers[c, LENS + 3]) + HALF
     ex, ey, ez = (
@@ -174,6 +177,7 @@ def bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
     pixels = int(np.ceil(reach / 1024.0 + numbers[c, LATERAL] + 1.5 + 2 * SLOP_PX)) - 1
     _choose_windows(numbers, levels, c, pixels, floats, ints)
     _add_margin(numbers, offset, c, scale, px, py, pz, floats)
+    return pixels
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -224,6 +228,7 @@ def bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
     pixels = int(np.ceil(reach / 1024.0 + numbers[c, LATERAL] + 1.5 + 2 * SLOP_PX)) - 1
     _choose_windows(numbers, levels, c, pixels, floats, ints)
     _add_margin(numbers, offset, c, scale, px, py, pz, floats)
+    return pixels
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -19,7 +19,6 @@ from elbowroom.reconstruct._kernels_box import (
     HALF_EXTENT,
     INSIDE,
     INTS,
-    LEAST,
     NEAR,
     OUTSIDE,
     QUANTUM,
@@ -45,7 +44,7 @@ from elbowroom.reconstruct._kernels_pixel import (
     settle_centre,
     settle_word,
 )
-from elbowroom.reconstruct._kernels_pyramid import NEUTRAL, NO_RETURN
+from elbowroom.reconstruct._kernels_pyramid import NEUTRAL, NO_RETURN, both_least
 
 ONE, TWO, THREE, DISPUTED, SURFACE, BLIND = range(6)
 PLANES = 6
@@ -125,53 +124,68 @@ def _sort_out(numbers, c, scale_edge, first, trust_texels, doubt_texels, unsure,
             0.5 * (np.float64(floats[FAR + lane]) - np.float64(floats[NEAR + lane])) - extent - ROUNDING_M
         )
         pixel = first + int(floats[V + lane]) * width + int(floats[U + lane])
+        if not (trust_texels[pixel] >> np.uint32(16)) * quantum < at + margin - ROUNDING_M:
+            continue
+        stopped |= bit
         texel = doubt_texels[pixel]
         greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
-        if (
-            texel != NEUTRAL
-            and greatest != NO_RETURN
-            and abs(greatest * quantum - at) < inner + margin - ROUNDING_M
-        ):
+        if texel == NEUTRAL or greatest == NO_RETURN:
+            continue
+        if abs(greatest * quantum - at) < inner + margin - ROUNDING_M:
             surface |= bit
-        elif (trust_texels[pixel] >> np.uint32(16)) * quantum < at + margin - ROUNDING_M:
-            stopped |= bit
     return surface, stopped
 
 
 @njit(cache=True, nogil=True)
-def _contested(floats, unsure, partly):
-    """Of the unsure boxes those that unexplained pixels dispute; LEAST and GREATEST come from `doubt`."""
+def _contested(numbers, c, tile_first, doubt_tiles, unsure, partly, reach, floats):
+    """Of the unsure boxes those that unexplained pixels dispute.
+
+    Asked are all tiles that hold a pixel within `reach` of a box's centre pixel.
+    """
     disputed = NOTHING
+    width, height = int(numbers[c, SIZE]), int(numbers[c, SIZE + 1])
+    across = (width + 3) >> 2
+    quantum = np.float32(numbers[c, QUANTUM])
     rest = unsure
     while rest:
         lane = np.int64(trailing_zeros(rest))
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
-        crossing = partly and floats[STATE + lane] == CROSSING
-        past = floats[LEAST + lane] > floats[FAR + lane]
-        hidden = floats[GREATEST + lane] < floats[NEAR + lane]
-        if crossing or not (past or hidden):
+        if partly and floats[STATE + lane] == CROSSING:
+            disputed |= bit
+            continue
+        u, v = int(floats[U + lane]), int(floats[V + lane])
+        first, last = max(u - reach, 0) >> 2, min(u + reach, width - 1) >> 2
+        both = NEUTRAL
+        for row in range(max(v - reach, 0) >> 2, (min(v + reach, height - 1) >> 2) + 1):
+            for tile in range(tile_first + row * across + first, tile_first + row * across + last + 1):
+                both = both_least(both, doubt_tiles[tile])
+        greatest = np.uint32(NO_RETURN) - (both & np.uint32(0xFFFF))
+        past = np.float32(both >> np.uint32(16)) * quantum > floats[FAR + lane]
+        hidden = greatest < NO_RETURN and np.float32(greatest) * quantum < floats[NEAR + lane]
+        if not (past or hidden):
             disputed |= bit
     return disputed
 
 
 @njit(cache=True, nogil=True)
 def _ask(
-    numbers, levels, offset, trust, c, scale, x, y, z, edge, keep_partly, floats, ints, flags, flag_words
+    numbers, levels, offset, windows, c, scale, x, y, z, edge, keep_partly, floats, ints, flags, flag_words
 ):
-    """Words (through, unsure) of the 64 children of a cube, and whether the cube lies partly outside the image."""
+    """Words (through, unsure) of the 64 children of a cube, whether the cube lies partly outside the image, and the
+    children's reach in pixels."""
     px, py, pz, state = place_cube(numbers, c, scale, x, y, z, edge)
     if state == OUTSIDE:
-        return NOTHING, NOTHING, False
+        return NOTHING, NOTHING, False, 0
     if state == INSIDE:
-        bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
-        look_up(trust, numbers[c, QUANTUM], floats, ints)
+        reach = bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
+        look_up(windows, numbers[c, QUANTUM], floats, ints)
         through, unsure = decide_inside(floats, flags, flag_words)
-        return through, unsure, False
-    bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
-    look_up(trust, numbers[c, QUANTUM], floats, ints)
+        return through, unsure, False, reach
+    reach = bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
+    look_up(windows, numbers[c, QUANTUM], floats, ints)
     through, unsure, cut = decide_partly(floats, flags, flag_words)
-    return through, (unsure | cut) if keep_partly else unsure, True
+    return through, (unsure | cut) if keep_partly else unsure, True, reach
 
 
 @njit(cache=True, nogil=True)
@@ -190,8 +204,8 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
     """
     # taken out of the tuple once: each look into it counts references, which costs more than the arithmetic below
     numbers, levels, offset = views.numbers, views.levels, views.offset
-    trust, doubt = views.trust, views.doubt
-    texel_first, trust_texels, doubt_texels = views.texel_first, views.trust_texels, views.doubt_texels
+    windows, texel_first = views.windows, views.texel_first
+    trust_texels, doubt_texels = views.trust_texels, views.doubt_texels
     tile_first, trust_tiles, doubt_tiles = views.tile_first, views.trust_tiles, views.doubt_tiles
     cameras = numbers.shape[0]
     floats = np.empty(FLOATS, dtype=np.float32)
@@ -206,23 +220,25 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
     stopped = np.empty((cameras, 64), dtype=np.uint64)
     edge = lattice.edge
     block = 4.0 * edge
+    # not literals: numba would compile all that `_ask` calls once for each of them
+    of_voxels, of_blocks, keep = np.int64(0), np.int64(1), np.bool_(True)
     for cube in cubes:
         x = lattice.x0 + (cube // (lattice.cubes_y * lattice.cubes_z)) * 16 * edge
         y = lattice.y0 + ((cube // lattice.cubes_z) % lattice.cubes_y) * 16 * edge
         z = lattice.z0 + (cube % lattice.cubes_z) * 16 * edge
         for c in range(cameras):
-            through[c], mixed[c], _ = _ask(
+            through[c], mixed[c], _, _ = _ask(
                 numbers,
                 levels,
                 offset,
-                trust,
+                windows,
                 c,
-                1,
+                of_blocks,
                 x + 0.5 * block,
                 y + 0.5 * block,
                 z + 0.5 * block,
                 block,
-                True,
+                keep,
                 floats,
                 ints,
                 flags,
@@ -253,13 +269,13 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
                 bx = x + ((lane >> 4) * 4 + 0.5) * edge
                 by = y + (((lane >> 2) & 3) * 4 + 0.5) * edge
                 bz = z + ((lane & 3) * 4 + 0.5) * edge
-                seen, unsure, partly = _ask(
+                seen, unsure, partly, reach = _ask(
                     numbers,
                     levels,
                     offset,
-                    trust,
+                    windows,
                     c,
-                    0,
+                    of_voxels,
                     bx,
                     by,
                     bz,
@@ -295,17 +311,21 @@ def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_c
                     undecided[c] |= here
                     unsettled[c, lane] = unsure & ~surface
                 else:
+                    contested = unsure
                     if numbers[c, SPLIT] != 0.0:
-                        look_up(doubt, numbers[c, QUANTUM], floats, ints)
-                        unsure = _contested(floats, unsure, partly)
+                        # one dispute is enough, unless they are counted
+                        open_voxels = unsure if complete else unsure & ~planes[DISPUTED, word]
+                        contested = _contested(
+                            numbers, c, tile_first[c], doubt_tiles, open_voxels, partly, reach, floats
+                        )
                     surface, blind = _measured_at_centre(
                         numbers, c, texel_first[c], doubt_texels, unsure, partly, floats
                     )
-                    planes[DISPUTED, word] |= unsure
+                    planes[DISPUTED, word] |= contested
                     planes[SURFACE, word] |= surface
                     planes[BLIND, word] |= blind
                     if complete:
-                        _tally(dispute_count, word, unsure)
+                        _tally(dispute_count, word, contested)
         # first those that may see through: where three do, the others need not be asked, nor where there is a surface
         for turn in range(2):
             for c in range(cameras):

@@ -70,16 +70,18 @@ def _prepare(numbers, c, x, y, z, edge, s):
         middle = (x if a == 0 else (y if a == 1 else z)) - numbers[c, CENTRE + a]
         s[LOW + a] = middle - half
         s[HIGH + a] = middle + half
-    count = _silhouette(0, 1, s, 0)
-    count = _silhouette(1, 2, s, count)
-    count = _silhouette(2, 0, s, count)
+    # not literals: numba would compile it once for each of them
+    first, second, third = np.int64(0), np.int64(1), np.int64(2)
+    count = _silhouette(first, second, s, first)
+    count = _silhouette(second, third, s, count)
+    count = _silhouette(third, first, s, count)
     for line in range(count):
         at = LINES + 4 * line
         s[at + 3] = (abs(s[at + 1]) + abs(s[at + 2])) * wide
     return count
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, forceinline=True)
 def _misses(s, count, u, v):
     for line in range(count):
         at = LINES + 4 * line
@@ -88,7 +90,7 @@ def _misses(s, count, u, v):
     return False
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, forceinline=True)
 def _has_left(s, u, v, t):
     """Whether all of the pixel's cone is beyond the voxel from depth t on."""
     for a in range(3):
@@ -101,7 +103,7 @@ def _has_left(s, u, v, t):
     return False
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, forceinline=True)
 def _not_reached(s, u, v, t):
     """Whether no part of the pixel's cone has reached the voxel up to depth t."""
     for a in range(3):
@@ -111,6 +113,15 @@ def _not_reached(s, u, v, t):
         if min(t * (d - s[DW + a]), 0.0) > s[HIGH + a]:
             return True
     return False
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _says_nothing(doubtful, clear_from, hidden_to):
+    """Whether measured bounds lie wholly behind a voxel, or wholly before it, or are `NEUTRAL`: no dispute."""
+    return (
+        doubtful >> np.uint32(16) >= clear_from
+        or np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF)) <= hidden_to
+    )
 
 
 @njit(cache=True, nogil=True)
@@ -202,7 +213,6 @@ def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile
         return 0
     lines = _prepare(numbers, c, x, y, z, edge, s)
     blocked = False
-    seen_past, hidden = False, False
     answer = 0
     for tv in range(va >> 2, (vb >> 2) + 1):
         for tu in range(ua >> 2, (ub >> 2) + 1):
@@ -210,23 +220,18 @@ def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile
             tile = tile_first + tv * tiles_across + tu
             if trust_tiles[tile] >> np.uint32(16) >= clear_from:
                 continue
-            doubtful = doubt_tiles[tile]
-            if blocked and (
-                doubtful == NEUTRAL
-                or (hidden and np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF)) <= hidden_to)
-            ):
+            if blocked and _says_nothing(doubt_tiles[tile], clear_from, hidden_to):
                 continue
             for v in range(max(va, 4 * tv), min(vb, 4 * tv + 3) + 1):
                 row = first + v * width
                 for u in range(max(ua, 4 * tu), min(ub, 4 * tu + 3) + 1):
-                    least = trust[row + u] >> np.uint32(16)
-                    if least >= clear_from:
+                    trusted = trust[row + u] >> np.uint32(16)
+                    if trusted >= clear_from:
                         continue
                     doubtful = doubt[row + u]
                     greatest = np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF))
                     if blocked and (
-                        doubtful == NEUTRAL
-                        or (hidden and greatest <= hidden_to)
+                        _says_nothing(doubtful, clear_from, hidden_to)
                         or (answer & IS_BLIND and greatest == NO_RETURN)
                     ):
                         continue  # it can add nothing to what is known already
@@ -240,53 +245,22 @@ def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile
                         steep_far = np.sqrt(1.0 + (xn + wx) * (xn + wx) + (yn + wy) * (yn + wy))
                         xl, yl = max(xn - wx, 0.0), max(yn - wy, 0.0)
                         steep_near = np.sqrt(1.0 + xl * xl + yl * yl)
-                    if _has_left(s, u, v, (least * quantum - margin) / steep_far):
+                    if _has_left(s, u, v, (trusted * quantum - margin) / steep_far):
                         continue
                     blocked = True
-                    if doubtful == NEUTRAL:
+                    if _says_nothing(doubtful, clear_from, hidden_to):
                         continue
-                    least = doubtful >> np.uint32(16)
                     if greatest == NO_RETURN:
                         answer |= DISPUTES | IS_BLIND
-                    elif greatest <= hidden_to or _not_reached(
-                        s, u, v, (greatest * quantum + margin) / steep_near
-                    ):
-                        hidden = True
-                    elif least >= clear_from or _has_left(s, u, v, (least * quantum - margin) / steep_far):
-                        seen_past = True
-                    elif greatest >= clear_from or _has_left(
-                        s, u, v, (greatest * quantum - margin) / steep_far
-                    ):
-                        answer |= DISPUTES
-                    else:
-                        return DISPUTES | IS_SURFACE
+                        continue
+                    least = doubtful >> np.uint32(16)
+                    if _not_reached(s, u, v, (greatest * quantum + margin) / steep_near):
+                        continue
+                    if _has_left(s, u, v, (least * quantum - margin) / steep_far):
+                        continue
+                    return DISPUTES | IS_SURFACE
     if not blocked:
         return THROUGH if whole else 0
-    if hidden and not answer:
-        # an edge: of the rays that meet the voxel some are stopped before it and some pass it
-        if seen_past:
-            return DISPUTES
-        for tv in range(va >> 2, (vb >> 2) + 1):
-            for tu in range(ua >> 2, (ub >> 2) + 1):
-                doubtful = doubt_tiles[tile_first + tv * tiles_across + tu]
-                if np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF)) <= hidden_to:
-                    continue
-                for v in range(max(va, 4 * tv), min(vb, 4 * tv + 3) + 1):
-                    row = first + v * width
-                    for u in range(max(ua, 4 * tu), min(ub, 4 * tu + 3) + 1):
-                        texel = doubt[row + u]
-                        least = texel >> np.uint32(16)
-                        greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
-                        if texel == NEUTRAL or greatest <= hidden_to or _misses(s, lines, u, v):
-                            continue
-                        if least >= clear_from:
-                            return DISPUTES
-                        steep = 1.0
-                        if radial:
-                            xn, yn = abs(u - ox) / fx + wide / fx, abs(v - oy) / fy + wide / fy
-                            steep = np.sqrt(1.0 + xn * xn + yn * yn)
-                        if _has_left(s, u, v, (least * quantum - margin) / steep):
-                            return DISPUTES
     return answer
 
 

@@ -14,6 +14,7 @@ from numba import njit
 
 NO_RETURN = 65535
 FAR_CLIP = 65534
+NEXT_TO_NOTHING_M = 1e-3
 NEUTRAL = np.uint32(0xFFFFFFFF)
 REACH = 2
 """Texels that a window reaches to every side."""
@@ -46,30 +47,120 @@ def texels_of_frame(least_m, greatest_m, low, high, quantum, texels):
             texels[v, u] = np.uint32((least << np.int32(16)) | (np.int32(NO_RETURN) - greatest))
 
 
+@njit(cache=True, nogil=True, error_model="numpy")
+def pass_over_specks(texels, pitch, model_m, margin, quantum, passed):
+    """Specks of one or two pixels, near or without a return, amid pixels that all see farther: free to short of them.
+
+    Nothing that the camera can resolve hides in two pixels: what is three pixels wide is seen by a neighbour as well,
+    at most a pixel's pitch farther away. Least becomes the least of all neighbours of the speck less their pitch,
+    where that is more; greatest stays. Neighbours without a return, or none at the image's edge, leave it as it is.
+
+    Args:
+        texels: (rows, columns) of a camera, read.
+        pitch: of a pixel, as a share of its depth.
+        model_m: (rows, columns) float32 [m], or of no size (`machine.explain`): where it is below zero, it decides and
+            not the neighbours.
+        margin, quantum: of depth, as of `mark_explained`.
+        passed: (rows, columns), written.
+    """
+    rows, columns = texels.shape
+    low, keep = np.uint32(0xFFFF), 1.0 - pitch
+    upper, lower = np.zeros(columns, dtype=np.uint32), np.zeros(columns, dtype=np.uint32)
+    passed[:] = texels
+    for v in range(1, rows - 1):
+        above, here, below = texels[v - 1], texels[v], texels[v + 1]
+        for u in range(columns):
+            upper[u] = max(above[u], below[u])
+        for n in range(columns - 2):
+            # the greatest of the eight neighbours: only where it is more, the pixel can be a speck
+            u = np.uint64(n + 1)
+            aside = max(max(here[u - np.uint64(1)], here[u + np.uint64(1)]), upper[u])
+            lower[u] = max(aside, max(upper[u - np.uint64(1)], upper[u + np.uint64(1)])) >> np.uint32(16)
+        for u in range(1, columns - 1):
+            least = here[u] >> np.uint32(16)
+            if lower[u] * keep - 1.0 <= least:
+                continue
+            short = _short_of_neighbours(texels, v, u) * keep - 1.0
+            if short > least:
+                passed[v, u] = (np.uint32(short) << np.uint32(16)) | (here[u] & low)
+    for v in range(model_m.shape[0]):
+        for u in range(columns):
+            if model_m[v, u] < 0.0:
+                passed[v, u] = texels[v, u]
+                if model_m[v, u] < -NEXT_TO_NOTHING_M:
+                    short = _free_to_model(-model_m[v, u], margin, quantum)
+                    passed[v, u] = (max(texels[v, u] >> np.uint32(16), short) << np.uint32(16)) | (
+                        texels[v, u] & low
+                    )
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _free_to_model(depth, margin, quantum):
+    """Least [quanta] of a pixel that is free up to the model's surface at a depth.
+
+    The margin is added to the model's depth because a voxel is compared with its own margin added: what is known of
+    the body does not scatter as a measurement does.
+    """
+    quanta = min(max((depth + margin_at(depth, margin)) / quantum - 1.0, 0.0), float(FAR_CLIP))
+    return np.uint32(np.int32(quanta))
+
+
 @njit(cache=True, nogil=True)
+def _short_of_neighbours(texels, v, u):
+    """The least that all neighbours see of the speck of this pixel, or of it and one beside it; the best of these."""
+    rows, columns = texels.shape
+    best = np.uint32(0)
+    for dv in range(-1, 2):
+        for du in range(-1, 2):
+            ov, ou = v + dv, u + du
+            if not (0 < ov < rows - 1 and 0 < ou < columns - 1):
+                continue
+            least = np.uint32(0xFFFF)
+            for nv in range(min(v, ov) - 1, max(v, ov) + 2):
+                for nu in range(min(u, ou) - 1, max(u, ou) + 2):
+                    near_one = abs(nv - v) <= 1 and abs(nu - u) <= 1
+                    near_other = abs(nv - ov) <= 1 and abs(nu - ou) <= 1
+                    own = (nv == v and nu == u) or (nv == ov and nu == ou)
+                    if (near_one or near_other) and not own:
+                        least = min(least, texels[nv, nu] >> np.uint32(16))
+            best = max(best, least)
+    return best
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def lower_at_steps(texels, ignored, quantum, step, lowered):
     """Flying pixels: where depth steps, a pixel is trusted only up to the nearest of its 3 x 3 neighbourhood.
 
-    A neighbour without a return counts as least 0. Greatest stays. A neighbour that is `NEUTRAL` in `ignored` (of no
-    size: none is) lowers nothing. A step is a difference beyond the polynomial `step` (as of `margin_at`) at the
-    pixel's depth.
+    A neighbour without a return counts as least 0, one that is `NEUTRAL` in `ignored` lowers nothing. Greatest stays.
+    A step is a difference beyond the polynomial `step` (as of `margin_at`) at the pixel's depth.
     """
     rows, columns = texels.shape
-    has_ignored = ignored.size > 0
     low = np.uint32(0xFFFF)
-    for v in range(rows):
-        for u in range(columns):
-            texel = texels[v, u]
-            least = texel >> np.uint32(16)
-            near = least
-            for dv in range(max(v - 1, 0), min(v + 2, rows)):
-                for du in range(max(u - 1, 0), min(u + 2, columns)):
-                    if has_ignored and ignored[dv, du] == NEUTRAL:
-                        continue
-                    near = min(near, texels[dv, du] >> np.uint32(16))
-            if near < least and (least - near) * quantum > margin_at(least * quantum, step):
-                least = near
-            lowered[v, u] = (least << np.uint32(16)) | (texel & low)
+    three = np.full((3, columns + 2), 0xFFFF, dtype=np.int32)
+    nearest = np.full(columns + 2, 0xFFFF, dtype=np.int32)
+    for v in range(-1, rows):
+        row = three[(v + 1) % 3]
+        if v + 1 < rows:
+            following, skipped = texels[v + 1], ignored[v + 1]
+            for n in range(columns):
+                u = np.uint64(n)
+                least = np.int32(following[u] >> np.uint32(16))
+                row[u + np.uint64(1)] = np.int32(0xFFFF) if skipped[u] == NEUTRAL else least
+        else:
+            row[:] = 0xFFFF
+        if v < 0:
+            continue
+        here = texels[v]
+        for n in range(columns + 2):
+            u = np.uint64(n)
+            nearest[u] = min(three[0, u], min(three[1, u], three[2, u]))
+        out = lowered[v]
+        for n in range(columns):
+            u = np.uint64(n)
+            near = min(nearest[u], min(nearest[u + np.uint64(1)], nearest[u + np.uint64(2)]))
+            least = np.int32(here[u] >> np.uint32(16))
+            steps = (least - near) * quantum > margin_at(least * quantum, step)
+            out[u] = (np.uint32(near if steps else least) << np.uint32(16)) | (here[u] & low)
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -127,31 +218,29 @@ def windows_of(texels, across, windows):
                 out[x] = min(out[x], row[x])
 
 
+@njit(cache=True, nogil=True)
+def _any_of(row):
+    """Whether anything of a row is not zero."""
+    most, least = np.float32(0.0), np.float32(0.0)
+    for n in range(row.size):
+        u = np.uint64(n)
+        most, least = max(most, row[u]), min(least, row[u])
+    return most > least
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def mark_explained(model_m, margin, quantum, trust, doubt):
-    """Pixels that see the machine: free up to the model's surface, hidden behind it, and without a say in disputes.
-
-    The margin is added to the model's depth because a voxel is compared with its own margin added: what is known of
-    the body does not scatter as a measurement does.
+    """Pixels that see the machine, as `machine.explain` tells: `NEUTRAL` in `doubt`; in `trust`, those with a depth of
+    the model are free up to it, and hidden behind it.
     """
-    rows, columns = model_m.shape
-    any_explained = False
-    for v in range(rows):
-        for u in range(columns):
+    for v in range(model_m.shape[0]):
+        if not _any_of(model_m[v]):
+            continue
+        for u in range(model_m.shape[1]):
             depth = model_m[v, u]
-            if depth > 0.0:
-                any_explained = True
-                near = (depth + margin_at(depth, margin)) / quantum - 1.0
-                least = np.uint32(min(max(near, 0.0), float(FAR_CLIP)))
+            if depth > 0.0 or depth < -NEXT_TO_NOTHING_M:
+                doubt[v, u] = NEUTRAL
+            if 0.0 < depth < np.inf:
+                least = _free_to_model(depth, margin, quantum)
                 greatest = np.uint32(min(depth / quantum + 2.0, float(FAR_CLIP)))
                 trust[v, u] = (least << np.uint32(16)) | (np.uint32(NO_RETURN) - greatest)
-                doubt[v, u] = NEUTRAL
-    return any_explained
-
-
-@njit(cache=True, nogil=True)
-def ignore_explained(model_m, texels, doubt):
-    """Copies texels, `NEUTRAL` where the model explains the pixel."""
-    for v in range(texels.shape[0]):
-        for u in range(texels.shape[1]):
-            doubt[v, u] = NEUTRAL if model_m[v, u] > 0.0 else texels[v, u]

@@ -103,7 +103,7 @@ def carve_images(
     try:
         spread(
             lambda share: kernel(
-                worth[share::SHARES],
+                np.ascontiguousarray(worth[share::SHARES]),
                 cells,
                 asked,
                 views,

@@ -19,7 +19,7 @@ class Sight(Enum):
 
     THROUGH = "sees through it"
     SURFACE = "measured a surface in it"
-    EDGE = "sees an edge across it, so cannot tell"
+    EDGE = "sees past a part of it only"
     BLIND = "looks there without a valid return"
     HIDDEN = "looks there, but something nearer hides it"
     OUTSIDE = "does not have all of it in its image"
@@ -132,24 +132,34 @@ def _sight(voxel: VoxelGrid, camera: DepthCamera, source: Source, centre: NDArra
         threads=1,
     )
     in_camera = camera.camera_from_world[:3, :3] @ centre + camera.camera_from_world[:3, 3]
+    distance_m = float(np.linalg.norm(centre - camera.centre_in_world))
     k = camera.intrinsics
-    measured, visible = None, False
+    measured, visible, past = None, False, False
     if in_camera[2] > 0:
         # a voxel that spills over the edge of the image can never be seen through
-        half = voxel.voxel_size_m * 0.87 * max(k.fx, k.fy) / in_camera[2] + 2
+        reach = voxel.voxel_size_m * 0.87 * max(k.fx, k.fy) / in_camera[2]
         u, v = k.fx * in_camera[0] / in_camera[2] + k.cx, k.fy * in_camera[1] / in_camera[2] + k.cy
+        half = reach + 2
         visible = half <= u <= camera.width - 1 - half and half <= v <= camera.height - 1 - half
         if visible and name in images.least_m:
             value = float(images.least_m[name][round(v), round(u)])
             measured = value if np.isfinite(value) and value > 0 else None
+            behind = (
+                distance_m if camera.depth_kind == "radial" else float(in_camera[2])
+            ) + voxel.voxel_size_m
+            about = (
+                slice(round(v - reach), round(v + reach) + 1),
+                slice(round(u - reach), round(u + reach) + 1),
+            )
+            past = bool((images.least_m[name][about] > behind).any())
     if evidence.through[0].any():
         sight = Sight.THROUGH
     elif evidence.surface.any():
         sight = Sight.SURFACE
     elif evidence.blind.any():
         sight = Sight.BLIND
-    elif evidence.disputed.any():
+    elif evidence.disputed.any() or past:
         sight = Sight.EDGE
     else:
         sight = Sight.HIDDEN if visible else Sight.OUTSIDE
-    return CameraSight(name, sight, float(np.linalg.norm(centre - camera.centre_in_world)), measured)
+    return CameraSight(name, sight, distance_m, measured)

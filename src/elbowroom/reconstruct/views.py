@@ -42,14 +42,16 @@ def margin_polynomial(camera: DepthCamera, margin: Margin) -> NDArray[np.float64
 
 @dataclass(slots=True, eq=False)
 class _Buffers:
-    """Memory that one carve fills and the next one fills again: fresh pages would cost more than the filling."""
+    """Memory that one carve fills and the next one fills again: fresh pages would cost more than the filling.
+
+    `doubt_texels` and `doubt_tiles` are those of trust where no camera doubts more than it trusts.
+    """
 
     trust_texels: NDArray[np.uint32]
     doubt_texels: NDArray[np.uint32]
     trust_tiles: NDArray[np.uint32]
     doubt_tiles: NDArray[np.uint32]
-    trust: NDArray[np.uint32]
-    doubt: NDArray[np.uint32]
+    windows: NDArray[np.uint32]
 
 
 @dataclass(slots=True, eq=False)
@@ -69,16 +71,16 @@ class Layout:
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def take_buffers(self, split: bool) -> _Buffers:
-        """Buffers of the last carve, or new ones; `split`: with a doubt of their own."""
+        """Buffers of the last carve, or new ones; `split`: with doubt apart from trust."""
         with self._lock:
             for position, buffers in enumerate(self._spare):
-                if (buffers.doubt is not buffers.trust) == split:
+                if (buffers.doubt_texels is not buffers.trust_texels) == split:
                     return self._spare.pop(position)
         texels = int(self.texel_first[-1])
         windows = int(self.levels[-1, -1, 0] + 1) if self.cameras else 0
-        trust = [np.zeros(size, dtype=np.uint32) for size in (texels, int(self.tile_first[-1]), windows)]
+        trust = [np.zeros(size, dtype=np.uint32) for size in (texels, int(self.tile_first[-1]))]
         doubt = [np.zeros_like(array) for array in trust] if split else trust
-        return _Buffers(trust[0], doubt[0], trust[1], doubt[1], trust[2], doubt[2])
+        return _Buffers(trust[0], doubt[0], trust[1], doubt[1], np.zeros(windows, dtype=np.uint32))
 
     def give_back(self, buffers: _Buffers) -> None:
         """Returns buffers for the next carve."""
@@ -177,7 +179,7 @@ def fill(
     Returns:
         What kernels take, and the buffers behind it, to be given back after the carve.
     """
-    split = bool(model_depth)
+    split = bool(model_depth) or any(camera.flying_pixels for camera in layout.cameras)
     buffers = layout.take_buffers(split)
     numbers = layout.numbers.copy()
 
@@ -193,19 +195,16 @@ def fill(
             numbers[c, box.BLANK] = 1
             trust[:] = 0
             doubt[:] = 0
-        _windows(layout, c, trust, buffers.trust_tiles, buffers.trust)
-        if numbers[c, box.SPLIT]:
-            _windows(layout, c, doubt, buffers.doubt_tiles, buffers.doubt)
-        elif split:
-            _copy_trust(layout, c, buffers)
+        _levels(layout, c, trust, buffers.trust_tiles, buffers.windows)
+        if split:
+            _levels(layout, c, doubt, buffers.doubt_tiles, None)
 
     spread(build, range(len(layout.cameras)), threads)
     views = Views(
         numbers,
         layout.levels,
         layout.offset,
-        buffers.trust,
-        buffers.doubt,
+        buffers.windows,
         layout.texel_first,
         buffers.trust_texels,
         buffers.doubt_texels,
@@ -224,40 +223,38 @@ def _texels(
     trust: NDArray[np.uint32],
     doubt: NDArray[np.uint32],
 ) -> bool:
-    """Level 0 of one camera; returns whether the machine explains any of its pixels."""
+    """Level 0 of one camera: what its pixels free, and what they measured; whether the machine explains any of them."""
     camera = layout.cameras[c]
-    least_m, greatest_m = images.least_m[camera.name], images.greatest_m[camera.name]
     polynomial = layout.numbers[c, box.MARGIN : box.MARGIN + 5]
-    step = margin_polynomial(camera, STEP if camera.noise is not None else STEP_WITHOUT_NOISE)
     quantum = layout.numbers[c, box.QUANTUM]
     low, high = np.float32(camera.min_depth_m), np.float32(camera.max_depth_m)
+    least_m, greatest_m = images.least_m[camera.name], images.greatest_m[camera.name]
+    pyramid.texels_of_frame(least_m, greatest_m, low, high, np.float32(quantum), doubt)
     explained = model_m is not None and bool(model_m.any())
-    none = np.zeros((0, 0), dtype=np.uint32)
-    if not camera.flying_pixels:
-        pyramid.texels_of_frame(least_m, greatest_m, low, high, np.float32(quantum), trust)
-        if explained:
-            doubt[:] = trust
-    else:
-        measured = np.empty_like(trust)
-        pyramid.texels_of_frame(least_m, greatest_m, low, high, np.float32(quantum), measured)
-        pyramid.lower_at_steps(measured, none, quantum, step, trust)
-        if explained:
-            unexplained = np.empty_like(trust)
-            pyramid.ignore_explained(model_m, measured, unexplained)
-            pyramid.lower_at_steps(measured, unexplained, quantum, step, doubt)
+    if trust is not doubt:
+        trust[:] = doubt
     if explained:
         pyramid.mark_explained(model_m, polynomial, quantum, trust, doubt)
+    if camera.flying_pixels:
+        model = model_m if explained else np.zeros((0, 0), dtype=np.float32)
+        pitch = 1.0 / min(camera.intrinsics.fx, camera.intrinsics.fy)
+        step = margin_polynomial(camera, STEP if camera.noise is not None else STEP_WITHOUT_NOISE)
+        passed = np.empty_like(trust)
+        pyramid.pass_over_specks(trust, pitch, model, polynomial, quantum, passed)
+        pyramid.lower_at_steps(passed, doubt, quantum, step, trust)
+        if explained:
+            pyramid.mark_explained(model_m, polynomial, quantum, trust, doubt)
     return explained
 
 
-def _windows(
+def _levels(
     layout: Layout,
     c: int,
     texels: NDArray[np.uint32],
     tiles: NDArray[np.uint32],
-    windows: NDArray[np.uint32],
+    windows: NDArray[np.uint32] | None,
 ) -> None:
-    """Tiles and windows of all levels of one camera, from its level 0."""
+    """Tiles of one camera from its level 0, and its windows of all levels; None: only the tiles."""
     fine = texels
     for level, shape in enumerate(layout.shapes[c]):
         if level:
@@ -266,19 +263,9 @@ def _windows(
             fine = coarse
         if level == TILE_LEVEL:
             tiles[layout.tile_first[c] : layout.tile_first[c + 1]] = fine.reshape(-1)
-        if level >= layout.numbers[c, box.LOWEST]:
+            if windows is None:
+                return
+        if windows is not None and level >= layout.numbers[c, box.LOWEST]:
             first = layout.levels[c, level, 0]
             out = windows[first : first + shape[0] * shape[1]].reshape(shape).view(np.uint16)
             pyramid.windows_of(fine.view(np.uint16), np.empty_like(out), out)
-
-
-def _copy_trust(layout: Layout, c: int, buffers: _Buffers) -> None:
-    """For a camera that sees nothing of the machine, while others do."""
-    last = layout.shapes[c][-1]
-    start = layout.levels[c, int(layout.numbers[c, box.LOWEST]), 0]
-    end = layout.levels[c, -1, 0] + last[0] * last[1]
-    texels = slice(layout.texel_first[c], layout.texel_first[c + 1])
-    tiles = slice(layout.tile_first[c], layout.tile_first[c + 1])
-    buffers.doubt[start:end] = buffers.trust[start:end]
-    buffers.doubt_texels[texels] = buffers.trust_texels[texels]
-    buffers.doubt_tiles[tiles] = buffers.trust_tiles[tiles]

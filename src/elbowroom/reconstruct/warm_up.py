@@ -1,32 +1,76 @@
 """Compiles what the loop uses before the machine is enabled."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
+from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
-from elbowroom.reconstruct.carve import DETAILS
+from elbowroom.reconstruct._kernels_pixel import PIXEL_FLOATS, settle_word
+from elbowroom.reconstruct.carve import DETAILS, Detail
+from elbowroom.reconstruct.images import room_images
 from elbowroom.reconstruct.reconstruct import reconstruct
+from elbowroom.reconstruct.views import fill, layout_of
 from elbowroom.sensing import DepthFrame, NoiseModel
 
 
-def warm_up(machine: Machine | None = None) -> None:
+def warm_up(machine: Machine | None = None, details: Sequence[Detail] = DETAILS) -> None:
     """Runs every kernel of reconstruction once on a tiny scene, so that none has to be compiled later.
 
     Takes seconds the first time on a computer; what was compiled is kept beside the package.
 
     Args:
         machine: also the kernels that explain and take out a body; None: those of the bare room.
+        details: of `carve`, those that will be used.
     """
-    grid = VoxelGrid((-0.2, -0.2, 0.8), (8, 8, 8), 0.05)
-    cameras = [
-        DepthCamera(name, 32, 24, np.eye(4), Intrinsics(30, 30, 15.5, 11.5), noise=noise)
-        for name, noise in (("exact", None), ("noisy", NoiseModel(0.001)))
-    ]
-    frames = [DepthFrame(camera.name, 0, np.full((24, 32), 1.1, dtype=np.float32)) for camera in cameras]
+    grid, cameras, frames = _tiny_scene()
     middle = (
         None
         if machine is None
         else {j.name: min(max(0.0, j.lower), j.upper) for j in map(machine.joint, machine.joint_names)}
     )
-    for detail in DETAILS:
+    for detail in details:
         reconstruct(grid, cameras, frames, machine=machine, joints=middle, detail=detail, threads=1)
+
+
+def warm_up_pixel_test() -> None:
+    """Runs the pyramid and the pixel test alone, the part of `warm_up` that can be compiled beside the rest."""
+    grid, cameras, frames = _tiny_scene()
+    images = room_images(cameras, frames)
+    layout = layout_of(grid, images.cameras, Margin())
+    explained = {camera.name: np.full((24, 32), 1.1, dtype=np.float32) for camera in cameras}
+    views, buffers = fill(layout, images, explained, 1)
+    try:
+        settle_word(
+            views.numbers,
+            0,
+            views.trust_texels,
+            views.doubt_texels,
+            0,
+            views.trust_tiles,
+            views.doubt_tiles,
+            0,
+            np.uint64(1),
+            0.0,
+            0.0,
+            1.0,
+            grid.voxel_size_m,
+            np.empty(PIXEL_FLOATS),
+        )
+    finally:
+        layout.give_back(buffers)
+
+
+def _tiny_scene() -> tuple[VoxelGrid, list[DepthCamera], list[DepthFrame]]:
+    """Two cameras, one of them noisy, that look at a wall behind 8 x 8 x 8 voxels."""
+    grid = VoxelGrid((-0.2, -0.2, 0.8), (8, 8, 8), 0.05)
+    cameras = [
+        DepthCamera(name, 32, 24, np.eye(4), Intrinsics(30, 30, 15.5, 11.5), noise=noise)
+        for name, noise in (("exact", None), ("noisy", NoiseModel(0.001)))
+    ]
+    return (
+        grid,
+        cameras,
+        [DepthFrame(camera.name, 0, np.full((24, 32), 1.1, dtype=np.float32)) for camera in cameras],
+    )

@@ -3,11 +3,8 @@
 import math
 from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
 from elbowroom.errors import CameraError
-from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.geometry.camera import DepthKind
 from elbowroom.sensing import NoiseModel
 
@@ -101,25 +98,3 @@ def _along_walls(share: float, half_side_m: float) -> tuple[float, float]:
     wall, along = int(way // 2), way % 2 - 1
     x, y = ((1.0, along), (-along, 1.0), (-1.0, -along), (along, -1.0))[wall]
     return x * half_side_m, y * half_side_m
-
-
-def looking_at(
-    eye_m: tuple[float, float, float], target_m: tuple[float, float, float]
-) -> NDArray[np.float64]:
-    """The pose of a camera that looks from one point to another, its image upright.
-
-    Args:
-        eye_m: where the camera is, world frame [m].
-        target_m: what it looks at, not straight above or below [m].
-
-    Returns:
-        world_from_camera, shape (4, 4); x right, y down, z forward.
-    """
-    forward = np.subtract(target_m, eye_m)
-    forward = forward / np.linalg.norm(forward)
-    right = np.cross(forward, (0.0, 0.0, 1.0))
-    right /= np.linalg.norm(right)
-    world_from_camera = np.eye(4)
-    world_from_camera[:3, :3] = np.stack([right, np.cross(forward, right), forward], axis=1)
-    world_from_camera[:3, 3] = eye_m
-    return world_from_camera

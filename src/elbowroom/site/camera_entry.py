@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 
 from elbowroom.errors import SiteError
-from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.sensing import NOISE_PRESETS, Margin, NoiseModel
 from elbowroom.site.entry import Count, Entry, Flag, Matrix, NotNegative, Number, Point, Positive, Text
 from elbowroom.site.matrix_file import read_matrix
@@ -125,36 +125,9 @@ class CameraEntry(CameraSettings):
             return np.array(self.world_from_camera)
         if self.pose_file is not None:
             return read_matrix(expand(self.pose_file, beside), (4, 4), "pose, camera to world")
-        return looking_at(self.position_m, self.look_at_m, self.up)
-
-
-def looking_at(position_m: Any, look_at_m: Any, up: Any = (0.0, 0.0, 1.0)) -> NDArray[np.float64]:
-    """Pose of a camera that looks at a point and whose image stands upright.
-
-    Args:
-        position_m, look_at_m: where it is and what lies in the middle of its image, world frame [m].
-        up: direction that is up in the image, world frame; straight up or down, the image's up is +y.
-
-    Returns:
-        world_from_camera, shape (4, 4).
-
-    Raises:
-        SiteError: both points are the same, or `up` is no direction.
-    """
-    forward = np.asarray(look_at_m, dtype=float) - np.asarray(position_m, dtype=float)
-    if np.linalg.norm(forward) < 1e-9 or np.linalg.norm(up) < 1e-9:
-        raise SiteError(
-            f"position_m {position_m} and look_at_m {look_at_m} give no direction; they must differ"
-        )
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, up)
-    if np.linalg.norm(right) < 1e-6 * np.linalg.norm(up):
-        right = np.cross(forward, (0.0, 1.0, 0.0) if abs(forward[1]) < 0.9 else (1.0, 0.0, 0.0))
-    right /= np.linalg.norm(right)
-    world_from_camera = np.eye(4)
-    world_from_camera[:3, :3] = np.stack([right, np.cross(forward, right), forward], axis=1)
-    world_from_camera[:3, 3] = position_m
-    return world_from_camera
+        if self.position_m is None or self.look_at_m is None:
+            raise SiteError("camera without a pose: position_m and look_at_m are missing")
+        return looking_at(self.position_m, self.look_at_m, self.up, SiteError)
 
 
 def build_camera(
