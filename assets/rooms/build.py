@@ -27,15 +27,15 @@ def common(*, arm_out: bool = False, hang: float = 0.33) -> None:
     f.table()
     patient(f.TOP, arm_out=arm_out)
     f.drape(hang)
-    f.cabinet("cabinet", (0.95, 1.62, 0.0), (1.85, 2.03, 1.75), doors="-y")
-    f.open_shelf(-2.03, 1.30, 0.0)
+    f.cabinet("cabinet", (0.70, 1.62, 0.0), (1.60, 2.03, 1.75), doors="-y")
+    f.open_shelf(-2.03, -1.14, 0.0)
     f.floor_cables()
 
 
 def setup1() -> None:
     """The C at the head end, upright; doctor at the right groin, a nurse at the head, one at the shelf."""
     common()
-    f.cart(-1.35, -1.72, 90)
+    f.cart(-1.15, -1.72, 90)
     f.monitors(0.95, -1.40, 90)
     f.lamp(1.55, 0.75, (1.12, 0.12, 2.08))
     f.lead_curtain(0.55, 1.15, -0.262, -1)
@@ -48,7 +48,7 @@ def setup1() -> None:
 def setup2() -> None:
     """The C at the head end moves over the patient towards a lamp that was left over the chest."""
     common(arm_out=True)
-    f.cart(-1.35, -1.72, 90)
+    f.cart(-1.15, -1.72, 90)
     f.monitors(1.15, -1.30, 90)
     f.lamp(1.45, 0.85, (0.42, 0.06, 2.08))
     f.iv_pole(0.42, 1.02, line_to=(0.30, 0.62, 1.06))
@@ -61,7 +61,7 @@ def setup2() -> None:
 def setup3() -> None:
     """The C reaches across the table from the side; a nurse and a drip stand beside its column."""
     common()
-    f.cart(-1.35, -1.72, 90)
+    f.cart(-1.15, -1.72, 90)
     f.monitors(1.50, 0.10, 180, screens=2)
     f.lamp(-0.85, 1.10, (-0.30, 0.85, 2.10))
     f.iv_pole(-0.78, -0.52, line_to=(0.22, -0.23, 1.06))
@@ -74,7 +74,7 @@ def setup3() -> None:
 def setup4() -> None:
     """The C tilted beside the doctor, monitors drawn in close on the other side."""
     common()
-    f.cart(-1.55, -1.72, 90)
+    f.cart(-1.15, -1.72, 90)
     f.monitors(0.25, -1.18, 90)
     f.lamp(1.55, 0.75, (1.00, 0.22, 2.05))
     f.shield(0.62, -0.56, 10)
@@ -87,7 +87,7 @@ def setup4() -> None:
 def setup5() -> None:
     """The C among thin things: drip stands, lines, a hose from the ceiling, a lead-glass screen."""
     common(arm_out=True)
-    f.cart(-1.35, -1.72, 90)
+    f.cart(-1.15, -1.72, 90)
     f.monitors(1.10, -1.25, 95)
     f.lamp(1.55, 0.85, (1.05, 0.30, 2.06))
     f.iv_pole(0.37, 0.44, height=2.05, line_to=(0.30, 0.62, 1.06))
@@ -101,7 +101,7 @@ def setup5() -> None:
 def setup6() -> None:
     """The C turned along its ring over the patient, doctor and nurse close by."""
     common()
-    f.cart(-1.35, -1.72, 90)
+    f.cart(-1.15, -1.72, 90)
     f.monitors(0.85, -1.35, 90)
     f.lamp(1.30, 1.00, (0.95, 0.02, 1.78))
     f.stool(0.20, 1.05)

@@ -16,6 +16,7 @@ from elbowroom.machine import Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame
 from elbowroom.simulate import Moment, render, setup, solids_of_glb, wall_cameras
+from elbowroom.simulate.inside import check_outside
 from elbowroom.simulate.machine_solids import link_solids
 from elbowroom.simulate.picture import View, colour_picture
 from elbowroom.simulate.recorder import Recording, write_recording
@@ -56,6 +57,7 @@ def simulate_room(wanted: Wanted, json: Path | None) -> None:
         machine = ceiling_c_arm() if wanted.machine else None
         moment = _moment(wanted, machine, grid)
         cameras = _cameras(wanted, grid)
+        check_outside(cameras, moment.solids)
         steps.begin("rendering")
         frames = render(cameras, moment)
         steps.begin("writing images")
