@@ -6,7 +6,7 @@ import typer
 
 from elbowroom.cli.bench import bench
 from elbowroom.cli.check import check
-from elbowroom.cli.evaluate import evaluate_app
+from elbowroom.cli.evaluate_thesis import evaluate_app
 from elbowroom.cli.monitor import monitor
 from elbowroom.cli.reconstruct import reconstruct
 from elbowroom.cli.simulate import simulate
