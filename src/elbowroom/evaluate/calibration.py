@@ -18,9 +18,8 @@ from elbowroom.evaluate.charts import Line, chart
 from elbowroom.evaluate.room import Tally
 from elbowroom.evaluate.scene import room_grid
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
-from elbowroom.evaluate.thesis import HEIGHTS_M
+from elbowroom.evaluate.thesis import HEIGHTS_M, c_arm
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
-from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.reconstruct import reconstruct
 from elbowroom.sensing import Margin
 from elbowroom.simulate import render, setup, true_occupancy, wall_cameras
@@ -114,7 +113,7 @@ def judge_draws(
     cameras: int,
 ) -> Outcome:
     """Some draws of one size of error, with each margin."""
-    machine, scene, grid = ceiling_c_arm(), setup(number), room_grid(voxel_size_m)
+    machine, scene, grid = c_arm(), setup(number), room_grid(voxel_size_m)
     moment = scene.at(machine)
     truth = true_occupancy(grid, moment)
     views = wall_cameras(cameras, HEIGHTS_M, size=size)

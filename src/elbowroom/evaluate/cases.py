@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from elbowroom.geometry import VoxelGrid
-from elbowroom.simulate.picture import View, shaded
+from elbowroom.simulate.picture import View, cubes
 from elbowroom.view.plot import font
 
 NAMES = ("correct_free", "incorrect_free", "correct_object", "incorrect_object")
@@ -67,23 +67,11 @@ def section_picture(volumes: Sequence[tuple[str, NDArray[np.uint8]]], grid: Voxe
 
 def voxel_picture(cases: NDArray[np.uint8], grid: VoxelGrid) -> bytes:
     """The room as cubes seen from above: case 1 is air, the others in their colours, the machine grey. PNG."""
-    solid = cases != 1
-    padded = np.pad(solid, 1)
-    triangles, colours = [], []
-    palette = np.array([MACHINE, *COLOURS], dtype=float) / 255.0
-    unit = np.array([(0, 0), (1, 0), (1, 1), (0, 0), (1, 1), (0, 1)], dtype=float)
-    for axis in range(3):
-        for side in (0, 1):
-            beside = np.roll(padded, 1 - 2 * side, axis=axis)[1:-1, 1:-1, 1:-1]
-            index = np.argwhere(solid & ~beside)
-            corner = np.zeros((6, 3))
-            corner[:, [(axis + 1) % 3, (axis + 2) % 3]] = unit
-            corner[:, axis] = side
-            faces = grid.lower_m + (index[:, None, :] + corner[None]) * grid.voxel_size_m
-            triangles.append(faces.reshape(-1, 3, 3))
-            colours.append(np.repeat(palette[cases[solid & ~beside]] ** 2.2, 2, axis=0))
+    # air is label 0 there, so the machine takes the place of case 1
+    labels = np.choose(cases, [1, 0, 2, 3, 4]).astype(np.uint8)
+    palette = (np.array([COLOURS[0], MACHINE, *COLOURS[1:]], dtype=float) / 255.0) ** 2.2
     view = View((3.6, -3.8, 4.2), (0.0, -0.05, 0.7), 46, 560, 440)
-    return as_png(shaded(np.concatenate(triangles), np.concatenate(colours), view, smooth=1))
+    return as_png(cubes(labels, grid, palette, view))
 
 
 def as_png(picture: Image.Image) -> bytes:

@@ -18,10 +18,9 @@ from elbowroom.evaluate.blocks import Block, Part, Table, Words, cm, pct
 from elbowroom.evaluate.exact import ExactTravel, load_coal
 from elbowroom.evaluate.scene import Comparison, room_grid, room_motions
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
-from elbowroom.evaluate.thesis import sensor_cameras
+from elbowroom.evaluate.thesis import c_arm, sensor_cameras
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine import Machine
-from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.motion import Motion, blocks_in_reach, check_motions
 from elbowroom.reconstruct import FreeSpace, reconstruct
 from elbowroom.reconstruct.carve import Detail
@@ -101,7 +100,7 @@ def judge_movements(
     number: int, sensors: Sequence[str], cameras: int, voxel_sizes_m: Sequence[float] | None
 ) -> Outcome:
     """All movements of one setup, by all variants."""
-    scene, machine = setup(number), ceiling_c_arm()
+    scene, machine = setup(number), c_arm()
     truth = ExactTravel(machine, scene.solids())
     rows = []
     for movement in scene.movements:
@@ -140,7 +139,7 @@ def judge_movements(
 
 def judge_random(number: int, seed: int, count: int, cameras: int, voxel_size_m: float) -> Outcome:
     """Random poses in one setup until so many motions of theirs have a truth within L; all motions of the poses."""
-    scene, machine = setup(number), ceiling_c_arm()
+    scene, machine = setup(number), c_arm()
     truth = ExactTravel(machine, scene.solids())
     variant = Variant("640x480", voxel_size_m, "pixel")
     views = _cameras(variant.sensor, False, cameras)

@@ -16,10 +16,9 @@ from elbowroom.evaluate.cases import cases_of, counts_of, section_picture, voxel
 from elbowroom.evaluate.room import Tally
 from elbowroom.evaluate.scene import room_grid
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
-from elbowroom.evaluate.thesis import TABLE_2, sensor_cameras
+from elbowroom.evaluate.thesis import TABLE_2, c_arm, sensor_cameras
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
-from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.reconstruct import FreeSpace, reconstruct
 from elbowroom.reconstruct.carve import Detail
 from elbowroom.sensing import DepthFrame, Margin
@@ -57,7 +56,7 @@ def judge_setup(
     number: int, sensor: str, voxel_sizes_m: Sequence[float], cameras: int, pictures: bool
 ) -> Outcome:
     """All voxel sizes and details of one setup and sensor, without noise and with it."""
-    machine = ceiling_c_arm()
+    machine = c_arm()
     moment = setup(number).at(machine)
     rows: list[dict[str, Any]] = []
     drawn: dict[str, bytes] = {}

@@ -1,8 +1,11 @@
 """What the thesis had and printed: its sensors, its tables' figures (Hamersma 2011)."""
 
 from collections.abc import Sequence
+from functools import cache
 
 from elbowroom.geometry import DepthCamera
+from elbowroom.machine import Machine
+from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.sensing import NOISE_PRESETS, NoiseModel
 from elbowroom.simulate import wall_cameras
 
@@ -38,3 +41,9 @@ def sensor_cameras(sensor: str, *, noise: bool | NoiseModel = False, count: int 
 def heights(count: int) -> Sequence[float]:
     """Of `HEIGHTS_M`, what a number of cameras takes: one alone hangs above."""
     return HEIGHTS_M[: max(1, min(count, len(HEIGHTS_M)))]
+
+
+@cache
+def c_arm() -> Machine:
+    """The ceiling C-arm; always the same object, so that what is worked out for it is kept."""
+    return ceiling_c_arm()

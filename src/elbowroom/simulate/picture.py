@@ -9,6 +9,7 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 from PIL import Image
 
+from elbowroom.geometry import VoxelGrid
 from elbowroom.simulate.cameras import looking_at
 from elbowroom.simulate.solid import Solid
 
@@ -124,3 +125,29 @@ def _lamplight(
     way /= length[:, None]
     far = scene.run(point.astype(np.float32), way.astype(np.float32), query="DISTANCE")
     return np.where(far >= length, np.clip(np.sum(way * normal, axis=1), 0.0, 1.0), 0.0)
+
+
+def cubes(
+    labels: NDArray[np.uint8], grid: VoxelGrid, colours: NDArray[np.float64], view: View, *, smooth: int = 1
+) -> Image.Image:
+    """Voxels as cubes in the colours of their labels; label 0 is air.
+
+    Args:
+        labels: shape of the grid, index order x, y, z.
+        grid: where they are.
+        colours: linear, by label, shape (n, 3).
+        view, smooth: as of `colour_picture`.
+    """
+    solid = np.pad(labels > 0, 1)
+    unit = np.array([(0, 0), (1, 0), (1, 1), (0, 0), (1, 1), (0, 1)], dtype=float)
+    triangles, of_face = [], []
+    for axis in range(3):
+        for side in (0, 1):
+            bare = solid & ~np.roll(solid, 1 - 2 * side, axis=axis)
+            index = np.argwhere(bare[1:-1, 1:-1, 1:-1])
+            corner = np.zeros((6, 3))
+            corner[:, [(axis + 1) % 3, (axis + 2) % 3]] = unit
+            corner[:, axis] = side
+            triangles.append((grid.lower_m + (index[:, None, :] + corner) * grid.voxel_size_m).reshape(-1, 3, 3))
+            of_face.append(np.repeat(labels[tuple(index.T)], 2))
+    return shaded(np.concatenate(triangles), colours[np.concatenate(of_face)], view, smooth=smooth)
