@@ -28,9 +28,7 @@ class Parts:
         made = bmesh.ops.create_cube(self.bm, size=1.0, matrix=matrix)
         if bevel:
             edges = {edge for vertex in made["verts"] for edge in vertex.link_edges}
-            bmesh.ops.bevel(
-                self.bm, geom=list(edges), offset=bevel, segments=2, profile=0.5, affect="EDGES"
-            )
+            bmesh.ops.bevel(self.bm, geom=list(edges), offset=bevel, segments=2, profile=0.5, affect="EDGES")
         return self
 
     def ball(self, centre: Point, radii: Point | float, *, u: int = 14, v: int = 9) -> "Parts":
@@ -40,7 +38,9 @@ class Parts:
         bmesh.ops.create_uvsphere(self.bm, u_segments=u, v_segments=v, radius=1.0, matrix=matrix)
         return self
 
-    def bar(self, start: Point, end: Point, radius: float, end_radius: float | None = None, *, n: int = 12) -> "Parts":
+    def bar(
+        self, start: Point, end: Point, radius: float, end_radius: float | None = None, *, n: int = 12
+    ) -> "Parts":
         """A round bar that may taper, with flat ends."""
         a, b = Vector(start), Vector(end)
         along = b - a
@@ -57,7 +57,9 @@ class Parts:
         )
         return self
 
-    def limb(self, start: Point, end: Point, radius: float, end_radius: float | None = None, *, n: int = 12) -> "Parts":
+    def limb(
+        self, start: Point, end: Point, radius: float, end_radius: float | None = None, *, n: int = 12
+    ) -> "Parts":
         """A bar with round ends."""
         last = radius if end_radius is None else end_radius
         self.bar(start, end, radius, last, n=n)
@@ -108,7 +110,10 @@ class Parts:
                 faces.append((at[i, j], at[i + 1, j], at[i + 1, j + 1], at[i, j + 1]))
                 faces.append((below[i, j], below[i, j + 1], below[i + 1, j + 1], below[i + 1, j]))
         edge = [*((0, j) for j in range(columns)), *((i, columns - 1) for i in range(1, rows))]
-        edge += [*((rows - 1, j) for j in range(columns - 2, -1, -1)), *((i, 0) for i in range(rows - 2, 0, -1))]
+        edge += [
+            *((rows - 1, j) for j in range(columns - 2, -1, -1)),
+            *((i, 0) for i in range(rows - 2, 0, -1)),
+        ]
         for (a, b), (c, d) in zip(edge, edge[1:] + edge[:1], strict=True):
             faces.append((at[a, b], at[c, d], below[c, d], below[a, b]))
         return self.shell(vertices, faces)
@@ -202,7 +207,9 @@ def smooth_path(points: np.ndarray, steps: int) -> np.ndarray:
     t = np.linspace(0, 1, steps, endpoint=False)[:, None]
     pieces = []
     for a, b, c, d in zip(ends, ends[1:], ends[2:], ends[3:], strict=False):
-        pieces.append(0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 + (3 * b - a - 3 * c + d) * t**3))
+        pieces.append(
+            0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t**2 + (3 * b - a - 3 * c + d) * t**3)
+        )
     return np.concatenate([*pieces, points[-1:]])
 
 

@@ -58,10 +58,19 @@ def person(name: str, how: Stance) -> None:
         legs.limb(foot + Vector((0, 0, 0.40)), foot, 0.06, 0.047)
         legs.ball(foot + Vector((0.06, 0, -0.015)), (0.135, 0.05, 0.045))
     legs.turned(place)
-    legs.solid(f"{name} legs", tuple(0.8 * c for c in how.gown), grow_m=0.014, smooth=4, folds_m=0.014, triangles=1500)
+    legs.solid(
+        f"{name} legs",
+        tuple(0.8 * c for c in how.gown),
+        grow_m=0.014,
+        smooth=4,
+        folds_m=0.014,
+        triangles=1500,
+    )
     gown.solid(f"{name} gown", how.gown, grow_m=0.011, smooth=4, folds_m=0.012, triangles=2200)
     skin.solid(f"{name} skin", SKIN, grow_m=0.006, smooth=3, triangles=2600)
-    cap.solid(f"{name} cap", HAIR if name.endswith("2") else (0.15, 0.4, 0.5), grow_m=0.012, smooth=3, triangles=300)
+    cap.solid(
+        f"{name} cap", HAIR if name.endswith("2") else (0.15, 0.4, 0.5), grow_m=0.012, smooth=3, triangles=300
+    )
 
 
 def arm(gown: Parts, skin: Parts, side: int, shoulder_deg: float, elbow_deg: float) -> None:
@@ -76,7 +85,9 @@ def arm(gown: Parts, skin: Parts, side: int, shoulder_deg: float, elbow_deg: flo
     skin.ball(palm, (0.045, 0.038, 0.04))
     for finger in range(4):
         base = palm + 0.03 * ahead + (0, (finger - 1.5) * 0.019, 0)
-        skin.limb(base, base + 0.065 * ahead + 0.02 * down(shoulder_deg + elbow_deg - 60), 0.0095, 0.0085, n=8)
+        skin.limb(
+            base, base + 0.065 * ahead + 0.02 * down(shoulder_deg + elbow_deg - 60), 0.0095, 0.0085, n=8
+        )
     skin.limb(palm, palm + 0.05 * ahead - (0, 0.045 * side, 0), 0.012, 0.01, n=8)
 
 

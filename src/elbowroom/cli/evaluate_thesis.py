@@ -10,11 +10,14 @@ from elbowroom.cli.options import JsonFile
 
 Out = Annotated[
     Path | None,
-    typer.Option("--out", metavar="DIR", help="Folder for the page; what is done is kept there, so that one can go on."),
+    typer.Option(
+        "--out", metavar="DIR", help="Folder for the page; what is done is kept there, so that one can go on."
+    ),
 ]
 Jobs = Annotated[int | None, typer.Option(min=1, help="Processes on this computer. Default: one a core.")]
 Cluster = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler that spreads the work, tcp://HOST:PORT.")
+    str | None,
+    typer.Option(metavar="ADDRESS", help="A Dask scheduler that spreads the work, tcp://HOST:PORT."),
 ]
 SetupNumbers = Annotated[
     list[int] | None, typer.Option("--setup", min=1, max=6, help="Of the six; may be given more than once.")
@@ -24,12 +27,16 @@ Sensors = Annotated[
     typer.Option("--sensor", help="640x480 or 64x48; may be given more than once. Default: both."),
 ]
 Draws = Annotated[int, typer.Option(min=1, help="Disturbed poses at each size of error.")]
-RandomMotions = Annotated[int, typer.Option("--motions", min=0, help="Random motions whose truth is within L.")]
+RandomMotions = Annotated[
+    int, typer.Option("--motions", min=0, help="Random motions whose truth is within L.")
+]
 Cameras = Annotated[int, typer.Option(min=1, max=255, help="How many, along the walls.")]
 Pictures = Annotated[bool, typer.Option(help="Draw pictures.")]
 
 
-@evaluate_app.command(epilog="Example: elbowroom evaluate reconstruction --setup 1 --voxel-size 0.1 --json out.json")
+@evaluate_app.command(
+    epilog="Example: elbowroom evaluate reconstruction --setup 1 --voxel-size 0.1 --json out.json"
+)
 def reconstruction(
     setup: SetupNumbers = None,
     voxel_size: VoxelSizes = None,
@@ -44,7 +51,9 @@ def reconstruction(
     """Each voxel of the thesis' six setups beside the truth (its Tables 1 and 2, Fig. 9)."""
     from elbowroom.cli.evaluate_thesis_run import Spread, run_parts, settings
 
-    given = settings(setups=setup, voxel_sizes_m=voxel_size, sensors=sensor, cameras=cameras, pictures=pictures)
+    given = settings(
+        setups=setup, voxel_sizes_m=voxel_size, sensors=sensor, cameras=cameras, pictures=pictures
+    )
     run_parts(("reconstruction",), given, Spread(jobs, cluster), out, json)
 
 
@@ -117,7 +126,9 @@ def more(
 
 @evaluate_app.command(name="all", epilog="Example: elbowroom evaluate all --out report --json report.json")
 def all_parts(
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for report.html and what is kept.")],
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder for report.html and what is kept.")
+    ],
     setup: SetupNumbers = None,
     voxel_size: VoxelSizes = None,
     draws: Draws = 50,

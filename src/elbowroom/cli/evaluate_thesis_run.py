@@ -10,10 +10,10 @@ from rich.console import Console
 from rich.table import Table as RichTable
 
 from elbowroom.cli.evaluate_run import watched
-from elbowroom.cli.json_output import commit, json_rows, meta
+from elbowroom.cli.json_output import json_rows, meta
 from elbowroom.errors import InputError
 from elbowroom.evaluate.blocks import Block, Part, Table
-from elbowroom.evaluate.kept import Kept
+from elbowroom.evaluate.kept import Kept, source_state
 from elbowroom.evaluate.page import page
 from elbowroom.evaluate.task import Outcome, Settings, Task
 from elbowroom.evaluate.thesis import SENSORS
@@ -59,7 +59,7 @@ def run_parts(
     parts: list[Part] = [importlib.import_module(f"elbowroom.evaluate.{name}").PART for name in names]
     if out is not None:
         folder(out)
-    kept = Kept(out / "parts" if out else None, commit())
+    kept = Kept(out / "parts" if out else None, source_state())
     tasks = [task for part in parts for task in part.tasks(given)]
     if not tasks:
         raise InputError("evaluate: nothing to do with these options; ask for more")
@@ -88,13 +88,19 @@ def _done(tasks: Sequence[Task], kept: Kept, spread: Spread) -> dict[int, Outcom
     outcomes = {n: found for n, task in enumerate(tasks) if (found := kept.load(task)) is not None}
     left = [n for n in range(len(tasks)) if n not in outcomes]
     if outcomes:
-        Console(stderr=True, highlight=False).print(f"{len(outcomes)} of {len(tasks)} shares are there already")
+        Console(stderr=True, highlight=False).print(
+            f"{len(outcomes)} of {len(tasks)} shares are there already"
+        )
     doing = do_tasks([tasks[n] for n in left], jobs=spread.jobs or default_threads(), cluster=spread.cluster)
     try:
         for index, outcome in watched("shares", doing, len(left)):
             outcomes[left[index]] = kept.keep(tasks[left[index]], outcome)
     except KeyboardInterrupt:
-        where = f"kept in {kept.path}; the same command goes on from there" if kept.path else "lost; --out DIR keeps them"
+        where = (
+            f"kept in {kept.path}; the same command goes on from there"
+            if kept.path
+            else "lost; --out DIR keeps them"
+        )
         Console(highlight=False).print(
             f"Interrupted after {len(outcomes)} of {len(tasks)} shares of the work. They are {where}.",
             soft_wrap=True,

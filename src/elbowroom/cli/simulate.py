@@ -42,5 +42,7 @@ def simulate(
 
     from elbowroom.cli.simulate_run import Wanted, simulate_room
 
-    wanted = Wanted(room, out, cameras, size, tuple(height or (2.4, 0.4)), noise, box, voxel_size, machine, positions)
+    wanted = Wanted(
+        room, out, cameras, size, tuple(height or (2.4, 0.4)), noise, box, voxel_size, machine, positions
+    )
     simulate_room(wanted, json)

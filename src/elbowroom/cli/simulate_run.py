@@ -99,7 +99,9 @@ def _meets(vertices: np.ndarray, grid: VoxelGrid) -> bool:
 
 def _cameras(wanted: Wanted, grid: VoxelGrid) -> tuple[DepthCamera, ...]:
     if wanted.noise != "exact" and wanted.noise not in NOISE_PRESETS:
-        raise InputError(f"--noise: {wanted.noise!r} is unknown, allowed are exact, {', '.join(NOISE_PRESETS)}")
+        raise InputError(
+            f"--noise: {wanted.noise!r} is unknown, allowed are exact, {', '.join(NOISE_PRESETS)}"
+        )
     middle, half = (grid.lower_m + grid.upper_m) / 2, (grid.upper_m - grid.lower_m) / 2 - INSIDE_WALLS_M
     if min(half[:2]) <= 0:
         raise InputError(f"--box: {wanted.box} is too small for cameras in it")
@@ -129,7 +131,11 @@ def _draw(out: Path, grid: VoxelGrid, moment: Moment, frame: DepthFrame) -> None
     shown = [s for s in moment.solids if s.is_machine or _is_inside(s.vertices_in_world, grid)]
     middle, size = (grid.lower_m + grid.upper_m) / 2, float(np.linalg.norm(grid.upper_m - grid.lower_m))
     eye = middle + np.array([0.66, -0.70, 0.50]) * size
-    view = View((float(eye[0]), float(eye[1]), float(eye[2])), (float(middle[0]), float(middle[1]), float(middle[2])), 46)
+    view = View(
+        (float(eye[0]), float(eye[1]), float(eye[2])),
+        (float(middle[0]), float(middle[1]), float(middle[2])),
+        46,
+    )
     colour_picture(shown, view).save(out / "colour.png", optimize=True)
     depth_picture(frame.depth_m).save(out / "depth.png", optimize=True)
 
@@ -137,7 +143,9 @@ def _draw(out: Path, grid: VoxelGrid, moment: Moment, frame: DepthFrame) -> None
 def _is_inside(vertices: np.ndarray, grid: VoxelGrid) -> bool:
     """Not a wall or ceiling on the eye's side: its middle lies over the box, or behind it."""
     middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2
-    return bool(middle[0] < grid.upper_m[0] and middle[1] > grid.lower_m[1] and middle[2] < grid.upper_m[2] + 0.3)
+    return bool(
+        middle[0] < grid.upper_m[0] and middle[1] > grid.lower_m[1] and middle[2] < grid.upper_m[2] + 0.3
+    )
 
 
 def _row(wanted: Wanted, moment: Moment, frames: list[DepthFrame], site: Path) -> dict[str, Any]:

@@ -58,7 +58,9 @@ def tasks(settings: Settings) -> list[Task]:
         exact = case["rotation_deg"] == case["translation_m"] == 0
         draws = 1 if exact else settings.draws
         for first in range(0, draws, CHUNK):
-            words = f"{case['curve']}-{case['rotation_deg']:g}deg-{case['translation_m'] * 1000:g}mm-{first:03d}"
+            words = (
+                f"{case['curve']}-{case['rotation_deg']:g}deg-{case['translation_m'] * 1000:g}mm-{first:03d}"
+            )
             result.append(
                 Task(
                     "calibration",
@@ -127,7 +129,14 @@ def judge_draws(
         for share in shares:
             margin = margin_for(rotation_deg, translation_m, share, views[0].intrinsics.fx)
             space = reconstruct(
-                grid, said, frames, machine=machine, joints=moment.joints, detail=detail, margin=margin, focus=focus
+                grid,
+                said,
+                frames,
+                machine=machine,
+                joints=moment.joints,
+                detail=detail,
+                margin=margin,
+                focus=focus,
             )
             tally = Tally()
             tally.add(space.free, truth.occupied & looked_at, truth.machine | ~looked_at, seen & looked_at)
@@ -146,7 +155,10 @@ def judge_draws(
                     "translation_m": translation_m,
                     "margin_share": share,
                     "draw": draw,
-                    **{key: row[key] for key in ("occupied_pct", "found_pct", "free_pct", "false_free_voxels")},
+                    **{
+                        key: row[key]
+                        for key in ("occupied_pct", "found_pct", "free_pct", "false_free_voxels")
+                    },
                 }
             )
     return Outcome(rows)
@@ -184,7 +196,16 @@ def _voxels_of(focus: NDArray[np.bool_], grid: VoxelGrid) -> NDArray[np.bool_]:
 
 def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Mean and worst of the draws of each case and margin."""
-    same = ("curve", "setup", "sensor", "voxel_size_m", "detail", "rotation_deg", "translation_m", "margin_share")
+    same = (
+        "curve",
+        "setup",
+        "sensor",
+        "voxel_size_m",
+        "detail",
+        "rotation_deg",
+        "translation_m",
+        "margin_share",
+    )
     result = []
     for values in dict.fromkeys(tuple(row[key] for key in same) for row in rows):
         mine = [row for row in rows if tuple(row[key] for key in same) == values]
@@ -195,7 +216,9 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
                 "noise": False,
                 "rule": "three",
                 "draws": len(mine),
-                **{key: mean([row[key] for row in mine]) for key in ("occupied_pct", "found_pct", "free_pct")},
+                **{
+                    key: mean([row[key] for row in mine]) for key in ("occupied_pct", "found_pct", "free_pct")
+                },
                 "least_occupied_pct": min(row["occupied_pct"] for row in mine),
                 "least_found_pct": min(row["found_pct"] for row in mine),
             }
@@ -227,12 +250,20 @@ def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
             Line("objects kept (occupied)", [(x, y) for x, y, _ in points]),
             Line("free space found", [(x, y) for x, _, y in points]),
         )
-        words = "What margin buys and costs: +-1 degree, +-1 cm, 640x480. Margin as a share of the greatest error"
+        words = (
+            "What margin buys and costs: +-1 degree, +-1 cm, 640x480. Margin as a share of the greatest error"
+        )
         blocks.append(Picture(chart(lines, "margin", "%"), words, 560))
     for curve, unit, scale in (("rotation", "degrees", 1.0), ("translation", "cm", 100.0)):
         mine = [row for row in means if row["curve"] in (curve, "rotation") and _of(row, curve)]
         if len(mine) > 2:
-            blocks.append(Picture(_curve(mine, f"{curve}_{'deg' if curve == 'rotation' else 'm'}", unit, scale), f"{curve}: mean of the draws", 560))
+            blocks.append(
+                Picture(
+                    _curve(mine, f"{curve}_{'deg' if curve == 'rotation' else 'm'}", unit, scale),
+                    f"{curve}: mean of the draws",
+                    560,
+                )
+            )
     return blocks
 
 

@@ -19,7 +19,12 @@ class Line:
 
 
 def chart(
-    lines: Sequence[Line], x: str, y: str, *, logarithmic: bool = False, y_range: tuple[float, float] | None = None
+    lines: Sequence[Line],
+    x: str,
+    y: str,
+    *,
+    logarithmic: bool = False,
+    y_range: tuple[float, float] | None = None,
 ) -> bytes:
     """A chart of lines with a legend, as SVG.
 

@@ -17,7 +17,7 @@ AT_M = 1.62
 """Height of the section: detector, column, shoulders, lamp's handle [m]."""
 SIDE_PX, GAP_PX, HEAD_PX = 230, 14, 24
 FREE, BLOCKED, ROBOT, HIT, INK = (193, 231, 190), (96, 104, 116), (32, 84, 190), (220, 30, 30), (24, 32, 44)
-MOVES = ({"long": 0.05}, {"larm": 0.35}, {"long": 0.45})
+MOVES = ({"long": 0.05}, {"larm": -0.3}, {"larm": 0.45})
 """The new positions, from the setup's pose [m or rad]."""
 NUMERALS = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XII", "XIII")
 

@@ -6,10 +6,12 @@ setups' poses, as a share of the truth.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from elbowroom.errors import InputError
 from elbowroom.evaluate.blocks import Block, Part, Picture, Table, Words, cm, mean, pct
 from elbowroom.evaluate.charts import Line, chart
 from elbowroom.evaluate.exact import ExactTravel, load_coal
@@ -17,11 +19,14 @@ from elbowroom.evaluate.fig3 import fig3_picture
 from elbowroom.evaluate.room import Tally
 from elbowroom.evaluate.scene import room_grid, room_motions
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
-from elbowroom.evaluate.thesis import c_arm, sensor_cameras
+from elbowroom.evaluate.thesis import HEIGHTS_M, c_arm, sensor_cameras
+from elbowroom.geometry import DepthCamera
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.simulate import Moment, Solid, render, setup, true_occupancy
+from elbowroom.simulate.cameras import looking_at
 from elbowroom.simulate.furniture import shell
+from elbowroom.simulate.inside import check_outside
 from elbowroom.simulate.shapes import ellipsoid, join
 from elbowroom.simulate.truth import touched_by
 
@@ -48,7 +53,7 @@ def tasks(settings: Settings) -> list[Task]:
         for sensor in settings.sensors
     ]
     if settings.pictures:
-        result.append(Task("more", "fig3", draw_fig3, {"number": 2}))
+        result.append(Task("more", "fig3", draw_fig3, {"number": 4}))
     return result
 
 
@@ -61,7 +66,7 @@ def judge_counts(number: int, voxel_size_m: float) -> Outcome:
     travels = [exact.until_contact(moment.joints, motion).travel for motion in motions]
     rows = []
     for count in COUNTS:
-        views = sensor_cameras("640x480", count=count)
+        views = hung_clear(sensor_cameras("640x480", count=count), scene.solids())
         frames = render(views, moment, noise=False)
         seen = reconstruct(grid, views, frames, rule="any", detail="point").free
         space = reconstruct(grid, views, frames, machine=machine, joints=moment.joints)
@@ -88,6 +93,20 @@ def judge_counts(number: int, voxel_size_m: float) -> Outcome:
             }
         )
     return Outcome(rows)
+
+
+def hung_clear(cameras: Sequence[DepthCamera], solids: Sequence[Solid]) -> tuple[DepthCamera, ...]:
+    """The cameras; those that would hang inside a solid, as a cabinet, hang above it."""
+    clear = []
+    for camera in cameras:
+        pose = np.array(camera.world_from_camera)
+        try:
+            check_outside([camera], solids)
+        except InputError:
+            x, y, _ = pose[:3, 3]
+            pose = looking_at((float(x), float(y), max(HEIGHTS_M)), (0.0, 0.0, 1.1))
+        clear.append(replace(camera, world_from_camera=pose))
+    return tuple(clear)
 
 
 def judge_balls(sensor: str, voxel_size_m: float) -> Outcome:
@@ -183,7 +202,9 @@ def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
             Line("free space declared, of all", [(r["cameras"], r["free_pct"]) for r in counts]),
             Line("free travel, of the truth", [(r["cameras"], r["travel_pct"]) for r in counts]),
         )
-        blocks.append(Picture(chart(lines, "cameras", "%", y_range=(0, 102)), "More sensors give more freedom", 560))
+        blocks.append(
+            Picture(chart(lines, "cameras", "%", y_range=(0, 102)), "More sensors give more freedom", 560)
+        )
     balls = [row for row in rows if row["kind"] == "balls"]
     if balls:
         blocks.append(_balls_table(balls))
@@ -191,7 +212,11 @@ def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
         drawn = [
             Line(
                 f"{sensor}, {detail}",
-                [(100 * r["size_m"], r["touched_free_pct"]) for r in balls if (r["sensor"], r["detail"]) == (sensor, detail)],
+                [
+                    (100 * r["size_m"], r["touched_free_pct"])
+                    for r in balls
+                    if (r["sensor"], r["detail"]) == (sensor, detail)
+                ],
             )
             for sensor, detail in kinds
         ]

@@ -193,7 +193,9 @@ def _variants(sensors: Sequence[str], voxel_sizes_m: Sequence[float] | None) -> 
     chosen = [v for v in VARIANTS if v.sensor in sensors]
     if voxel_sizes_m is None:
         return chosen
-    every = [Variant(v.sensor, edge, v.detail, v.noise, v.lateral_px) for v in chosen for edge in voxel_sizes_m]
+    every = [
+        Variant(v.sensor, edge, v.detail, v.noise, v.lateral_px) for v in chosen for edge in voxel_sizes_m
+    ]
     return list(dict.fromkeys(every))
 
 
@@ -222,7 +224,9 @@ def _space(
 def _volume_band(machine: Machine, moment: Moment, motion: Motion, voxel_size_m: float) -> str:
     """The band of the same check in the volume of true voxels."""
     grid = room_grid(voxel_size_m)
-    volume = FreeSpace.from_occupied(grid, true_occupancy(grid, moment).occupied).without(machine, moment.joints)
+    volume = FreeSpace.from_occupied(grid, true_occupancy(grid, moment).occupied).without(
+        machine, moment.joints
+    )
     return check_motions(volume, machine, moment.joints, [motion])[0].band
 
 
@@ -317,8 +321,17 @@ def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
     counts = [row for row in summaries if row["of"] == "movement"]
     if counts:
         lines = [
-            (f"thesis, {words}", str(sum(counts[0][key].values())), *(str(n) for n in counts[0][key].values()), "", "")
-            for words, key in (("as printed", "thesis_printed"), ("by its definition", "thesis_by_definition"))
+            (
+                f"thesis, {words}",
+                str(sum(counts[0][key].values())),
+                *(str(n) for n in counts[0][key].values()),
+                "",
+                "",
+            )
+            for words, key in (
+                ("as printed", "thesis_printed"),
+                ("by its definition", "thesis_by_definition"),
+            )
         ]
         for row in counts:
             volume = row["by_volume"]
@@ -395,10 +408,18 @@ def _random_table(row: Row) -> Table:
         ("same band", str(row["s"]), ""),
         ("too safe by one band or two", str(row["ts"]), ""),
         ("too safe by three", str(row["tts"]), ""),
-        ("median shortfall of free travel [voxels of the moving point]", f"{row['median_shortfall_voxels']:.2f}", "2"),
+        (
+            "median shortfall of free travel [voxels of the moving point]",
+            f"{row['median_shortfall_voxels']:.2f}",
+            "2",
+        ),
         ("90 % shortfall", f"{row['p90_shortfall_voxels']:.2f}", ""),
     ]
-    return Table(f"Random motions, {row['sensor']}, {cm(row['voxel_size_m'])}, {row['detail']}", ("", "found", "due"), lines)
+    return Table(
+        f"Random motions, {row['sensor']}, {cm(row['voxel_size_m'])}, {row['detail']}",
+        ("", "found", "due"),
+        lines,
+    )
 
 
 PART = Part("motions", "Motions", tasks, summary, show)

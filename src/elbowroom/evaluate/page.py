@@ -35,7 +35,9 @@ def page(sections: Sequence[tuple[str, Sequence[Block]]], meta: Mapping[str, Any
         f'<p class="note">Made by <code>{escape(str(meta["command"]))}</code>; commit '
         f"<code>{escape(str(meta['commit']))}</code>; {escape(str(meta['processor']))}; {escape(versions)}. "
         "Not a certified safety function.</p>",
-        "<p>" + " · ".join(f'<a href="#s{n}">{escape(title)}</a>' for n, (title, _) in enumerate(sections)) + "</p>",
+        "<p>"
+        + " · ".join(f'<a href="#s{n}">{escape(title)}</a>' for n, (title, _) in enumerate(sections))
+        + "</p>",
     ]
     for number, (title, blocks) in enumerate(sections):
         body.append(f'<h2 id="s{number}">{escape(title)}</h2>')

@@ -66,7 +66,9 @@ def judge_setup(
     rough = render(rough_cameras, moment, seed=number)
     for edge in voxel_sizes_m:
         grid = room_grid(edge)
-        case = Case(number, sensor, grid, machine, moment, true_occupancy(grid, moment), true_centres(grid, moment))
+        case = Case(
+            number, sensor, grid, machine, moment, true_occupancy(grid, moment), true_centres(grid, moment)
+        )
         seen = reconstruct(grid, exact, plain, rule="any", detail="point").free
         spaces = {}
         for noise, views, frames in ((False, exact, plain), (True, rough_cameras, rough)):
@@ -124,7 +126,13 @@ class Case:
         )
 
     def row(
-        self, space: FreeSpace, seen: NDArray[np.bool_], noise: bool, detail: str, cameras: int, lateral_px: float
+        self,
+        space: FreeSpace,
+        seen: NDArray[np.bool_],
+        noise: bool,
+        detail: str,
+        cameras: int,
+        lateral_px: float,
     ) -> dict[str, Any]:
         """Shares [%] by both measures and counts of the four cases."""
         free, truth, tally = space.free, self.truth, Tally()
@@ -199,7 +207,16 @@ def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
     blocks.append(
         Table(
             "Mean of the setups [%]; in brackets the least of them. Thesis: free 98.9, occupied 91.1 (its table: 90.4)",
-            ("sensor", "noise", "voxel", "detail", "occupied, touched", "occupied, centre", "found of seen", "free of all"),
+            (
+                "sensor",
+                "noise",
+                "voxel",
+                "detail",
+                "occupied, touched",
+                "occupied, centre",
+                "found of seen",
+                "free of all",
+            ),
             [
                 (
                     r["sensor"],
@@ -225,7 +242,12 @@ def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
                 "What the thesis' sensor trades: 64x48, 5 cm, no noise, pixel test, by how much a pixel is widened",
                 ("widened by", "occupied, touched", "least of setups", "found of seen"),
                 [
-                    (f"{r['lateral_px']:g} px", pct(r["occupied_pct"], 3), pct(r["least_occupied_pct"], 3), pct(r["found_pct"]))
+                    (
+                        f"{r['lateral_px']:g} px",
+                        pct(r["occupied_pct"], 3),
+                        pct(r["least_occupied_pct"], 3),
+                        pct(r["found_pct"]),
+                    )
                     for r in trades
                 ],
             )
@@ -250,7 +272,9 @@ def _by_setup(rows: Sequence[Row], sensor: str, edges: Sequence[float]) -> Table
                         cells.append(f"{pct(r['free_pct'], 1)} / {pct(r['occupied_pct'], 2)}")
         lines.append(cells)
     columns = [f"{cm(edge)} {detail}" for edge in edges for detail in ("point", "pixel")]
-    return Table(f"{sensor}, no noise: free of all / occupied (touched) [%]", ("setup", "thesis", *columns), lines)
+    return Table(
+        f"{sensor}, no noise: free of all / occupied (touched) [%]", ("setup", "thesis", *columns), lines
+    )
 
 
 PART = Part("reconstruction", "Reconstruction accuracy", tasks, summary, show)

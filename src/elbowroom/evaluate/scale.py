@@ -181,7 +181,11 @@ def whole_motions(machine: Machine) -> list[Motion]:
     for motion in room_motions(c_arm()):
         joint = machine.joint(motion.joint)
         factor = FACTOR if joint.kind == "prismatic" else 1.0
-        whole.append(Motion(motion.joint, motion.direction, motion.braking_distance * factor, joint.upper - joint.lower))
+        whole.append(
+            Motion(
+                motion.joint, motion.direction, motion.braking_distance * factor, joint.upper - joint.lower
+            )
+        )
     return whole
 
 
@@ -245,10 +249,23 @@ def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
         for row in rows
         if row["kind"] == "summary"
     ]
-    columns = ("noise", "voxel", "motions", "more than the truth", "that touch", "short by, median / worst [mm]", "ended at an object", "of these, median / worst [mm]")
-    blocks.append(Table("Free travel; thesis: within 5 mm; due: never more, 5 mm median, 12 mm worst", columns, lines))
+    columns = (
+        "noise",
+        "voxel",
+        "motions",
+        "more than the truth",
+        "that touch",
+        "short by, median / worst [mm]",
+        "ended at an object",
+        "of these, median / worst [mm]",
+    )
+    blocks.append(
+        Table("Free travel; thesis: within 5 mm; due: never more, 5 mm median, 12 mm worst", columns, lines)
+    )
     for png in pictures.values():
-        blocks.append(Picture(png, "Surfaces found by four Kinects: C-arm blue, table green, doctor red (Fig. 10)", 560))
+        blocks.append(
+            Picture(png, "Surfaces found by four Kinects: C-arm blue, table green, doctor red (Fig. 10)", 560)
+        )
     return blocks
 
 

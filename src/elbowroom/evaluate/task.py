@@ -42,9 +42,9 @@ class Task:
         """Does it."""
         return self.work(**self.arguments)
 
-    def fingerprint(self, commit: str) -> str:
+    def fingerprint(self, source: str) -> str:
         """The same for the same work by the same source."""
-        words = json.dumps([commit, self.part, self.name, dict(self.arguments)], sort_keys=True, default=str)
+        words = json.dumps([source, self.part, self.name, dict(self.arguments)], sort_keys=True, default=str)
         return hashlib.sha256(words.encode()).hexdigest()
 
 

@@ -26,7 +26,9 @@ TABLE_2: dict[int, tuple[float, float]] = {
 """Free and occupied by setup [%]."""
 
 
-def sensor_cameras(sensor: str, *, noise: bool | NoiseModel = False, count: int = 21) -> tuple[DepthCamera, ...]:
+def sensor_cameras(
+    sensor: str, *, noise: bool | NoiseModel = False, count: int = 21
+) -> tuple[DepthCamera, ...]:
     """The cameras along the walls.
 
     Args:

@@ -40,7 +40,11 @@ class View:
 
 
 def colour_picture(
-    solids: Sequence[Solid], view: View, *, lamp_m: tuple[float, float, float] = (-1.2, -2.6, 5.0), smooth: int = 2
+    solids: Sequence[Solid],
+    view: View,
+    *,
+    lamp_m: tuple[float, float, float] = (-1.2, -2.6, 5.0),
+    smooth: int = 2,
 ) -> Image.Image:
     """A picture of solids in their colours; what is behind them is white.
 
@@ -102,7 +106,9 @@ def _repeated(origin: NDArray[np.float64], count: int) -> NDArray[np.float32]:
     return np.ascontiguousarray(np.broadcast_to(origin.astype(np.float32), (count, 3)))
 
 
-def _openness(scene: EmbreeScene, point: NDArray[np.float64], normal: NDArray[np.float64]) -> NDArray[np.float64]:
+def _openness(
+    scene: EmbreeScene, point: NDArray[np.float64], normal: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Share of the hemisphere about each point that nothing near covers, 0 to 1."""
     random = np.random.default_rng(0)
     free = np.zeros(len(point))
@@ -148,6 +154,8 @@ def cubes(
             corner = np.zeros((6, 3))
             corner[:, [(axis + 1) % 3, (axis + 2) % 3]] = unit
             corner[:, axis] = side
-            triangles.append((grid.lower_m + (index[:, None, :] + corner) * grid.voxel_size_m).reshape(-1, 3, 3))
+            triangles.append(
+                (grid.lower_m + (index[:, None, :] + corner) * grid.voxel_size_m).reshape(-1, 3, 3)
+            )
             of_face.append(np.repeat(labels[tuple(index.T)], 2))
     return shaded(np.concatenate(triangles), colours[np.concatenate(of_face)], view, smooth=smooth)

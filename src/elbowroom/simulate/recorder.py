@@ -103,7 +103,8 @@ def _site(what: Recording, cameras: Sequence[DepthCamera]) -> dict[str, Any]:
         },
         "camera_defaults": defaults,
         "cameras": [
-            {"name": camera.name, "world_from_camera": camera.world_from_camera.tolist()} for camera in cameras
+            {"name": camera.name, "world_from_camera": camera.world_from_camera.tolist()}
+            for camera in cameras
         ],
         **machine,
         "rule": "three",

@@ -106,7 +106,9 @@ def _solids(path: Path) -> tuple[Solid, ...]:
     return solids_of_glb(path)
 
 
-def _pose(long: float = 0.0, larm_deg: float = 0.0, propeller_deg: float = 0.0, carc_deg: float = 0.0) -> dict[str, float]:
+def _pose(
+    long: float = 0.0, larm_deg: float = 0.0, propeller_deg: float = 0.0, carc_deg: float = 0.0
+) -> dict[str, float]:
     degrees = {"larm": larm_deg, "propeller": propeller_deg, "carc": carc_deg}
     return {"long": long, **{name: math.radians(value) for name, value in degrees.items()}}
 
@@ -151,7 +153,12 @@ SETUPS: tuple[Setup, ...] = (
         + _after("Long +", {}, "long", 1, "00s")
         + _after("Long -", {}, "long", -1, "00s"),
     ),
-    Setup(2, "over the patient, towards the lamp", _pose(-0.09), _steps("Long", "long", 1, 0.035, "MLts MLts MMs LLs")),
+    Setup(
+        2,
+        "over the patient, towards the lamp",
+        _pose(-0.09),
+        _steps("Long", "long", 1, 0.035, "MLts MLts MMs LLs"),
+    ),
     Setup(
         3,
         "across the table from the side",
@@ -177,6 +184,11 @@ SETUPS: tuple[Setup, ...] = (
         + _after("Long - Larm", {"long": _STEP5}, "larm", -1, "LMts")
         + _after("2 x Long - Larm", {"long": 2 * _STEP5}, "larm", -1, "MMs"),
     ),
-    Setup(6, "turned along its ring", _pose(carc_deg=16), _steps("Carc Rotation", "carc", 1, math.radians(20), "MLts SSs")),
+    Setup(
+        6,
+        "turned along its ring",
+        _pose(carc_deg=16),
+        _steps("Carc Rotation", "carc", 1, math.radians(20), "MLts SSs"),
+    ),
 )
 """All of them, with the movements that the thesis asked."""
