@@ -1,5 +1,7 @@
 """What stands and hangs in an intervention room: table, cabinets, an open shelf, monitors, lamp, drape, lines."""
 
+from itertools import pairwise
+
 import numpy as np
 from modelling import Parts, placed
 
@@ -105,7 +107,7 @@ def cabinet(name: str, lower, upper, *, doors: str) -> None:
     count = max(1, round((upper[other] - lower[other]) / 0.45))
     edges = np.linspace(lower[other] + 0.015, upper[other] - 0.015, count + 1)
     handles = Parts()
-    for k, (a, b) in enumerate(zip(edges, edges[1:], strict=False)):
+    for k, (a, b) in enumerate(pairwise(edges)):
         low, high = [0, 0, lower[2] + 0.05], [0, 0, upper[2] - 0.03]
         low[axis], high[axis] = sorted((face - 0.004 * sign, face + 0.018 * sign))
         low[other], high[other] = a + 0.004, b - 0.004

@@ -231,7 +231,7 @@ def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
     means = [row for row in rows if row["kind"] == "summary"]
     blocks: list[Block] = [Words(" ".join((__doc__ or "").split("\n\n", 1)[1].split()))]
     titles = {
-        "due": "Errors up to 1 degree and 1 cm about each axis, without margin and with the declared one; due 99.99 / 75",
+        "due": "Errors up to 1 degree and 1 cm without margin and with the declared one (due 99.99, 75)",
         "margins": "The same with other margins, on a third of the room",
         "rotation": "Turned",
         "translation": "Moved",

@@ -243,7 +243,7 @@ def _balls_table(balls: Sequence[Row]) -> Table:
             (sensor, detail, *(f"{by[s]['missed_pct']:.0f} ({by[s]['touched_free_pct']:.1f})" for s in sizes))
         )
     return Table(
-        f"Small objects at {cm(balls[0]['voxel_size_m'])}: missed [%], and in brackets touched voxels declared free [%]",
+        f"Small objects at {cm(balls[0]['voxel_size_m'])}: missed [%] (touched voxels declared free [%])",
         ("sensor", "detail", *(cm(s) for s in sizes)),
         lines,
         left=(0, 1),

@@ -252,7 +252,7 @@ def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
                 ],
             )
         )
-    words = "white: free and found; blue: free, not found; green: object, kept; red: object, declared free; grey: machine"
+    words = "white: free, found; blue: free, not found; green: object, kept; red: object, declared free; grey: machine"
     for name, png in sorted(pictures.items()):
         wide = name.endswith("section")
         blocks.append(Picture(png, f"{name.replace('-', ' ')} (5 cm). {words}", 560 if wide else 400))

@@ -7,6 +7,7 @@ shortfalls are those of the point that touches, in millimetres of the model; a v
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -59,12 +60,11 @@ def tasks(settings: Settings) -> list[Task]:
 
 def judge_pose(pose: int, voxel_size_m: float, picture: bool) -> Outcome:
     """All joints and directions from one pose, without noise and with it."""
-    machine = scaled(c_arm(), FACTOR)
-    solids = model_solids()
+    machine, solids = model_machine(), model_solids()
     truth = ExactTravel(machine, solids)
     rng = np.random.default_rng([pose, 15])
     joints = dict.fromkeys(machine.joint_names, 0.0)
-    while pose > 0 and truth.gap(joints, CLEAR_M) < CLEAR_M or not any(joints.values()) and pose > 0:
+    while pose > 0 and (not any(joints.values()) or truth.gap(joints, CLEAR_M) < CLEAR_M):
         joints = random_joints(machine, rng)
     moment = Moment(1.0, solids + link_solids(machine, joints), joints)
     grid = VoxelGrid.covering((-0.4, -0.4, 0.0), (0.4, 0.4, 0.5), voxel_size_m)
@@ -113,6 +113,12 @@ def _is_near(place: tuple[float, float, float], objects: NDArray[np.bool_], grid
     return bool(objects[low[0] : high[0], low[1] : high[1], low[2] : high[2]].any())
 
 
+@cache
+def model_machine() -> Machine:
+    """The C-arm at 1:5; always the same object, so that what is worked out for it is kept."""
+    return scaled(c_arm(), FACTOR)
+
+
 def scaled(machine: Machine, factor: float) -> Machine:
     """The same machine, smaller: lengths times a factor, angles as they are."""
 
@@ -139,6 +145,7 @@ def scaled(machine: Machine, factor: float) -> Machine:
     )
 
 
+@cache
 def model_solids() -> tuple[Solid, ...]:
     """Table and doctor of the first setup at 1:5, on the floor of a laboratory."""
     small = [
