@@ -13,6 +13,7 @@ from elbowroom.cli.evaluate_run import watched
 from elbowroom.cli.json_output import json_rows, meta
 from elbowroom.errors import InputError
 from elbowroom.evaluate.blocks import Block, Part, Table
+from elbowroom.evaluate.due import due_table
 from elbowroom.evaluate.kept import Kept, source_state
 from elbowroom.evaluate.page import page
 from elbowroom.evaluate.task import Outcome, Settings, Task
@@ -42,9 +43,12 @@ def settings(**given: Any) -> Settings:
     for sensor in given.get("sensors") or ():
         if sensor not in SENSORS:
             raise InputError(f"--sensor: {sensor!r} is unknown, allowed are {', '.join(SENSORS)}")
-    return Settings(
-        **{name: tuple(v) if isinstance(v, list) else v for name, v in given.items() if v is not None}
-    )
+    said: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else value
+        for name, value in given.items()
+        if value is not None
+    }
+    return Settings(**said)
 
 
 def run_parts(
@@ -66,11 +70,17 @@ def run_parts(
     with json_rows(json) as add:
         outcomes = _done(tasks, kept, spread)
         sections: list[tuple[str, list[Block]]] = []
+        every: list[dict[str, Any]] = []
         for part in parts:
             rows, pictures = _of_part(part, tasks, outcomes)
+            rows = [{"part": part.name, **row} for row in rows]
             for row in rows:
-                add({"part": part.name, **row})
+                add(row)
+            every += rows
             sections.append((part.title, part.show(rows, pictures)))
+    due = due_table(every)
+    if due is not None:
+        sections.insert(0, ("What was due", [due]))
     console = Console(highlight=False)
     for title, blocks in sections:
         console.print(f"\n{title}", style="bold")

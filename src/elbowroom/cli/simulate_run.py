@@ -19,9 +19,9 @@ from elbowroom.simulate import Moment, render, setup, solids_of_glb, wall_camera
 from elbowroom.simulate.inside import check_outside
 from elbowroom.simulate.machine_solids import link_solids
 from elbowroom.simulate.picture import View, colour_picture
-from elbowroom.simulate.recorder import Recording, write_recording
 from elbowroom.view.atomic import folder
 from elbowroom.view.depth import depth_picture
+from elbowroom.view.recorder import Recording, write_recording
 
 INSIDE_WALLS_M = 0.01
 """Cameras hang so far inside the box [m]."""

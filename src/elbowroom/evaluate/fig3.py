@@ -62,7 +62,7 @@ def _tile(
     free: NDArray[np.bool_], robot: NDArray[np.bool_] | None = None, hit: NDArray[np.bool_] | None = None
 ) -> Image.Image:
     """Free or blocked, the machine over it, its collisions over that."""
-    colours = np.where(free[..., None], np.uint8(FREE), np.uint8(BLOCKED))
+    colours = np.where(free[..., None], np.array(FREE), np.array(BLOCKED)).astype(np.uint8)
     for mask, colour in ((robot, ROBOT), (hit, HIT)):
         if mask is not None:
             colours[mask] = colour

@@ -1,0 +1,98 @@
+"""Writes docs/evaluation.md from benchmarks/results/evaluate_all.json: python benchmarks/render_evaluation.py
+
+That file is what `elbowroom evaluate all --out report --json benchmarks/results/evaluate_all.json` writes.
+"""
+
+import importlib
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from elbowroom.cli.evaluate_thesis_run import PARTS
+from elbowroom.evaluate.blocks import Block, Table, Words
+from elbowroom.evaluate.due import due_table
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "benchmarks" / "results" / "evaluate_all.json"
+PAGE = ROOT / "docs" / "evaluation.md"
+INTRODUCTION = """# The thesis' experiments
+
+Written by `python benchmarks/render_evaluation.py` from `benchmarks/results/evaluate_all.json`. Do not edit it by hand.
+
+The idea of this project is from a 2011 master's thesis (I. Hamersma, *Collision avoidance using multiple correlated 3D
+depth measurements*, Eindhoven). Its tables are measured again here, and its figures stand beside ours. One command
+does all of it and writes one page with the pictures:
+
+    elbowroom evaluate all --out report --json report.json
+
+`reconstruction`, `motions`, `calibration`, `scale` and `more` in place of `all` do one part. The work is cut into shares
+that do not depend on each other: `--jobs N` spreads them over processes, `--cluster tcp://HOST:PORT` over the computers
+of a Dask cluster, and the numbers are the same however they are spread. Ctrl-C keeps the shares that are done in
+`report/parts`; the same command goes on from there. It needs `pip install 'elbowroom[evaluate]'`, and `[cluster]` for
+Dask.
+
+## The six setups
+
+| | | |
+|---|---|---|
+| ![setup 1](images/setup1_colour.jpg) | ![setup 2](images/setup2_colour.jpg) | ![setup 3](images/setup3_colour.jpg) |
+| ![depth 1](images/setup1_depth.jpg) | ![depth 2](images/setup2_depth.jpg) | ![depth 3](images/setup3_depth.jpg) |
+| ![setup 4](images/setup4_colour.jpg) | ![setup 5](images/setup5_colour.jpg) | ![setup 6](images/setup6_colour.jpg) |
+| ![depth 4](images/setup4_depth.jpg) | ![depth 5](images/setup5_depth.jpg) | ![depth 6](images/setup6_depth.jpg) |
+
+Rooms after the thesis' Appendix A, with closed meshes: the C-arm, a table with a patient under a drape, a doctor, two
+nurses, a closed cabinet, an open shelf, a cart, a monitor suspension, an operating lamp, drip stands, lines and cables.
+The thesis' own models are not printed; these are ours, and so are the poses: they were chosen from exact geometry alone,
+before anything was reconstructed, so that the bands S, M, L and 0 all occur. `assets/rooms/build.py` makes them with
+Blender's Python module. Look at one with simulated cameras, or at a room of your own:
+
+    elbowroom simulate --room setup1 --out room1
+    elbowroom simulate --room my.glb --out my_room
+
+A GLB is in metres; each of its objects must be closed. The command says which object is not.
+
+21 cameras hang along the walls, at 2.4 m and 0.4 m in turn, with a field of view of 90 degrees: 640x480 with planar
+depth, or the thesis' 64x48 with radial depth. Noise, where there is any, is sigma(z) = 1.5 mm + 0.25 mm z^2 with flying
+pixels and missing returns; margins are three sigmas and half a pixel unless a table says otherwise.
+"""
+
+
+def render(results: Path = RESULTS) -> str:
+    """The page's text; without the file it says that nothing has been measured."""
+    text = [INTRODUCTION]
+    if not results.is_file():
+        return "\n".join([*text, "Not measured yet.", ""])
+    content = json.loads(results.read_text(encoding="utf-8"))
+    rows = content["rows"]
+    due = due_table(rows)
+    if due is not None:
+        text += ["## What was due", "", *_lines([due])]
+    for name in PARTS:
+        mine = [row for row in rows if row["part"] == name]
+        if mine:
+            part = importlib.import_module(f"elbowroom.evaluate.{name}").PART
+            text += [f"## {part.title}", "", *_lines(part.show(mine, {}))]
+    meta: dict[str, Any] = content["meta"]
+    text.append(f"Measured by `{meta['command']}`; commit {meta['commit']}; {meta['processor']}.")
+    return "\n".join(text) + "\n"
+
+
+def _lines(blocks: Sequence[Block]) -> list[str]:
+    """Words and tables as Markdown; pictures are for the page that the command writes."""
+    lines: list[str] = []
+    for block in blocks:
+        if isinstance(block, Words):
+            lines += [block.text, ""]
+        elif isinstance(block, Table):
+            lines += [f"**{block.title}**", "", *_table(block), ""]
+    return lines
+
+
+def _table(table: Table) -> list[str]:
+    marks = ["---" if n in table.left else "---:" for n in range(len(table.columns))]
+    return ["| " + " | ".join(line) + " |" for line in (table.columns, marks, *table.lines)]
+
+
+if __name__ == "__main__":
+    PAGE.write_text(render(), encoding="utf-8")
