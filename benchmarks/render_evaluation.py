@@ -27,8 +27,8 @@ does all of it and writes one page with the pictures:
     elbowroom evaluate all --out report --json report.json
 
 `reconstruction`, `motions`, `calibration`, `scale` and `more` in place of `all` do one part. The work is cut into shares
-that do not depend on each other: `--jobs N` spreads them over processes, `--cluster tcp://HOST:PORT` over the computers
-of a Dask cluster, and the numbers are the same however they are spread. Ctrl-C keeps the shares that are done in
+that do not depend on each other: `--jobs N` spreads them over processes, `--cluster tcp://HOST:PORT` over computers of
+a Dask cluster, and the numbers are the same however they are spread. Ctrl-C keeps the shares that are done in
 `report/parts`; the same command goes on from there. It needs `pip install 'elbowroom[evaluate]'`, and `[cluster]` for
 Dask.
 
@@ -43,7 +43,7 @@ Dask.
 
 Rooms after the thesis' Appendix A, with closed meshes: the C-arm, a table with a patient under a drape, a doctor, two
 nurses, a closed cabinet, an open shelf, a cart, a monitor suspension, an operating lamp, drip stands, lines and cables.
-The thesis' own models are not printed; these are ours, and so are the poses: they were chosen from exact geometry alone,
+The thesis' own models are not printed; these are ours, and so are the poses: chosen from exact geometry alone,
 before anything was reconstructed, so that the bands S, M, L and 0 all occur. `assets/rooms/build.py` makes them with
 Blender's Python module. Look at one with simulated cameras, or at a room of your own:
 

@@ -80,13 +80,11 @@ def _motions(rows: Sequence[Row]) -> list[tuple[str, ...]]:
 def _calibration(rows: Sequence[Row]) -> list[tuple[str, ...]]:
     lines = []
     for row in rows:
-        if row.get("part") == "calibration" and row["kind"] == "summary" and row["curve"] == "due":
-            if row["margin_share"] > 0:
-                name = "+-1 degree, +-1 cm, declared margin, 5 cm: occupied [%]"
-                lines.append(_at_least(name, "unchanged", 99.99, row["occupied_pct"], 4))
-                lines.append(
-                    _at_least("and found of what is seen [%]", "unchanged", 75.0, row["found_pct"], 2)
-                )
+        mine = row.get("part") == "calibration" and row["kind"] == "summary" and row["curve"] == "due"
+        if mine and row["margin_share"] > 0:
+            name = "+-1 degree, +-1 cm, declared margin, 5 cm: occupied [%]"
+            lines.append(_at_least(name, "unchanged", 99.99, row["occupied_pct"], 4))
+            lines.append(_at_least("and found of what is seen [%]", "unchanged", 75.0, row["found_pct"], 2))
     return lines
 
 
