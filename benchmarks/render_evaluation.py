@@ -26,11 +26,11 @@ does all of it and writes one page with the pictures:
 
     elbowroom evaluate all --out report --json report.json
 
-`reconstruction`, `motions`, `calibration`, `scale` and `more` in place of `all` do one part. The work is cut into shares
-that do not depend on each other: `--jobs N` spreads them over processes, `--cluster tcp://HOST:PORT` over computers of
-a Dask cluster, and the numbers are the same however they are spread. Ctrl-C keeps the shares that are done in
-`report/parts`; the same command goes on from there. It needs `pip install 'elbowroom[evaluate]'`, and `[cluster]` for
-Dask.
+`reconstruction`, `motions`, `calibration`, `scale` and `more` in place of `all` do one part. The work is cut into
+shares that do not depend on each other: `--jobs N` spreads them over processes, `--cluster tcp://HOST:PORT` over the
+computers of a Dask cluster, and the numbers are the same however they are spread. Ctrl-C keeps the shares that are
+done in `report/parts`; the same command goes on from there. It needs `pip install 'elbowroom[evaluate]'`, and
+`[cluster]` for Dask.
 
 ## The six setups
 

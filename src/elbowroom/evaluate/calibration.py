@@ -29,8 +29,8 @@ MARGIN = 0.75
 NEAR_M = 2.5
 """A shift across the ray is as many pixels as it is at this depth [m]."""
 VOXEL_M = 0.05
-ROTATIONS_DEG = (0.5, 1.0, 2.0, 3.0)
-TRANSLATIONS_M = (0.005, 0.01, 0.02, 0.05)
+ROTATIONS_DEG = (1.0, 2.0, 3.0)
+TRANSLATIONS_M = (0.01, 0.02, 0.05)
 SHARES = (0.25, 0.5, 1.0, 1.5)
 """Margins besides 0 and the declared one whose effect is shown."""
 THIRD = 3

@@ -51,7 +51,6 @@ VARIANTS = (
     Variant("640x480", 0.02, "pixel"),
     Variant("640x480", 0.02, "pixel", lateral_px=0.0),
     Variant("640x480", 0.02, "pixel", noise=True),
-    Variant("640x480", 0.05, "pixel"),
     Variant("64x48", 0.05, "pixel"),
     Variant("64x48", 0.05, "point"),
 )
