@@ -43,9 +43,9 @@ done in `report/parts`; the same command goes on from there. It needs `pip insta
 
 Rooms after the thesis' Appendix A, with closed meshes: the C-arm, a table with a patient under a drape, a doctor, two
 nurses, a closed cabinet, an open shelf, a cart, a monitor suspension, an operating lamp, drip stands, lines and cables.
-The thesis' own models are not printed; these are ours, and so are the poses: chosen from exact geometry alone,
-before anything was reconstructed, so that the bands S, M, L and 0 all occur. `assets/rooms/build.py` makes them with
-Blender's Python module. Look at one with simulated cameras, or at a room of your own:
+The thesis' own models are not printed; these are ours, and so are the poses: chosen by exact geometry and by the truth
+volume, so that the bands S, M, L and 0 all occur and contacts are met face on, not grazed. `assets/rooms/build.py`
+makes the rooms with Blender's Python module. Look at one with simulated cameras, or at a room of your own:
 
     elbowroom simulate --room setup1 --out room1
     elbowroom simulate --room my.glb --out my_room

@@ -50,7 +50,7 @@ def setup2() -> None:
     common(arm_out=True)
     f.cart(-1.15, -1.72, 90)
     f.monitors(1.15, -1.30, 90)
-    f.lamp(1.45, 0.85, (0.42, 0.06, 2.08))
+    f.lamp(1.45, 0.85, (0.44, 0.02, 1.99))
     f.iv_pole(0.42, 1.02, line_to=(0.30, 0.62, 1.06))
     f.stool(1.35, 0.78)
     person("doctor", Stance(0.98, -0.62, 95, 1.78, 14, (30, 66), (34, 58), 0.05, GOWN_BLUE))
@@ -67,7 +67,7 @@ def setup3() -> None:
     f.iv_pole(-0.78, -0.52, line_to=(0.22, -0.23, 1.06))
     f.stool(-1.55, 0.15)
     person("doctor", Stance(0.75, 0.66, -100, 1.80, 10, (30, 60), (36, 64), 0.04, GOWN_BLUE))
-    person("nurse 1", Stance(0.66, -1.18, 165, 1.68, 3, (18, 60), (14, 72), 0.03, GOWN_GREEN))
+    person("nurse 1", Stance(0.68, -0.99, 180, 1.68, 3, (22, 66), (14, 40), 0.03, GOWN_GREEN))
     person("nurse 2", Stance(-1.10, 0.62, -60, 1.72, 5, (25, 50), (10, 20), 0.04, GOWN_TEAL))
 
 

@@ -1,11 +1,13 @@
 """Draws each setup in colour, and what one of its cameras measures: python docs/images/setups.py"""
 
+import sys
 from pathlib import Path
 
 from PIL import Image
 
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.simulate import SETUPS, render, wall_cameras
+from elbowroom.simulate import setup as setup_of
 from elbowroom.simulate.picture import View, colour_picture
 from elbowroom.view.depth import depth_picture
 
@@ -20,7 +22,7 @@ def main() -> None:
     """Two pictures a setup."""
     machine = ceiling_c_arm()
     cameras = wall_cameras(21, (2.4, 0.4), height=480)
-    for setup in SETUPS:
+    for setup in SETUPS if len(sys.argv) == 1 else [setup_of(name) for name in sys.argv[1:]]:
         moment = setup.at(machine)
         shown = [solid for solid in moment.solids if solid.name not in HIDDEN]
         colour = colour_picture(shown, VIEW)

@@ -1,7 +1,8 @@
 """The thesis' six setups: rooms as GLB beside this file, the C-arm's pose in each, and the 35 movements asked there.
 
 Rooms after Appendix A of Hamersma 2011, movements after its Appendices B and C. The thesis prints no poses; these were
-chosen, from exact geometry alone, so that its bands S, M, L and 0 all occur.
+chosen, by exact geometry and the volume of true voxels, so that its bands S, M, L and 0 all occur and contacts are met
+face on, not grazed.
 """
 
 import math
@@ -162,7 +163,7 @@ SETUPS: tuple[Setup, ...] = (
     Setup(
         3,
         "across the table from the side",
-        _pose(-0.1715, larm_deg=90),
+        _pose(-0.1995, larm_deg=90),
         _steps("Long", "long", 1, 0.0485, "00s LLs LLs MMs SSs"),
     ),
     Setup(
@@ -175,7 +176,7 @@ SETUPS: tuple[Setup, ...] = (
     Setup(
         5,
         "among thin things: hose, drip stand, lines",
-        _pose(0.065, larm_deg=-12, propeller_deg=8),
+        _pose(0.065, larm_deg=-12, propeller_deg=10),
         _steps("Long", "long", 1, _STEP5, "LLs LLs MMs")
         + _after("Prop", {}, "propeller", 1, "LLs")
         + _after("Long - Prop", {"long": _STEP5}, "propeller", 1, "MLu")
