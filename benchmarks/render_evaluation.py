@@ -1,6 +1,7 @@
-"""Writes docs/evaluation.md from benchmarks/results/evaluate_all.json: python benchmarks/render_evaluation.py
+"""Writes docs/evaluation.md from the results: python benchmarks/render_evaluation.py
 
-That file is what `elbowroom evaluate all --out report --json benchmarks/results/evaluate_all.json` writes.
+They are what `elbowroom evaluate all --out report --json benchmarks/results/evaluate_all.json` writes. Where a part
+was measured again by itself, `evaluate_motions.json` and so on go before it; remove them after measuring all again.
 """
 
 import importlib
@@ -14,11 +15,11 @@ from elbowroom.evaluate.blocks import Block, Table, Words
 from elbowroom.evaluate.due import due_table
 
 ROOT = Path(__file__).resolve().parents[1]
-RESULTS = ROOT / "benchmarks" / "results" / "evaluate_all.json"
+RESULTS = ROOT / "benchmarks" / "results"
 PAGE = ROOT / "docs" / "evaluation.md"
 INTRODUCTION = """# The thesis' experiments
 
-Written by `python benchmarks/render_evaluation.py` from `benchmarks/results/evaluate_all.json`. Do not edit it by hand.
+Written by `python benchmarks/render_evaluation.py` from `benchmarks/results`. Do not edit it by hand.
 
 The idea of this project is from a 2011 master's thesis (I. Hamersma, *Collision avoidance using multiple correlated 3D
 depth measurements*, Eindhoven). Its tables are measured again here, and its figures stand beside ours. One command
@@ -59,23 +60,33 @@ pixels and missing returns; margins are three sigmas and half a pixel unless a t
 
 
 def render(results: Path = RESULTS) -> str:
-    """The page's text; without the file it says that nothing has been measured."""
+    """The page's text; what has no file is said not to be measured."""
     text = [INTRODUCTION]
-    if not results.is_file():
-        return "\n".join([*text, "Not measured yet.", ""])
-    content = json.loads(results.read_text(encoding="utf-8"))
-    rows = content["rows"]
-    due = due_table(rows)
+    measured = {name: found for name in PARTS if (found := _measured(results, name)) is not None}
+    due = due_table([row for rows, _ in measured.values() for row in rows])
     if due is not None:
         text += ["## What was due", "", *_lines([due])]
     for name in PARTS:
-        mine = [row for row in rows if row["part"] == name]
-        if mine:
-            part = importlib.import_module(f"elbowroom.evaluate.{name}").PART
-            text += [f"## {part.title}", "", *_lines(part.show(mine, {}))]
-    meta: dict[str, Any] = content["meta"]
-    text.append(f"Measured by `{meta['command']}`; commit {meta['commit']}; {meta['processor']}.")
-    return "\n".join(text) + "\n"
+        part = importlib.import_module(f"elbowroom.evaluate.{name}").PART
+        text += [f"## {part.title}", ""]
+        if name not in measured:
+            text += ["Not measured yet.", ""]
+            continue
+        rows, meta = measured[name]
+        text += _lines(part.show(rows, {}))
+        text += [f"Measured by `{meta['command']}`; commit {meta['commit']}; {meta['processor']}.", ""]
+    return "\n".join(text).rstrip() + "\n"
+
+
+def _measured(results: Path, name: str) -> tuple[list[dict[str, Any]], dict[str, Any]] | None:
+    """Rows and meta of a part: of its own file, or of the file of all parts."""
+    for path in (results / f"evaluate_{name}.json", results / "evaluate_all.json"):
+        if path.is_file():
+            content = json.loads(path.read_text(encoding="utf-8"))
+            rows = [row for row in content["rows"] if row["part"] == name]
+            if rows:
+                return rows, content["meta"]
+    return None
 
 
 def _lines(blocks: Sequence[Block]) -> list[str]:
