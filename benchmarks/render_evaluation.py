@@ -2,21 +2,39 @@
 
 They are what `elbowroom evaluate all --out report --json benchmarks/results/evaluate_all.json` writes. Where a part
 was measured again by itself, `evaluate_motions.json` and so on go before it; remove them after measuring all again.
+With the folder of the report as an argument, the pictures that the page shows are taken from there, too.
 """
 
+import base64
 import importlib
 import json
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from elbowroom.cli.evaluate_thesis_run import PARTS
-from elbowroom.evaluate.blocks import Block, Table, Words
+from elbowroom.evaluate.blocks import Block, Picture, Table, Words
 from elbowroom.evaluate.due import due_table
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results"
 PAGE = ROOT / "docs" / "evaluation.md"
+IMAGES = ROOT / "docs" / "images"
+SHOWN = {
+    "reconstruction": {
+        "reconstruction.setup3-640x480": ("cases-640x480-setup3-cubes", "cases-640x480-setup3-section"),
+    },
+    "scale": {"scale.pose0": ("scale-model",)},
+    "more": {"more.fig3": ("fig3",)},
+}
+"""Pictures of the report that the page shows: by part, the share of the work that drew them, and their names."""
+CAPTIONS = {
+    "cases-640x480-setup3-cubes": "Setup 3, 640x480, 5 cm: white free, blue free but not found, green objects",
+    "cases-640x480-setup3-section": "The thesis' point test and the pixel test; red: objects declared free",
+    "scale-model": "Surfaces found by four Kinects: C-arm blue, table green, doctor red",
+    "fig3": "The thesis' Fig. 3, made by the program",
+}
 INTRODUCTION = """# The thesis' experiments
 
 Written by `python benchmarks/render_evaluation.py` from `benchmarks/results`. Do not edit it by hand.
@@ -73,7 +91,9 @@ def render(results: Path = RESULTS) -> str:
             text += ["Not measured yet.", ""]
             continue
         rows, meta = measured[name]
-        text += _lines(part.show(rows, {}))
+        text += _lines(part.show(rows, {}), name)
+        names = [picture for of_share in SHOWN.get(name, {}).values() for picture in of_share]
+        text += [f"![{CAPTIONS[n]}](images/evaluation_{n}.png)\n" for n in names if _image(n).is_file()]
         text += [f"Measured by `{meta['command']}`; commit {meta['commit']}; {meta['processor']}.", ""]
     return "\n".join(text).rstrip() + "\n"
 
@@ -89,14 +109,38 @@ def _measured(results: Path, name: str) -> tuple[list[dict[str, Any]], dict[str,
     return None
 
 
-def _lines(blocks: Sequence[Block]) -> list[str]:
-    """Words and tables as Markdown; pictures are for the page that the command writes."""
+def _image(name: str) -> Path:
+    return IMAGES / f"evaluation_{name}.png"
+
+
+def draw(results: Path, report: Path | None) -> None:
+    """Writes the charts, which come from the results, and takes pictures out of a report's folder."""
+    for name in PARTS:
+        measured = _measured(results, name)
+        if measured is None:
+            continue
+        part = importlib.import_module(f"elbowroom.evaluate.{name}").PART
+        charts = [block for block in part.show(measured[0], {}) if isinstance(block, Picture)]
+        for number, chart in enumerate(charts):
+            (IMAGES / f"evaluation_{name}_{number}.svg").write_bytes(chart.png)
+        for share, names in SHOWN.get(name, {}).items() if report else ():
+            kept = json.loads((report / "parts" / f"{share}.json").read_text(encoding="utf-8"))
+            for picture in names:
+                _image(picture).write_bytes(base64.b64decode(kept["pictures"][picture]))
+
+
+def _lines(blocks: Sequence[Block], part: str = "") -> list[str]:
+    """Words, tables and charts as Markdown."""
     lines: list[str] = []
+    charts = 0
     for block in blocks:
         if isinstance(block, Words):
             lines += [block.text, ""]
         elif isinstance(block, Table):
             lines += [f"**{block.title}**", "", *_table(block), ""]
+        elif isinstance(block, Picture):
+            lines += [f"![{block.caption}](images/evaluation_{part}_{charts}.svg)", ""]
+            charts += 1
     return lines
 
 
@@ -106,4 +150,5 @@ def _table(table: Table) -> list[str]:
 
 
 if __name__ == "__main__":
+    draw(RESULTS, Path(sys.argv[1]) if len(sys.argv) > 1 else None)
     PAGE.write_text(render(), encoding="utf-8")

@@ -1,6 +1,7 @@
 """The report: one HTML file that needs nothing else, no script and no network."""
 
 import base64
+import re
 from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
@@ -50,7 +51,7 @@ def page(sections: Sequence[tuple[str, Sequence[Block]]], meta: Mapping[str, Any
 
 def _block(block: Block) -> str:
     if isinstance(block, Words):
-        return f"<p>{escape(block.text)}</p>"
+        return "<p>" + re.sub(r"\*(\w[^*]*)\*", r"<i>\1</i>", escape(block.text)).replace("`", "") + "</p>"
     if isinstance(block, Table):
         return _table(block)
     return _picture(block)
