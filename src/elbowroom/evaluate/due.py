@@ -44,7 +44,7 @@ def _reconstruction(rows: Sequence[Row]) -> list[tuple[str, ...]]:
             lines.append(
                 _at_least(name, "98.9 of all", least, row["found_pct"], 2, f"{pct(row['free_pct'])} of all")
             )
-    trades = [r for r in rows if r["kind"] == "summary" and r.get("of") == "trade"]
+    trades = [r for r in rows if r.get("kind") == "summary" and r.get("of") == "trade"]
     both = [r for r in trades if r["occupied_pct"] >= 98.5] or trades
     for row in sorted(both, key=lambda r: -float(r["found_pct"]))[:1]:
         words = f"pixels widened by {row['lateral_px']:g} px"
@@ -62,7 +62,7 @@ def _reconstruction(rows: Sequence[Row]) -> list[tuple[str, ...]]:
 
 def _motions(rows: Sequence[Row]) -> list[tuple[str, ...]]:
     lines = []
-    summaries = [r for r in rows if r["kind"] == "summary" and r.get("part") == "motions"]
+    summaries = [r for r in rows if r.get("kind") == "summary" and r.get("part") == "motions"]
     for row in [r for r in summaries if r["of"] == "movement"][:1]:
         right = 31 * row["movements"] / 35
         of = f"of {row['movements']}"
@@ -80,7 +80,7 @@ def _motions(rows: Sequence[Row]) -> list[tuple[str, ...]]:
 def _calibration(rows: Sequence[Row]) -> list[tuple[str, ...]]:
     lines = []
     for row in rows:
-        mine = row.get("part") == "calibration" and row["kind"] == "summary" and row["curve"] == "due"
+        mine = row.get("part") == "calibration" and row.get("kind") == "summary" and row["curve"] == "due"
         if mine and row["margin_share"] > 0:
             name = "+-1 degree, +-1 cm, declared margin, 5 cm: occupied [%]"
             lines.append(_at_least(name, "unchanged", 99.99, row["occupied_pct"], 4))
@@ -91,7 +91,7 @@ def _calibration(rows: Sequence[Row]) -> list[tuple[str, ...]]:
 def _scale(rows: Sequence[Row]) -> list[tuple[str, ...]]:
     lines = []
     for row in rows:
-        if row.get("part") == "scale" and row["kind"] == "summary" and row["noise"]:
+        if row.get("part") == "scale" and row.get("kind") == "summary" and row["noise"]:
             lines.append(_at_most("scale model, noise: more than the truth", "", 0, row["more_than_truth"]))
             for key, words, most in (
                 ("median", "short by, median [mm]", 5),
@@ -102,11 +102,11 @@ def _scale(rows: Sequence[Row]) -> list[tuple[str, ...]]:
 
 
 def _own(rows: Sequence[Row], sensor: str, noise: bool, edge: float, detail: str) -> list[Row]:
-    return [r for r in rows if r["kind"] == "reconstruction" and _is(r, sensor, noise, edge, detail)]
+    return [r for r in rows if r.get("kind") == "reconstruction" and _is(r, sensor, noise, edge, detail)]
 
 
 def _means(rows: Sequence[Row], sensor: str, noise: bool, edge: float, detail: str) -> list[Row]:
-    of = [r for r in rows if r["kind"] == "summary" and r.get("of") == "reconstruction"]
+    of = [r for r in rows if r.get("kind") == "summary" and r.get("of") == "reconstruction"]
     return [r for r in of if _is(r, sensor, noise, edge, detail)]
 
 
