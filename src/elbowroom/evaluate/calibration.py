@@ -1,8 +1,8 @@
 """Calibration error (thesis 6.1.2): cameras that are not quite where they are said to be.
 
 Each camera's said pose is turned about its own three axes by angles drawn evenly from +-a, and moved along the world's
-axes by lengths drawn evenly from +-b. The *declared margin* for errors up to a and b is three quarters of them: pixels are
-widened by f a + f b / 2.5 m, and depth is trusted to b + a z. The curves look at a fixed third of the room.
+axes by lengths drawn evenly from +-b. The *declared margin* for errors up to a and b is three quarters of them: pixels
+are widened by f a + f b / 2.5 m, and depth is trusted to b + a z. The curves look at a fixed third of the room.
 """
 
 from collections.abc import Mapping, Sequence
