@@ -168,3 +168,9 @@ def test_every_kernel_is_named_where_borders_and_types_are_checked() -> None:
 def test_pictures_are_light() -> None:
     for picture in (PROJECT / "docs" / "images").iterdir():
         assert picture.stat().st_size <= 300_000, picture.name
+
+
+def test_page_of_the_experiments_is_what_the_results_say() -> None:
+    rendered = runpy.run_path(str(PROJECT / "benchmarks" / "render_evaluation.py"))["render"]()
+    page = (PROJECT / "docs" / "evaluation.md").read_text(encoding="utf-8")
+    assert page == rendered, "run: python benchmarks/render_evaluation.py"

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from rich.console import Console
 from rich.progress import (
@@ -19,6 +19,7 @@ from elbowroom.cli.json_output import json_rows
 from elbowroom.errors import InputError
 
 Row = Mapping[str, Any]
+Item = TypeVar("Item")
 
 
 def run_room(voxel_sizes_m: tuple[float, ...], cameras: int, size: str, json: Path | None) -> None:
@@ -177,7 +178,7 @@ def _run(
     rows: list[Row] = []
     try:
         with json_rows(json) as add:
-            for row in _watched(what, found, total):
+            for row in watched(what, found, total):
                 add(row)
                 rows.append(row)
             for row in summary(rows):
@@ -190,7 +191,7 @@ def _run(
     show(rows)
 
 
-def _watched(what: str, rows: Iterable[Row], total: int) -> Iterable[Row]:
+def watched(what: str, rows: Iterable[Item], total: int) -> Iterable[Item]:
     """The rows, with a bar on a terminal."""
     columns = (
         TextColumn("{task.description}"),
