@@ -18,6 +18,7 @@ PACKAGES = [
     "elbowroom.motion",
     "elbowroom.site",
     "elbowroom.monitor",
+    "elbowroom.placement",
     "elbowroom.simulate",
     "elbowroom.view",
 ]

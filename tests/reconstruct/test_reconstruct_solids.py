@@ -1,5 +1,7 @@
 """What the cameras can resolve is never free: balls of at least three pixel pitches radius at their range."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,6 +10,7 @@ from hypothesis import strategies as st
 from elbowroom.geometry import VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct import reconstruct
+from elbowroom.sensing import DepthFrame
 from reference import reconstruct_scenes as scenes
 
 SAGITTA_PX = 0.1
@@ -43,6 +46,24 @@ def test_no_voxel_touched_by_a_resolved_solid_is_free(rule, seed):
     focal = min(min(camera.intrinsics.fx, camera.intrinsics.fy) for camera in cameras)
     margin = Margin(range_linear=SAGITTA_PX / focal)
     space = reconstruct(grid, cameras, frames, rule=rule, detail="footprint", margin=margin)
+    assert not (space.free & scenes.touched(grid, scene)).any()
+
+
+@pytest.mark.parametrize("detail", ["footprint", "pixel"])
+@settings(deadline=None, derandomize=True, max_examples=40)
+@given(seed=st.integers(0, 10**6), lost=st.sampled_from([0.0, 0.02, 0.2]))
+def test_specks_that_are_passed_over_hide_no_resolved_solid(detail, seed, lost):
+    grid, cameras, scene = room_of_balls(seed)
+    cameras = [replace(camera, flying_pixels=True) for camera in cameras]
+    rng = np.random.default_rng(seed)
+    frames = []
+    for camera in cameras:
+        depth = scenes.frame_of(camera, scene).depth_m.copy()
+        depth[rng.random(depth.shape) < lost] = 0
+        frames.append(DepthFrame(camera.name, 0, depth))
+    focal = min(min(camera.intrinsics.fx, camera.intrinsics.fy) for camera in cameras)
+    margin = Margin(range_linear=SAGITTA_PX / focal)
+    space = reconstruct(grid, cameras, frames, rule="any", detail=detail, margin=margin)
     assert not (space.free & scenes.touched(grid, scene)).any()
 
 

@@ -96,8 +96,8 @@ POSE = np.eye(4).tolist()
         (["recording"], {"folder": "x"}, "allowed: a key layout with folder, stampless, seven_scenes"),
         (["recording"], {"layout": "folder"}, "recording.folder: missing"),
         (["recording"], {"layout": "folder", "folder": "x", "age": 1}, "recording.age: unknown key, allowed: layout"),
-        (["recording"], {"layout": "seven_scenes", "folder": "x"}, "no list of cameras where simulated or layout"),
-        (["simulated"], {}, "no list of cameras where simulated or layout seven_scenes brings its own"),
+        (["recording"], {"layout": "seven_scenes", "folder": "x"}, "no list of cameras where layout seven_scenes"),
+        (["simulated"], {"cameras": 3}, "a list of cameras, or simulated.cameras, which makes them along the walls"),
     ],
 )  # fmt: skip
 def test_one_wrong_value_is_one_line(folder, plain, keys, value, expected):

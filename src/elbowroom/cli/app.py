@@ -6,9 +6,11 @@ import typer
 
 from elbowroom.cli.bench import bench
 from elbowroom.cli.check import check
-from elbowroom.cli.evaluate import evaluate_app
+from elbowroom.cli.evaluate_thesis import evaluate_app
 from elbowroom.cli.monitor import monitor
+from elbowroom.cli.placement import placement_app
 from elbowroom.cli.reconstruct import reconstruct
+from elbowroom.cli.simulate import simulate
 from elbowroom.cli.site import site_app
 
 app = typer.Typer(
@@ -39,8 +41,15 @@ app.command(
     )
 )(reconstruct)
 app.command(epilog=_example("elbowroom check my_room.yaml --joint larm --direction +"))(check)
+app.command(
+    epilog=_example(
+        "elbowroom simulate --room setup1 --out room1",
+        "elbowroom simulate --room my.glb --out my_room --noise tof --joints long=0.1",
+    )
+)(simulate)
 app.command(epilog=_example("elbowroom bench --json bench.json"))(bench)
 app.add_typer(evaluate_app, name="evaluate")
+app.add_typer(placement_app, name="placement")
 app.add_typer(site_app, name="site")
 
 

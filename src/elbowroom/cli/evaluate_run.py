@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from rich.console import Console
 from rich.progress import (
@@ -21,6 +21,7 @@ from elbowroom.errors import InputError
 Row = Mapping[str, Any]
 Rows = Sequence[Row]
 Show = Callable[[Rows], None]
+Item = TypeVar("Item")
 MOTIONS = 8
 """Four joints of the C-arm in two directions."""
 
@@ -149,7 +150,7 @@ def _run(
     rows: list[Row] = []
     try:
         with json_rows(json) as add:
-            for row in _watched(what, found, total):
+            for row in watched(what, found, total):
                 add(lean(row) if summary else row)
                 rows.append(row)
             shown = summary(rows) if summary else rows
@@ -163,7 +164,7 @@ def _run(
     show(shown)
 
 
-def _watched(what: str, rows: Iterable[Row], total: int) -> Iterable[Row]:
+def watched(what: str, rows: Iterable[Item], total: int) -> Iterable[Item]:
     """The rows, with a bar on a terminal."""
     columns = (
         TextColumn("{task.description}"),

@@ -123,12 +123,19 @@ def open_room(
     if site.simulated is not None:
         from elbowroom.simulate import wall_cameras
 
-        settings = site.simulated_cameras()
-        if cameras is not None:
-            settings["count"] = cameras
-        if resolution is not None:
-            settings["width"], settings["height"] = resolution
-        made = wall_cameras(**settings)
+        if not site.lists_cameras:
+            settings = site.simulated_cameras()
+            if cameras is not None:
+                settings["count"] = cameras
+            if resolution is not None:
+                settings["width"], settings["height"] = resolution
+            made = wall_cameras(**settings)
+        elif cameras is not None or resolution is not None:
+            raise InputError(
+                f"{site.path}: lists its cameras; --cameras and --resolution do not go with that"
+            )
+        else:
+            made = site.cameras()
         seed = site.simulated.seed
         scenes: Callable[[], Iterator[Scene]] = lambda: _simulated(made, machine, joints, seed)  # noqa: E731
     else:

@@ -66,7 +66,7 @@ def cameras_of(site: "Site") -> "tuple[DepthCamera, ...]":
     Raises:
         SiteError: a camera that none can be.
     """
-    if site.simulated is None:
+    if site.simulated is None or site.lists_cameras:
         return site.cameras()
     from elbowroom.simulate.cameras import wall_cameras
 

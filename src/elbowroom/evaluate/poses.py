@@ -12,6 +12,12 @@ from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.carve import Detail
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
 
+COMPARED = (
+    *("joint", "direction", "level", "cause", "free_travel", "free_travel_unit"),
+    *("true_level", "true_travel", "truly_clear", "milder"),
+)
+"""What is kept of a comparison; joints, places and solids follow from seed and number of the pose."""
+
 
 def poses_rows(
     voxel_size_m: float = 0.02,
@@ -59,7 +65,7 @@ def poses_rows(
         )
         verdicts = check_motions(space, room.machine, moment.joints, motions)
         for motion, verdict in zip(motions, verdicts, strict=True):
-            compared = Comparison(motion, verdict, truth.until_contact(moment.joints, motion))
+            compared = Comparison(motion, verdict, truth.until_contact(moment.joints, motion)).row()
             yield {
                 "kind": "verdict",
                 "pose": pose,
@@ -70,7 +76,7 @@ def poses_rows(
                 "width": views[0].width,
                 "height": views[0].height,
                 "heights_m": list(heights_m),
-                **compared.row(),
+                **{name: compared[name] for name in COMPARED},
             }
 
 

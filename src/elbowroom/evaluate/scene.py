@@ -87,15 +87,22 @@ class Comparison:
 
     def row(self) -> dict[str, object]:
         """The verdict, the truth, and how they compare; travels in `free_travel_unit`."""
+        place = self.verdict.place_in_world
         return {
             "joint": self.motion.joint,
             "direction": "-+"[self.motion.direction > 0],
             "level": self.verdict.level.name.lower(),
+            "band": self.verdict.band,
             "cause": self.verdict.cause.name.lower(),
             "free_travel": self.verdict.free_travel,
             "free_travel_unit": self.verdict.free_travel_unit,
+            "link": self.verdict.link,
+            "place_m": place,
             "true_level": self.true_level.name.lower(),
+            "true_band": self.true_level.band,
             "true_travel": self.contact.travel,
+            "true_link": self.contact.link,
+            "true_solid": self.contact.solid,
             "truly_clear": self.truly_clear,
             "milder": self.milder,
         }

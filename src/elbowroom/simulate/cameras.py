@@ -27,7 +27,8 @@ def wall_cameras(
     size: str = "vga",
     depth_kind: DepthKind | None = None,
     aim_m: float = 1.1,
-    half_side_m: float = 1.99,
+    half_side_m: float | tuple[float, float] = 1.99,
+    centre_m: tuple[float, float] = (0.0, 0.0),
     noise: NoiseModel | None = None,
     min_depth_m: float = 0.0,
     max_depth_m: float = math.inf,
@@ -46,7 +47,9 @@ def wall_cameras(
         aim_m: height at which the optical axis meets the room's middle axis [m]. Of aims from 0.7 to 2.2 m,
             1.1 m finds most of an empty room of 4 x 4 x 2.5 m: each part is in view of seven of 21 or three
             of eight VGA cameras at least.
-        half_side_m: distance of the cameras from the middle planes of the room: just inside its walls [m].
+        half_side_m: distance of the cameras from the middle planes of the room: just inside its walls; two where
+            it is longer in x than in y or the other way round [m].
+        centre_m: the room's middle, x and y [m].
         noise: sensor noise; None: exact.
         min_depth_m, max_depth_m: range of the sensor [m].
 
@@ -73,14 +76,20 @@ def wall_cameras(
     focal_px = width / 2 / math.tan(math.radians(hfov_deg) / 2)
     intrinsics = Intrinsics(fx=focal_px, fy=focal_px, cx=(width - 1) / 2, cy=(height - 1) / 2)
     digits = max(2, len(str(count - 1)))
+    half_x, half_y = (half_side_m, half_side_m) if isinstance(half_side_m, int | float) else half_side_m
+    places = [_along_walls(number / count) for number in range(count)]
     return tuple(
         DepthCamera(
             name=f"cam{number:0{digits}d}",
             width=width,
             height=height,
             world_from_camera=looking_at(
-                (*_along_walls(number / count, half_side_m), heights[number % len(heights)]),
-                (0.0, 0.0, aim_m),
+                (
+                    centre_m[0] + half_x * places[number][0],
+                    centre_m[1] + half_y * places[number][1],
+                    heights[number % len(heights)],
+                ),
+                (*centre_m, aim_m),
             ),
             intrinsics=intrinsics,
             depth_kind=depth_kind or usual_kind,
@@ -92,9 +101,8 @@ def wall_cameras(
     )
 
 
-def _along_walls(share: float, half_side_m: float) -> tuple[float, float]:
-    """The place (x, y) at a share of the way round the walls, from the middle of the wall at +x [m]."""
+def _along_walls(share: float) -> tuple[float, float]:
+    """The place (x, y) at a share of the way round the walls, from the middle of the wall at +x; walls at +-1."""
     way = (share * 8 + 1) % 8
     wall, along = int(way // 2), way % 2 - 1
-    x, y = ((1.0, along), (-along, 1.0), (-1.0, -along), (along, -1.0))[wall]
-    return x * half_side_m, y * half_side_m
+    return ((1.0, along), (-along, 1.0), (-1.0, -along), (along, -1.0))[wall]

@@ -61,6 +61,7 @@ class Solid:
         is_machine: part of the machine that is supervised.
         is_static: never moves; such solids are the same objects in every moment of a room.
         is_dark: reflects little, so that a sensor often gets no return from it.
+        colour: red, green, blue for pictures, 0 to 1, linear; None: grey.
     """
 
     name: str
@@ -69,6 +70,7 @@ class Solid:
     is_machine: bool = False
     is_static: bool = False
     is_dark: bool = False
+    colour: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         pose = np.array(self.world_from_solid, dtype=np.float64)

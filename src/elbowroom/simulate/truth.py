@@ -56,6 +56,24 @@ def _static_occupancy(grid: VoxelGrid, solids: tuple[Solid, ...]) -> NDArray[np.
     return occupied
 
 
+def true_centres(grid: VoxelGrid, moment: Moment, *, threads: int | None = None) -> NDArray[np.bool_]:
+    """Every voxel whose centre lies in a solid that is not the machine: the milder measure beside `true_occupancy`.
+
+    Args:
+        grid: the watched box.
+        moment: the solids.
+        threads: None: one a core.
+
+    Returns:
+        bool, shape of the grid, index order x, y, z.
+    """
+    solids = tuple(solid for solid in moment.solids if not solid.is_machine)
+    inside = np.zeros(grid.shape, dtype=np.bool_)
+    for corner, part in spread(lambda solid: touched_by(grid, solid, surface=False), solids, threads):
+        _add(inside, corner, part)
+    return inside
+
+
 Touched = tuple[NDArray[np.int64], NDArray[np.bool_]]
 """Index of the first voxel of a part of the grid, and that part."""
 
@@ -64,10 +82,10 @@ def _touch_all(grid: VoxelGrid, solids: tuple[Solid, ...], threads: int | None) 
     return spread(lambda solid: touched_by(grid, solid), solids, threads)
 
 
-def touched_by(grid: VoxelGrid, solid: Solid) -> Touched:
+def touched_by(grid: VoxelGrid, solid: Solid, *, surface: bool = True) -> Touched:
     """The part of the grid about one solid: its first index, shape (3,), and which of its voxels are touched.
 
-    The part is empty where the solid lies outside the grid.
+    The part is empty where the solid lies outside the grid. With `surface` False only voxels whose centre is inside.
     """
     vertices = solid.vertices_in_world
     edge, origin, shape = grid.voxel_size_m, grid.lower_m, np.array(grid.shape)
@@ -77,7 +95,8 @@ def touched_by(grid: VoxelGrid, solid: Solid) -> Touched:
     if touched.size:
         triangles = vertices[solid.mesh.faces]
         lower = origin + first * edge
-        kernels.touch_surface(triangles, lower, edge, SHRINK_M, touched)
+        if surface:
+            kernels.touch_surface(triangles, lower, edge, SHRINK_M, touched)
         kernels.fill_inside(triangles, lower, edge, touched)
     return first, touched
 

@@ -10,7 +10,9 @@ from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Number, Point, Positive, Text, Whole
 from elbowroom.site.machine_entry import JointEntry, MachineEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory
+from elbowroom.site.placement_entry import PlacementEntry
 from elbowroom.site.recording_entry import RecordingEntry, SevenScenes
+from elbowroom.site.room_entry import RoomEntry
 
 Fov = Annotated[Number, Field(gt=10, lt=170)]
 
@@ -81,6 +83,8 @@ class SimulatedEntry(Entry):
         }
 
 
+EVEN_SETTINGS = ("cameras", "camera_height_m", "resolution", "field_of_view_deg")
+"""What `simulated` says of the cameras that it makes, unless the site lists its own."""
 SIMULATED_SETTINGS = ("depth_kind", "noise", "min_depth_m", "max_depth_m")
 """What `camera_defaults` may say of simulated cameras."""
 
@@ -100,6 +104,8 @@ class SiteEntry(Entry):
     max_frame_age_ms: Positive | None = None
     recording: RecordingEntry | None = None
     simulated: SimulatedEntry | None = None
+    room: RoomEntry | None = None
+    placement: PlacementEntry | None = None
 
     @model_validator(mode="after")
     def _fits_together(self) -> "SiteEntry":
@@ -108,13 +114,21 @@ class SiteEntry(Entry):
         if doubled:
             raise ValueError(f"each camera a name of its own; {', '.join(doubled)} is there more than once")
         brings_cameras = self.simulated is not None or isinstance(self.recording, SevenScenes)
-        if brings_cameras and self.cameras:
-            raise ValueError("no list of cameras where simulated or layout seven_scenes brings its own")
-        if not brings_cameras and not self.cameras:
+        if isinstance(self.recording, SevenScenes) and self.cameras:
+            raise ValueError("no list of cameras where layout seven_scenes brings its own")
+        if not brings_cameras and not self.cameras and self.placement is None:
             raise ValueError("at least one camera, or simulated, or a recording of layout seven_scenes")
+        if self.simulated is not None and self.cameras:
+            own = sorted(self.simulated.model_fields_set & set(EVEN_SETTINGS))
+            if own:
+                raise ValueError(
+                    f"a list of cameras, or simulated.{own[0]}, which makes them along the walls; not both"
+                )
+        if self.simulated is not None and self.room is not None:
+            raise ValueError("no key room where the room is simulated: it brings its walls and furniture")
         if self.simulated is not None and self.recording is not None:
             raise ValueError("either simulated or recording, not both")
-        if self.simulated is not None:
+        if self.simulated is not None and not self.cameras:
             beyond = sorted(self.camera_defaults.model_fields_set - set(SIMULATED_SETTINGS))
             if beyond:
                 raise ValueError(

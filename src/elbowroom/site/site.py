@@ -26,6 +26,8 @@ from elbowroom.site.yaml_file import read_yaml
 
 SIMULATED_ROOM = Path(__file__).with_name("simulated_room.yaml")
 """The site file of the simulated intervention room, shipped with the package."""
+THESIS_ROOM = Path(__file__).with_name("thesis_room.yaml")
+"""The site file of the thesis' room, without cameras: where placements are tried."""
 NEW_SITE = Path(__file__).with_name("new_site.yaml")
 """A commented, valid site file to start from."""
 DEFAULT_EXPLAIN_TOLERANCE_M = 0.01
@@ -127,20 +129,30 @@ class Site:
         """All cameras, in the order of the file; for layout `seven_scenes` one per frame that it takes.
 
         Raises:
-            SiteError: a camera that none can be, or a file of it that is not usable; or the room is
-                simulated, whose cameras the simulator makes (`simulated_cameras`).
+            SiteError: a camera that none can be, or a file of it that is not usable; there are none yet; or the
+                simulator makes them (`simulated_cameras`).
         """
         return self._cameras_and_notes[0]
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What a user should know: poses that were mended, frames without times, links not checked."""
-        return (*notes_of(self), *(self._cameras_and_notes[1] if self.simulated is None else ()))
+        listed = self.simulated is None or self.lists_cameras
+        return (*notes_of(self), *(self._cameras_and_notes[1] if listed else ()))
+
+    @property
+    def lists_cameras(self) -> bool:
+        """Whether the file lists cameras one by one: a simulated room may, or else the simulator makes them."""
+        return bool(self.entry.cameras)
 
     @cached_property
     def _cameras_and_notes(self) -> tuple[tuple[DepthCamera, ...], tuple[str, ...]]:
-        if self.simulated is not None:
+        if self.simulated is not None and not self.lists_cameras:
             raise SiteError(f"{self.path}: a simulated room, its cameras are made by the simulator")
+        if not self.lists_cameras and not isinstance(self.entry.recording, SevenScenes):
+            raise SiteError(
+                f"{self.path}: cameras: none yet; `elbowroom placement optimise` finds places for them"
+            )
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", PoseWarning)
@@ -196,7 +208,8 @@ class Site:
         Raises:
             SiteError: there is no camera of this name.
         """
-        if self.simulated is not None or isinstance(self.entry.recording, SevenScenes):
+        brought = self.simulated is not None and not self.lists_cameras
+        if brought or isinstance(self.entry.recording, SevenScenes):
             return CameraSettings().over(self.entry.camera_defaults)
         for entry in self.entry.cameras:
             if entry.name == camera:
@@ -212,10 +225,12 @@ class Site:
         """Arguments for the simulator's `wall_cameras` that make this room's cameras.
 
         Raises:
-            SiteError: the room is not simulated.
+            SiteError: the room is not simulated, or its cameras are listed.
         """
         if self.simulated is None:
             raise SiteError(f"{self.path}: not a simulated room; it has no key simulated")
+        if self.lists_cameras:
+            raise SiteError(f"{self.path}: lists its cameras one by one; the simulator makes none")
         return self.simulated.camera_arguments(self.entry.camera_defaults)
 
     def machine(self) -> Machine | None:

@@ -1,0 +1,154 @@
+"""Writes docs/evaluation.md from the results: python benchmarks/render_evaluation.py
+
+They are what `elbowroom evaluate all --out report --json benchmarks/results/evaluate_all.json` writes. Where a part
+was measured again by itself, `evaluate_motions.json` and so on go before it; remove them after measuring all again.
+With the folder of the report as an argument, the pictures that the page shows are taken from there, too.
+"""
+
+import base64
+import importlib
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from elbowroom.cli.evaluate_thesis_run import PARTS
+from elbowroom.evaluate.blocks import Block, Picture, Table, Words
+from elbowroom.evaluate.due import due_table
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "benchmarks" / "results"
+PAGE = ROOT / "docs" / "evaluation.md"
+IMAGES = ROOT / "docs" / "images"
+SHOWN = {
+    "reconstruction": {
+        "reconstruction.setup3-640x480": ("cases-640x480-setup3-cubes", "cases-640x480-setup3-section"),
+    },
+    "scale": {"scale.pose0": ("scale-model",)},
+    "more": {"more.fig3": ("fig3",)},
+}
+"""Pictures of the report that the page shows: by part, the share of the work that drew them, and their names."""
+CAPTIONS = {
+    "cases-640x480-setup3-cubes": "Setup 3, 640x480, 5 cm: white free, blue free but not found, green objects",
+    "cases-640x480-setup3-section": "The thesis' point test and the pixel test; red: objects declared free",
+    "scale-model": "Surfaces found by four Kinects: C-arm blue, table green, doctor red",
+    "fig3": "The thesis' Fig. 3, made by the program",
+}
+INTRODUCTION = """# The thesis' experiments
+
+Written by `python benchmarks/render_evaluation.py` from `benchmarks/results`. Do not edit it by hand.
+
+The idea of this project is from a 2011 master's thesis (I. Hamersma, *Collision avoidance using multiple correlated 3D
+depth measurements*, Eindhoven). Its tables are measured again here, and its figures stand beside ours. One command
+does all of it and writes one page with the pictures:
+
+    elbowroom evaluate all --out report --json report.json
+
+`reconstruction`, `motions`, `calibration`, `scale` and `more` in place of `all` do one part. The work is cut into
+shares that do not depend on each other: `--jobs N` spreads them over processes, `--cluster tcp://HOST:PORT` over the
+computers of a Dask cluster, and the numbers are the same however they are spread. Ctrl-C keeps the shares that are
+done in `report/parts`; the same command goes on from there. It needs `pip install 'elbowroom[evaluate]'`, and
+`[cluster]` for Dask.
+
+## The six setups
+
+| | | |
+|---|---|---|
+| ![setup 1](images/setup1_colour.jpg) | ![setup 2](images/setup2_colour.jpg) | ![setup 3](images/setup3_colour.jpg) |
+| ![depth 1](images/setup1_depth.jpg) | ![depth 2](images/setup2_depth.jpg) | ![depth 3](images/setup3_depth.jpg) |
+| ![setup 4](images/setup4_colour.jpg) | ![setup 5](images/setup5_colour.jpg) | ![setup 6](images/setup6_colour.jpg) |
+| ![depth 4](images/setup4_depth.jpg) | ![depth 5](images/setup5_depth.jpg) | ![depth 6](images/setup6_depth.jpg) |
+
+Rooms after the thesis' Appendix A, with closed meshes: the C-arm, a table with a patient under a drape, a doctor, two
+nurses, a closed cabinet, an open shelf, a cart, a monitor suspension, an operating lamp, drip stands, lines and cables.
+The thesis' own models are not printed; these are ours, and so are the poses: chosen by exact geometry and by the truth
+volume, so that the bands S, M, L and 0 all occur and contacts are met face on, not grazed. `assets/rooms/build.py`
+makes the rooms with Blender's Python module. Look at one with simulated cameras, or at a room of your own:
+
+    elbowroom simulate --room setup1 --out room1
+    elbowroom simulate --room my.glb --out my_room
+
+A GLB is in metres; each of its objects must be closed. The command says which object is not.
+
+21 cameras hang along the walls, at 2.4 m and 0.4 m in turn, with a field of view of 90 degrees: 640x480 with planar
+depth, or the thesis' 64x48 with radial depth. Noise, where there is any, is sigma(z) = 1.5 mm + 0.25 mm z^2 with flying
+pixels and missing returns; margins are three sigmas and half a pixel unless a table says otherwise.
+"""
+
+
+def render(results: Path = RESULTS) -> str:
+    """The page's text; what has no file is said not to be measured."""
+    text = [INTRODUCTION]
+    measured = {name: found for name in PARTS if (found := _measured(results, name)) is not None}
+    due = due_table([row for rows, _ in measured.values() for row in rows])
+    if due is not None:
+        text += ["## What was due", "", *_lines([due])]
+    for name in PARTS:
+        part = importlib.import_module(f"elbowroom.evaluate.{name}").PART
+        text += [f"## {part.title}", ""]
+        if name not in measured:
+            text += ["Not measured yet.", ""]
+            continue
+        rows, meta = measured[name]
+        text += _lines(part.show(rows, {}), name)
+        names = [picture for of_share in SHOWN.get(name, {}).values() for picture in of_share]
+        text += [f"![{CAPTIONS[n]}](images/evaluation_{n}.png)\n" for n in names if _image(n).is_file()]
+        text += [f"Measured by `{meta['command']}`; commit {meta['commit']}; {meta['processor']}.", ""]
+    return "\n".join(text).rstrip() + "\n"
+
+
+def _measured(results: Path, name: str) -> tuple[list[dict[str, Any]], dict[str, Any]] | None:
+    """Rows and meta of a part: of its own file, or of the file of all parts."""
+    for path in (results / f"evaluate_{name}.json", results / "evaluate_all.json"):
+        if path.is_file():
+            content = json.loads(path.read_text(encoding="utf-8"))
+            rows = [row for row in content["rows"] if row["part"] == name]
+            if rows:
+                return rows, content["meta"]
+    return None
+
+
+def _image(name: str) -> Path:
+    return IMAGES / f"evaluation_{name}.png"
+
+
+def draw(results: Path, report: Path | None) -> None:
+    """Writes the charts, which come from the results, and takes pictures out of a report's folder."""
+    for name in PARTS:
+        measured = _measured(results, name)
+        if measured is None:
+            continue
+        part = importlib.import_module(f"elbowroom.evaluate.{name}").PART
+        charts = [block for block in part.show(measured[0], {}) if isinstance(block, Picture)]
+        for number, chart in enumerate(charts):
+            (IMAGES / f"evaluation_{name}_{number}.svg").write_bytes(chart.png)
+        for share, names in SHOWN.get(name, {}).items() if report else ():
+            kept = json.loads((report / "parts" / f"{share}.json").read_text(encoding="utf-8"))
+            for picture in names:
+                _image(picture).write_bytes(base64.b64decode(kept["pictures"][picture]))
+
+
+def _lines(blocks: Sequence[Block], part: str = "") -> list[str]:
+    """Words, tables and charts as Markdown."""
+    lines: list[str] = []
+    charts = 0
+    for block in blocks:
+        if isinstance(block, Words):
+            lines += [block.text, ""]
+        elif isinstance(block, Table):
+            lines += [f"**{block.title}**", "", *_table(block), ""]
+        elif isinstance(block, Picture):
+            lines += [f"![{block.caption}](images/evaluation_{part}_{charts}.svg)", ""]
+            charts += 1
+    return lines
+
+
+def _table(table: Table) -> list[str]:
+    marks = ["---" if n in table.left else "---:" for n in range(len(table.columns))]
+    return ["| " + " | ".join(line) + " |" for line in (table.columns, marks, *table.lines)]
+
+
+if __name__ == "__main__":
+    draw(RESULTS, Path(sys.argv[1]) if len(sys.argv) > 1 else None)
+    PAGE.write_text(render(), encoding="utf-8")

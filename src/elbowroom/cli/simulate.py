@@ -1,0 +1,48 @@
+"""`elbowroom simulate`: depth images of a modelled room, as a recording that the other commands read."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from elbowroom.cli.options import JointsText, JsonFile, parse_joints
+
+
+def simulate(
+    room: Annotated[
+        str,
+        typer.Option("--room", metavar="GLB", help="A room of closed solids as GLB, or setup1 to setup6."),
+    ],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for images and site.yaml.")],
+    cameras: Annotated[int, typer.Option(min=1, max=200, help="How many, along the walls of the box.")] = 21,
+    size: Annotated[Literal["vga", "qqvga", "thesis"], typer.Option(help="Of their images.")] = "vga",
+    height: Annotated[
+        list[float] | None,
+        typer.Option(metavar="METRES", help="Of the cameras; several: in turn. Default: 2.4 and 0.4."),
+    ] = None,
+    noise: Annotated[str, typer.Option(help="exact, or a sensor such as tof, kinect_v1.")] = "exact",
+    box: Annotated[
+        str,
+        typer.Option(metavar="X,Y,Z,X,Y,Z", help="The watched box: its least and greatest corner [m]."),
+    ] = "-2,-2,0,2,2,2.5",
+    voxel_size: Annotated[
+        float, typer.Option("--voxel-size", metavar="METRES", help="Edge of a voxel in the site file.")
+    ] = 0.05,
+    machine: Annotated[bool, typer.Option(help="With the ceiling C-arm in the room.")] = True,
+    joints: JointsText = None,
+    json: JsonFile = None,
+) -> None:
+    """Look at a modelled room with simulated depth cameras.
+
+    Objects of the GLB are solids, in metres. Writes a recording and a site file:
+    go on with elbowroom reconstruct DIR/site.yaml, check, or monitor. Writes
+    colour.png and depth.png, too: the room from above, and one camera's image.
+    """
+    positions = parse_joints(joints)
+
+    from elbowroom.cli.simulate_run import Wanted, simulate_room
+
+    wanted = Wanted(
+        room, out, cameras, size, tuple(height or (2.4, 0.4)), noise, box, voxel_size, machine, positions
+    )
+    simulate_room(wanted, json)

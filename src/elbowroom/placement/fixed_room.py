@@ -1,0 +1,195 @@
+"""What of a room never moves: floor, walls, ceiling and fixed furniture, as solids that block sight."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from embreex.mesh_construction import TriangleMesh
+from embreex.rtcore_scene import EmbreeScene
+from numpy.typing import NDArray
+
+from elbowroom.errors import CameraError, SiteError
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.simulate import InterventionRoom, Moment, Solid, true_occupancy
+from elbowroom.simulate._kernels import touch_surface
+from elbowroom.simulate.shapes import box, join
+from elbowroom.simulate.solid import Mesh
+from elbowroom.simulate.truth import SHRINK_M, touched_by
+from elbowroom.site import Site
+from elbowroom.site.room_entry import RoomEntry
+
+WALL_M = 0.2
+"""Thickness of walls made from their inner faces [m]."""
+SPECK_M = 1e-4
+"""A camera inside a solid by more than about this is refused [m]."""
+Z_FROM_Y_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+
+
+@dataclass(frozen=True, eq=False)
+class FixedRoom:
+    """Solids that never move, and the inner faces of the walls if they are known.
+
+    Args:
+        solids: closed ones: floor, walls, ceiling, furniture.
+        surfaces: meshes that are not closed, or closed about the room itself: they block sight and have no inside.
+        walls_m: inner faces, least and greatest corner, shape (2, 3), world frame [m]; None: not known.
+    """
+
+    solids: tuple[Solid, ...] = ()
+    surfaces: tuple[Solid, ...] = ()
+    walls_m: NDArray[np.float64] | None = None
+
+    @classmethod
+    def of_site(cls, site: Site) -> "FixedRoom | None":
+        """The fixed room of a site: its key `room`, or the simulated room without people and machine.
+
+        Raises:
+            SiteError: a mesh that cannot be read.
+        """
+        if site.simulated is not None:
+            solids = tuple(s for s in InterventionRoom(people=False).at(0.0).static_solids)
+            return cls(solids, (), np.array([[-2.05, -2.05, 0.0], [2.05, 2.05, 2.9]]))
+        given = site.entry.room
+        return None if given is None else cls.of_entry(given, site.path.parent)
+
+    @classmethod
+    def of_entry(cls, entry: RoomEntry, beside: Path) -> "FixedRoom":
+        """The room that an entry of a site file describes.
+
+        Args:
+            entry: the key `room`.
+            beside: the site file's folder.
+
+        Raises:
+            SiteError: a mesh that cannot be read.
+        """
+        solids: list[Solid] = []
+        surfaces: list[Solid] = []
+        walls = None
+        if entry.walls is not None:
+            walls = np.array([entry.walls.lower_m, entry.walls.upper_m])
+            solids += _shell(walls)
+        solids += [_static(item.name, join([box(item.lower_m, item.upper_m)])) for item in entry.furniture]
+        path = entry.mesh_path(beside)
+        if path is not None:
+            mesh, is_closed = _read(path, entry.is_y_up)
+            (solids if is_closed else surfaces).append(_static(path.stem, mesh))
+            if walls is None:
+                walls = np.array([mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)])
+        return cls(tuple(solids), tuple(surfaces), walls)
+
+    @property
+    def moment(self) -> Moment:
+        """The room with nothing else in it."""
+        return Moment(0.0, self.solids + self.surfaces, {})
+
+    @cached_property
+    def triangles(self) -> NDArray[np.float64]:
+        """All surfaces, shape (n, 3, 3), world frame [m]."""
+        placed = [solid.vertices_in_world[solid.mesh.faces] for solid in self.moment.solids]
+        return np.concatenate([np.zeros((0, 3, 3)), *placed])
+
+    def occupied(self, grid: VoxelGrid) -> NDArray[np.bool_]:
+        """Voxels that something fixed touches, shape of the grid: they can never be free."""
+        occupied = true_occupancy(grid, Moment(0.0, self.solids, {})).occupied.copy()
+        for solid in self.surfaces:
+            triangles = solid.vertices_in_world[solid.mesh.faces]
+            touch_surface(triangles, grid.lower_m, grid.voxel_size_m, SHRINK_M, occupied)
+        return occupied
+
+    def refuse_inside(self, cameras: tuple[DepthCamera, ...]) -> None:
+        """Refuses cameras that hang inside a solid.
+
+        Raises:
+            CameraError: names camera and solid.
+        """
+        for camera in cameras:
+            corner = camera.centre_in_world - SPECK_M / 2
+            speck = VoxelGrid((corner[0], corner[1], corner[2]), (1, 1, 1), SPECK_M)
+            for solid in self.solids:
+                if touched_by(speck, solid)[1].any():
+                    raise CameraError(
+                        f"camera {camera.name}: at {camera.centre_in_world.round(3).tolist()} m it is inside "
+                        f"{solid.name}; move it, or correct the room"
+                    )
+
+    def blocking(self, eye_m: NDArray[np.float64], corners_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Triangles that can come between a point and a box.
+
+        A triangle whose plane leaves the point and the whole box on one side cannot.
+
+        Args:
+            eye_m: shape (3,) [m].
+            corners_m: of the box, shape (8, 3) [m].
+
+        Returns:
+            shape (n, 3, 3), world frame [m].
+        """
+        triangles = self.triangles
+        normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+        level = np.einsum("ij,ij->i", normal, triangles[:, 0])
+        side = normal @ np.concatenate([corners_m, eye_m[None]]).T - level[:, None]
+        return triangles[~((side >= -1e-9).all(axis=1) | (side <= 1e-9).all(axis=1))]
+
+
+def clear_sight(
+    triangles: NDArray[np.float64], eye_m: NDArray[np.float64], points_m: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Whether nothing lies between a point and others, by exact rays.
+
+    Args:
+        triangles: shape (n, 3, 3), world frame [m].
+        eye_m: shape (3,), world frame [m].
+        points_m: shape (m, 3), world frame [m].
+
+    Returns:
+        shape (m,).
+    """
+    if not len(triangles) or not len(points_m):
+        return np.ones(len(points_m), dtype=bool)
+    scene = EmbreeScene()
+    # about the eye: float32 is finest there
+    corners = (triangles - eye_m).reshape(-1, 3).astype(np.float32)
+    TriangleMesh(scene, corners, np.arange(len(corners), dtype=np.int32).reshape(-1, 3))
+    rays = (points_m - eye_m).astype(np.float32)
+    origins = np.zeros_like(rays)
+    hit = scene.run(origins, rays, dists=np.ones(len(rays), dtype=np.float32), query="OCCLUDED")
+    return np.asarray(hit) < 0
+
+
+def _static(name: str, mesh: Mesh) -> Solid:
+    return Solid(name, mesh, np.eye(4), is_static=True)
+
+
+def _shell(walls: NDArray[np.float64]) -> list[Solid]:
+    """Six slabs about a box."""
+    lower, upper = walls
+    solids = []
+    for axis, names in enumerate((("wall -x", "wall +x"), ("wall -y", "wall +y"), ("floor", "ceiling"))):
+        for end, name in enumerate(names):
+            low, high = lower - WALL_M, upper + WALL_M
+            if end == 0:
+                high = np.where(np.arange(3) == axis, lower, high)
+            else:
+                low = np.where(np.arange(3) == axis, upper, low)
+            solids.append(_static(name, join([box(low, high)])))
+    return solids
+
+
+def _read(path: Path, is_y_up: bool) -> tuple[Mesh, bool]:
+    """The mesh of a file, z up, and whether it is closed with its faces outwards."""
+    try:
+        loaded = trimesh.load(path, force="mesh")
+    except Exception as error:
+        raise SiteError(f"{path}: cannot be read as a mesh ({' '.join(str(error).split())})") from None
+    if not isinstance(loaded, trimesh.Trimesh) or not len(loaded.faces):
+        raise SiteError(f"{path}: holds no triangles; expected the room's surfaces as a mesh")
+    vertices = np.array(loaded.vertices, dtype=np.float64)
+    if not np.isfinite(vertices).all():
+        raise SiteError(f"{path}: a vertex is not finite")
+    is_closed = bool(loaded.is_watertight and loaded.volume > 0)
+    turned = vertices @ Z_FROM_Y_UP.T if is_y_up else vertices
+    return Mesh(turned, np.array(loaded.faces, dtype=np.int32)), is_closed

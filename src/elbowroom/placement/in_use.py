@@ -1,0 +1,136 @@
+"""Where to put cameras so that they find most in use: random scenes in place of the rule of the empty room."""
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from elbowroom.errors import InputError
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits
+from elbowroom.placement.candidates import Candidate
+from elbowroom.placement.coarse import with_joined_pixels
+from elbowroom.placement.optimisation import Goal, free_candidates, named, places_of
+from elbowroom.placement.rehearsal import Settings, evidence_by_camera
+from elbowroom.placement.solver.run import Course, in_scenes
+from elbowroom.placement.solver.scene_layout import SceneModel
+from elbowroom.simulate import Moment, true_occupancy
+
+COARSE_VOXEL_M, COARSE_PX = 0.1, 96
+"""Candidates are carved at no less than this edge, with pixels joined as long as so many stay across."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FoundInUse:
+    """A layout that was found by scenes.
+
+    Args:
+        cameras: those that were there, then the new ones.
+        bought: the new ones as candidates.
+        free_pct: share of the truly free space of the scenes that it finds, as coarsely as candidates are carved [%].
+        bound: no layout of these candidates does better in these scenes: cameras, or share [%].
+        steps: seconds, cameras, price and share (0 to 1) of every better layout on the way.
+        seconds: what it took.
+    """
+
+    cameras: tuple[DepthCamera, ...]
+    bought: tuple[Candidate, ...]
+    free_pct: float
+    bound: float
+    steps: tuple[tuple[float, int, float, float], ...]
+    seconds: float
+
+
+def optimise_in_use(
+    candidates: Sequence[Candidate],
+    scenes: Sequence[Moment],
+    settings: Settings,
+    goal: Goal,
+    *,
+    existing: Sequence[DepthCamera] = (),
+    seconds: float = 60.0,
+    seed: int = 1,
+    progress: Callable[[str], None] = lambda _: None,
+) -> FoundInUse:
+    """Chooses the candidates that find most of the free space of scenes, each carved with the code that runs.
+
+    Every candidate is carved alone, coarsely; what several know together follows from their planes by rule `three`, as
+    `merge` and `resolve` have it. Judge the result by `rehearse`, with other scenes and in full detail.
+
+    Args:
+        candidates: what may be bought.
+        scenes: moments of the room in use.
+        settings: how space is declared free; the rule must be three.
+        goal: its share is that of the truly free space; a number of cameras; or the least price.
+        existing: cameras that stay.
+        seconds: time for the search; carving the candidates comes on top.
+        seed: of noise and random choices.
+        progress: called with what is being done.
+
+    Raises:
+        InputError: no candidates, no scenes, another rule, or a share that all candidates together do not find.
+    """
+    begun = time.perf_counter()
+    if settings.rule != "three":
+        raise InputError(f"placement: optimising by scenes knows rule three, the site has {settings.rule}")
+    if not scenes:
+        raise InputError("placement: no scene, at least one is needed")
+    free = free_candidates(candidates, existing)
+    model = _model(free, existing, scenes, settings, goal, seed, progress)
+    share = None if goal.cameras is not None else goal.share_pct / 100
+    if share is not None and model.share_bound < share:
+        raise InputError(
+            f"placement: {goal.share_pct:g} % is out of reach: all {len(free)} candidates together see through "
+            f"{100 * model.share_bound:.2f} % of the free space of these scenes; add mounts or aims, or ask for less"
+        )
+    course = Course(time.perf_counter())
+    budget = math.inf if goal.cameras is None else float(goal.cameras - len(existing))
+    layout = in_scenes(model, share, budget, course.begun + seconds, course, seed=seed, progress=progress)
+    bought = named([free[c - len(existing)] for c in layout.chosen if c >= len(existing)], existing)
+    return FoundInUse(
+        (*existing, *(candidate.camera for candidate in bought)),
+        tuple(bought),
+        100 * layout.share,
+        100 * model.share_bound if share is None else model.camera_bound(share),
+        tuple(course.steps),
+        time.perf_counter() - begun,
+    )
+
+
+def _model(
+    free: Sequence[Candidate],
+    existing: Sequence[DepthCamera],
+    scenes: Sequence[Moment],
+    settings: Settings,
+    goal: Goal,
+    seed: int,
+    progress: Callable[[str], None],
+) -> SceneModel:
+    grid = VoxelGrid.covering(
+        settings.grid.lower_m, settings.grid.upper_m, max(COARSE_VOXEL_M, settings.grid.voxel_size_m)
+    )
+    coarse = replace(settings, grid=grid)
+    everything = [*existing, *(candidate.camera for candidate in free)]
+    cameras = [
+        replace(with_joined_pixels(camera, COARSE_PX), name=f"{number}")
+        for number, camera in enumerate(everything)
+    ]
+    through, disputed, truly = [], [], []
+    for number, moment in enumerate(scenes):
+        progress(f"scene {number + 1} of {len(scenes)}: carving {len(cameras)} candidates")
+        parts = evidence_by_camera(cameras, moment, coarse, seed + number)
+        through.append(np.array([part.through[0] for part in parts]))
+        disputed.append(np.array([part.disputed for part in parts]))
+        truth = true_occupancy(grid, moment)
+        truly.append(bits.pack(~truth.occupied & ~truth.machine, grid))
+    plane = np.concatenate(truly)
+    return SceneModel(
+        np.concatenate(through, axis=1),
+        np.concatenate(disputed, axis=1),
+        plane,
+        int(np.unpackbits(plane.view(np.uint8)).sum()),
+        places_of(free, existing),
+        np.array([*[0.0] * len(existing), *(c.price if goal.by_price else 1.0 for c in free)]),
+        tuple(range(len(existing))),
+    )

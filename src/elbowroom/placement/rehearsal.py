@@ -1,0 +1,232 @@
+"""What a placement means in use: random scenes carved with the code that will run, beside their exact truth."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import InputError
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits
+from elbowroom.geometry.bits import Words
+from elbowroom.geometry.margin import Margin
+from elbowroom.machine import Machine, explain_frames
+from elbowroom.motion import Level, Motion, check_motions
+from elbowroom.reconstruct import Evidence, FreeSpace, carve, merge, resolve
+from elbowroom.reconstruct.carve import Detail
+from elbowroom.reconstruct.images import room_images
+from elbowroom.reconstruct.resolve import Rule, needs_complete
+from elbowroom.simulate import Moment, render, true_occupancy
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Settings:
+    """How space is declared free in use.
+
+    Args:
+        grid: the watched box.
+        rule, detail, margin, explain_tolerance_m: as of `reconstruct`.
+        machine: None: the bare room.
+        motions: of the machine, that are judged in every scene.
+    """
+
+    grid: VoxelGrid
+    rule: Rule = "three"
+    detail: Detail = "pixel"
+    margin: Margin | None = None
+    explain_tolerance_m: float = 0.01
+    machine: Machine | None = None
+    motions: tuple[Motion, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SceneResult:
+    """One scene.
+
+    Args:
+        free_pct: share of the truly free voxels that is found [%].
+        occupied_pct: share of the voxels touched by something other than the machine that is not declared free [%].
+        contributes_pct: by camera, what of the truly free space would not be found if it had never been mounted [%].
+        loss_pct: by camera, what is lost if it fails: then it disputes all that it looks at [%].
+        levels: by motion, the level in the space that is found, and in the truth.
+    """
+
+    free_pct: float
+    occupied_pct: float
+    contributes_pct: dict[str, float]
+    loss_pct: dict[str, float]
+    levels: dict[str, tuple[Level, Level]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rehearsal:
+    """Many scenes together.
+
+    Args:
+        scenes: each of them.
+    """
+
+    scenes: tuple[SceneResult, ...]
+
+    @property
+    def free_pct(self) -> float:
+        """Share of truly free space that is found, mean of all scenes [%]."""
+        return float(np.mean([scene.free_pct for scene in self.scenes]))
+
+    @property
+    def free_error_pct(self) -> float:
+        """Standard error of that mean [%]; NaN of one scene."""
+        found = [scene.free_pct for scene in self.scenes]
+        return float(np.std(found, ddof=1) / np.sqrt(len(found))) if len(found) > 1 else float("nan")
+
+    @property
+    def occupied_pct(self) -> float:
+        """Share of occupied voxels kept, mean of all scenes [%]."""
+        return float(np.mean([scene.occupied_pct for scene in self.scenes]))
+
+    def by_camera(self) -> dict[str, tuple[float, float]]:
+        """What each camera contributes and what losing it costs, means of all scenes [%]."""
+        names = self.scenes[0].loss_pct
+        return {
+            name: (
+                float(np.mean([scene.contributes_pct[name] for scene in self.scenes])),
+                float(np.mean([scene.loss_pct[name] for scene in self.scenes])),
+            )
+            for name in names
+        }
+
+    def false_stops(self) -> dict[str, tuple[int, int]]:
+        """By motion: in how many scenes it is stopped, of those in which the truth is no stop."""
+        counts = {}
+        for name in self.scenes[0].levels:
+            here = [scene.levels[name] for scene in self.scenes]
+            going = [found for found, true in here if true is not Level.STOP]
+            counts[name] = (sum(found is Level.STOP for found in going), len(going))
+        return counts
+
+
+def rehearse(
+    cameras: Sequence[DepthCamera],
+    scenes: Sequence[Moment] | Iterator[Moment],
+    settings: Settings,
+    *,
+    seed: int = 1,
+    by_camera: bool = True,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Rehearsal:
+    """Carves every scene with the real code and compares with its truth.
+
+    Args:
+        cameras: of the placement.
+        scenes: moments, each with the machine's joints.
+        settings: how space is declared free.
+        seed: of the sensors' noise.
+        by_camera: also what each camera contributes, and what losing it costs.
+        progress: called with what is being done.
+
+    Raises:
+        InputError: no camera or no scene.
+    """
+    if not cameras:
+        raise InputError("placement: no camera, at least one is needed")
+    results = []
+    for number, moment in enumerate(scenes):
+        progress(f"scene {number + 1}")
+        results.append(_scene(cameras, moment, settings, seed + number, by_camera))
+    if not results:
+        raise InputError("placement: no scene, at least one is needed")
+    return Rehearsal(tuple(results))
+
+
+def _scene(
+    cameras: Sequence[DepthCamera], moment: Moment, settings: Settings, seed: int, by_camera: bool
+) -> SceneResult:
+    grid, machine = settings.grid, settings.machine
+    parts = evidence_by_camera(cameras, moment, settings, seed)
+    truth = true_occupancy(grid, moment)
+    truly_free = bits.pack(~truth.occupied & ~truth.machine, grid)
+    count = max(_count(truly_free), 1)
+
+    def share(evidence: Evidence, of: Sequence[DepthCamera]) -> tuple[FreeSpace, float]:
+        space = resolve(
+            evidence,
+            of,
+            rule=settings.rule,
+            detail=settings.detail,
+            margin=settings.margin,
+            machine=machine,
+            joints=moment.joints if machine is not None else None,
+        )
+        return space, 100.0 * _count(space.free_words & truly_free) / count
+
+    space, free_pct = share(merge(parts), cameras)
+    contributes, loss = dict[str, float](), dict[str, float]()
+    if by_camera:
+        for camera, rest in zip(cameras, _all_but_one(parts, settings), strict=True):
+            others = [other for other in cameras if other is not camera]
+            contributes[camera.name] = free_pct - share(rest, others)[1]
+            loss[camera.name] = free_pct - share(rest, cameras)[1]
+    levels = {}
+    if machine is not None and settings.motions:
+        true_space = FreeSpace.from_occupied(grid, truth.occupied).without(machine, moment.joints)
+        for found, true in zip(
+            check_motions(space, machine, moment.joints, settings.motions),
+            check_motions(true_space, machine, moment.joints, settings.motions),
+            strict=True,
+        ):
+            levels[found.motion.name] = (found.level, true.level)
+    occupied = bits.pack(truth.occupied & ~truth.machine, grid)
+    kept = 100.0 * (1 - _count(space.free_words & occupied) / max(_count(occupied), 1))
+    return SceneResult(free_pct, kept, contributes, loss, levels)
+
+
+def evidence_by_camera(
+    cameras: Sequence[DepthCamera], moment: Moment, settings: Settings, seed: int
+) -> list[Evidence]:
+    """What each camera knows of a scene as `reconstruct` carves it; merged, it is what `reconstruct` decides by."""
+    frames = render(cameras, moment, seed=seed)
+    model_depth, unexplained = {}, None
+    if settings.machine is not None:
+        images = room_images(cameras, frames)
+        explained = explain_frames(
+            settings.machine,
+            images.cameras,
+            [images.least_m[camera.name] for camera in images.cameras],
+            [moment.joints] * len(cameras),
+            tolerance_m=settings.explain_tolerance_m,
+            grid=settings.grid,
+        )
+        model_depth, unexplained = explained.model_depth, explained.unexplained_words
+    return [
+        carve(
+            settings.grid,
+            [camera],
+            [frame],
+            detail=settings.detail,
+            margin=settings.margin,
+            complete=needs_complete(settings.rule),
+            model_depth={name: image for name, image in model_depth.items() if name == camera.name},
+            unexplained=unexplained,
+        )
+        for camera, frame in zip(cameras, frames, strict=True)
+    ]
+
+
+def _all_but_one(parts: Sequence[Evidence], settings: Settings) -> Iterator[Evidence]:
+    """For each part all others merged, by what lies before it and what lies behind."""
+    nothing = Evidence.nothing(settings.grid, needs_complete(settings.rule))
+    behind = [nothing]
+    for part in reversed(parts[1:]):
+        behind.append(merge([part, behind[-1]]))
+    before = nothing
+    for part, rest in zip(parts, reversed(behind), strict=True):
+        yield merge([before, rest])
+        before = merge([before, part])
+
+
+def _count(words: Words) -> int:
+    """Number of voxels in a plane."""
+    counted: NDArray[np.uint8] = (
+        np.bitwise_count(words) if hasattr(np, "bitwise_count") else np.unpackbits(words.view(np.uint8))
+    )
+    return int(counted.sum())

@@ -1,0 +1,155 @@
+"""Random moments of a room in use: people, a table, the machine in some pose."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import InputError
+from elbowroom.geometry import VoxelGrid
+from elbowroom.machine import Machine
+from elbowroom.placement.fixed_room import FixedRoom
+from elbowroom.simulate import InterventionRoom, Moment, Solid
+from elbowroom.simulate.machine_solids import link_solids, random_joints
+from elbowroom.simulate.person import Person, Stance, Walk
+from elbowroom.simulate.shapes import box, join
+from elbowroom.simulate.truth import touched_by
+from elbowroom.site import Site
+
+TRIES = 200
+COARSE_M = 0.08
+"""Things must not share voxels of this edge [m]."""
+TABLE_M = (1.9, 0.6, 0.95)
+HEIGHTS_M = (1.60, 1.95)
+NOWHERE = Walk((0.0, 0.0), (0.1, 0.1), 1.0)
+
+
+def random_scenes(
+    site: Site,
+    grid: VoxelGrid,
+    room: FixedRoom | None,
+    count: int,
+    *,
+    people: int = 3,
+    table: bool = True,
+    seed: int = 1,
+) -> Iterator[Moment]:
+    """Moments drawn at random, the n-th the same whatever the count.
+
+    The simulated room has its own people, table and C-arm. Any other room gets people who stand and walk anywhere on
+    its floor, a table, and the site's machine, if it has one, in a pose that touches nothing.
+
+    Args:
+        site: the file.
+        grid: the watched box; its least z is the floor.
+        room: walls and furniture of a room that is not simulated; None: nothing fixed.
+        count: how many moments.
+        people: of a room that is not simulated.
+        table: whether such a room gets one.
+        seed: of all of it.
+
+    Raises:
+        InputError: fewer than one moment or than no people, or no place for them.
+    """
+    if count < 1 or people < 0:
+        raise InputError(
+            f"placement: {count} scenes of {people} people, at least 1 scene and 0 people are needed"
+        )
+    machine = site.machine()
+    for number in range(count):
+        rng = np.random.default_rng([seed, number])
+        if site.simulated is not None:
+            yield InterventionRoom(machine=machine).random_moment(rng, grid=grid)
+        else:
+            yield _scene(number, grid, room, machine, people, table, rng)
+
+
+def _scene(
+    number: int,
+    grid: VoxelGrid,
+    room: FixedRoom | None,
+    machine: Machine | None,
+    people: int,
+    table: bool,
+    rng: np.random.Generator,
+) -> Moment:
+    coarse = VoxelGrid.covering(grid.lower_m, grid.upper_m, COARSE_M)
+    fixed = () if room is None else room.moment.solids
+    taken = np.zeros(coarse.shape, dtype=bool) if room is None else room.occupied(coarse).copy()
+    joints: dict[str, float] = {}
+    solids: list[Solid] = []
+    if machine is not None:
+        joints, links = _machine_pose(coarse, machine, taken, rng)
+        solids += links
+    if table:
+        solids += _placed(coarse, taken, lambda: (_table(grid, rng),), "the table")
+    for n in range(people):
+        height = float(rng.uniform(*HEIGHTS_M))
+        person = Person(f"person {n + 1}", NOWHERE, round(height, 2), float(rng.choice([0.3, 1.2])))
+        solids += _placed(coarse, taken, lambda who=person: who.solids(_stance(grid, rng)), person.name)
+    return Moment(float(number), (*fixed, *solids), joints)
+
+
+def _machine_pose(
+    coarse: VoxelGrid, machine: Machine, taken: NDArray[np.bool_], rng: np.random.Generator
+) -> tuple[dict[str, float], tuple[Solid, ...]]:
+    for _ in range(TRIES):
+        joints = random_joints(machine, rng)
+        links = link_solids(machine, joints)
+        checked = tuple(link for link in links if link.name in machine.checked_links)
+        if _fits(coarse, taken, checked):
+            _take(coarse, taken, links)
+            return joints, links
+    raise InputError(
+        f"placement: no pose of {machine.name} that touches nothing in {TRIES} tries; correct the room"
+    )
+
+
+def _placed(coarse: VoxelGrid, taken: NDArray[np.bool_], make, what: str) -> tuple[Solid, ...]:  # type: ignore[no-untyped-def]
+    """Solids drawn until they fit."""
+    for _ in range(TRIES):
+        solids: tuple[Solid, ...] = make()
+        if _fits(coarse, taken, solids):
+            _take(coarse, taken, solids)
+            return solids
+    raise InputError(f"placement: no place for {what} in {TRIES} tries; fewer people (--people), or no table")
+
+
+def _fits(coarse: VoxelGrid, taken: NDArray[np.bool_], solids: tuple[Solid, ...]) -> bool:
+    for solid in solids:
+        corner, touched = touched_by(coarse, solid)
+        span = tuple(slice(c, c + n) for c, n in zip(corner, touched.shape, strict=True))
+        if (taken[span] & touched).any():
+            return False
+    return True
+
+
+def _take(coarse: VoxelGrid, taken: NDArray[np.bool_], solids: tuple[Solid, ...]) -> None:
+    for solid in solids:
+        corner, touched = touched_by(coarse, solid)
+        taken[tuple(slice(c, c + n) for c, n in zip(corner, touched.shape, strict=True))] |= touched
+
+
+def _stance(grid: VoxelGrid, rng: np.random.Generator) -> Stance:
+    x, y = rng.uniform(grid.lower_m[:2] + 0.25, grid.upper_m[:2] - 0.25)
+    return Stance(float(x), float(y), float(rng.uniform(-np.pi, np.pi)), float(rng.uniform(0, 2 * np.pi)))
+
+
+def _table(grid: VoxelGrid, rng: np.random.Generator) -> Solid:
+    """A top on one leg, anywhere on the floor and turned anyhow."""
+    length, width, high = TABLE_M
+    parts = [
+        box((-length / 2, -width / 2, high - 0.07), (length / 2, width / 2, high)),
+        box((-0.15, -0.14, 0.0), (0.15, 0.14, high - 0.05)),
+    ]
+    turn = float(rng.uniform(-np.pi, np.pi))
+    x, y = rng.uniform(grid.lower_m[:2] + 0.6, grid.upper_m[:2] - 0.6)
+    pose = np.array(
+        [
+            [np.cos(turn), -np.sin(turn), 0, x],
+            [np.sin(turn), np.cos(turn), 0, y],
+            [0, 0, 1, grid.lower_m[2]],
+            [0, 0, 0, 1.0],
+        ]
+    )
+    return Solid("table", join(parts), pose)
