@@ -61,7 +61,7 @@ def test_example_of_the_readme_answers_what_it_says(capsys: pytest.CaptureFixtur
     space, verdict = names["space"], names["verdict"]
     told = re.search(r"verdict\.cause  # (.*)$", example, re.MULTILINE)
     assert told is not None
-    assert told[1] == f'{verdict.level}, "{verdict.band}", {verdict.free_travel}, {verdict.cause}'
+    assert told[1] == f'{verdict.level}, "{verdict.band}", {verdict.free_travel:.3f}, {verdict.cause}'
     assert "is free\n  north: sees through it" in capsys.readouterr().out
     assert space.free.shape == (200, 200, 125)
     assert (space.free.astype(int) + space.surface + space.unseen == 1).all()
