@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.evaluate.scene import room_grid, room_motions, settings_of
+from elbowroom.evaluate.scene import WELL_KNOWN, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.carve import Detail
@@ -45,7 +45,13 @@ def alone_rows(
         frames = render(views, moment)
         for edge in voxel_sizes_m:
             space = reconstruct(
-                room_grid(edge), views, frames, machine=room.machine, joints=moment.joints, detail=detail
+                room_grid(edge),
+                views,
+                frames,
+                machine=room.machine,
+                joints=moment.joints,
+                detail=detail,
+                margin=WELL_KNOWN,
             )
             verdicts = check_motions(space, room.machine, moment.joints, motions)
             for motion, verdict in zip(motions, verdicts, strict=True):

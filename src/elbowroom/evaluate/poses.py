@@ -6,16 +6,12 @@ from typing import Any
 import numpy as np
 
 from elbowroom.evaluate.exact import ExactTravel
-from elbowroom.evaluate.scene import Comparison, room_grid, room_motions, settings_of
-from elbowroom.geometry.margin import Margin
+from elbowroom.evaluate.scene import WELL_KNOWN, Comparison, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.carve import Detail
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
 from elbowroom.simulate.inside import hung_clear
-
-EXACT = Margin(lateral_px=0.0)
-"""The cameras are where they are said to be, as in the default simulated room: nothing to allow for."""
 
 COMPARED = (
     *("joint", "direction", "level", "cause", "free_travel", "free_travel_unit"),
@@ -67,7 +63,7 @@ def poses_rows(
             machine=room.machine,
             joints=moment.joints,
             detail=detail,
-            margin=EXACT,
+            margin=WELL_KNOWN,
         )
         verdicts = check_motions(space, room.machine, moment.joints, motions)
         for motion, verdict in zip(motions, verdicts, strict=True):

@@ -7,10 +7,13 @@ from typing import Any
 from elbowroom.evaluate.exact import Contact
 from elbowroom.evaluate.room import ROOM_LOWER_M, ROOM_UPPER_M
 from elbowroom.geometry import VoxelGrid
+from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.motion import Level, Motion, Verdict
 from elbowroom.site import Site
 
+WELL_KNOWN = Margin(lateral_px=0.0)
+"""Of simulated cameras, which are where they are said to be: their noise alone, no lateral error to allow for."""
 SAME = 1e-9
 """Travels that differ by less are the same: rounding [m or rad]."""
 
