@@ -65,21 +65,37 @@ def pass_over_specks(texels, pitch, model_m, margin, quantum, passed):
     """
     rows, columns = texels.shape
     low, keep = np.uint32(0xFFFF), 1.0 - pitch
-    upper, lower = np.zeros(columns, dtype=np.uint32), np.zeros(columns, dtype=np.uint32)
+    one = np.uint64(1)
+    # three rows of what each pixel would leave free of a speck beside it
+    short_of = np.zeros((3, columns), dtype=np.float32)
+    farther = np.zeros(columns, dtype=np.int32)
     passed[:] = texels
-    for v in range(1, rows - 1):
-        above, here, below = texels[v - 1], texels[v], texels[v + 1]
-        for u in range(columns):
-            upper[u] = max(above[u], below[u])
+    for v in range(-1, rows - 1):
+        following, row = texels[v + 1], short_of[(v + 1) % 3]
+        for n in range(columns):
+            u = np.uint64(n)
+            row[u] = np.float32(np.int32(following[u] >> np.uint32(16))) * np.float32(keep) - np.float32(0.5)
+        if v < 1:
+            continue
+        here, above, middle, below = texels[v], short_of[(v - 1) % 3], short_of[v % 3], short_of[(v + 1) % 3]
         for n in range(columns - 2):
-            # the greatest of the eight neighbours: only where it is more, the pixel can be a speck
+            # only where at least seven of eight neighbours are farther, the pixel can be a speck
             u = np.uint64(n + 1)
-            aside = max(max(here[u - np.uint64(1)], here[u + np.uint64(1)]), upper[u])
-            lower[u] = max(aside, max(upper[u - np.uint64(1)], upper[u + np.uint64(1)])) >> np.uint32(16)
+            least = np.float32(np.int32(here[u] >> np.uint32(16)))
+            farther[u] = (
+                np.int32(above[u - one] > least)
+                + np.int32(above[u] > least)
+                + np.int32(above[u + one] > least)
+                + np.int32(middle[u - one] > least)
+                + np.int32(middle[u + one] > least)
+                + np.int32(below[u - one] > least)
+                + np.int32(below[u] > least)
+                + np.int32(below[u + one] > least)
+            )
         for u in range(1, columns - 1):
-            least = here[u] >> np.uint32(16)
-            if lower[u] * keep - 1.0 <= least:
+            if farther[u] < 7:
                 continue
+            least = here[u] >> np.uint32(16)
             short = _short_of_neighbours(texels, v, u) * keep - 1.0
             if short > least:
                 passed[v, u] = (np.uint32(short) << np.uint32(16)) | (here[u] & low)
