@@ -6,7 +6,8 @@
     │   ├── CameraError      intrinsics, pose, an unknown or doubled camera
     │   ├── FrameError       a depth image that is not what its camera delivers
     │   ├── MachineError     a URDF, a mesh, a joint that is unknown or out of its limits
-    │   └── SiteError        a site file or a recording's folder
+    │   ├── SiteError        a site file or a recording's folder
+    │   └── CalibrationError a board, a capture, or what was seen in it does not fix a pose
     └── EvidenceError        evidence that cannot be merged or resolved
 
 `PoseWarning` is a warning, not an error: a pose was a little off a rotation and was brought to the nearest one.
@@ -39,6 +40,10 @@ class MachineError(InputError):
 
 class SiteError(InputError):
     """A site file or a recording's folder that cannot be used."""
+
+
+class CalibrationError(InputError):
+    """A board or a capture from which a pose cannot be had; the message says what to capture instead."""
 
 
 class EvidenceError(ElbowroomError):

@@ -1,0 +1,10 @@
+"""Where cameras are and how they see, from depth images of a board, of the machine, of the room; and how sure that is.
+
+captures -> what was seen of the target -> first solution -> joint least squares -> pose, covariance -> margin
+"""
+
+from elbowroom.calibrate.board import Board
+from elbowroom.calibrate.board_view import BoardView
+from elbowroom.calibrate.calibrated_camera import CalibratedCamera
+
+__all__ = ["Board", "BoardView", "CalibratedCamera"]

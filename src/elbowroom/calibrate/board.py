@@ -1,0 +1,64 @@
+"""The checkerboard that cameras look at: printed, or with every second square cut out so that depth images show it."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import CalibrationError
+
+BoardKind = Literal["printed", "cut_out"]
+MOST_CORNERS = 60
+"""Along one side."""
+
+
+@dataclass(frozen=True, slots=True)
+class Board:
+    """A flat checkerboard of `columns` x `rows` inner corners.
+
+    Board frame: origin at the first inner corner, x along a row of corners, y along a column, z away from the eye that
+    sees x to the right and y down. One of the two counts is odd and the other even, so that a board turned by half a
+    turn looks different: else nobody could tell its two ends apart.
+
+    Args:
+        columns, rows: inner corners along x and y.
+        square_m: edge of a square [m].
+        kind: "printed" (dark and bright, seen in infrared or colour images) or "cut_out" (every second square is a
+            hole, seen in depth images; thesis 3.2, Fig. 1).
+        border_m: material around the outer squares [m].
+
+    Raises:
+        CalibrationError: a board that cannot be used.
+    """
+
+    columns: int
+    rows: int
+    square_m: float
+    kind: BoardKind = "printed"
+    border_m: float = 0.0
+
+    def __post_init__(self) -> None:
+        for side in ("columns", "rows"):
+            if not 3 <= getattr(self, side) <= MOST_CORNERS:
+                raise CalibrationError(
+                    f"board: {side} is {getattr(self, side)}, must be 3 to {MOST_CORNERS} inner corners"
+                )
+        if (self.columns + self.rows) % 2 == 0:
+            raise CalibrationError(
+                f"board: {self.columns} x {self.rows} inner corners look the same turned by half a turn; "
+                "one count must be odd and the other even"
+            )
+        if not (np.isfinite(self.square_m) and self.square_m > 0):
+            raise CalibrationError(f"board: square_m is {self.square_m}, must be above 0")
+        if not (np.isfinite(self.border_m) and self.border_m >= 0):
+            raise CalibrationError(f"board: border_m is {self.border_m}, must be at least 0")
+        if self.kind not in ("printed", "cut_out"):
+            raise CalibrationError(f"board: kind is {self.kind!r}, allowed are printed, cut_out")
+
+    @property
+    def corners_in_board(self) -> NDArray[np.float64]:
+        """Inner corners, shape (rows * columns, 3), board frame [m]; corner id = row * columns + column."""
+        column, row = np.meshgrid(np.arange(self.columns), np.arange(self.rows))
+        flat = np.stack([column.ravel(), row.ravel(), np.zeros(column.size)], axis=1)
+        return flat * self.square_m
