@@ -61,4 +61,5 @@ class Board:
         """Inner corners, shape (rows * columns, 3), board frame [m]; corner id = row * columns + column."""
         column, row = np.meshgrid(np.arange(self.columns), np.arange(self.rows))
         flat = np.stack([column.ravel(), row.ravel(), np.zeros(column.size)], axis=1)
-        return flat * self.square_m
+        corners: NDArray[np.float64] = flat * self.square_m
+        return corners
