@@ -59,7 +59,7 @@ class Board:
     @property
     def corners_in_board(self) -> NDArray[np.float64]:
         """Inner corners, shape (rows * columns, 3), board frame [m]; corner id = row * columns + column."""
-        column, row = np.meshgrid(np.arange(self.columns), np.arange(self.rows))
-        flat = np.stack([column.ravel(), row.ravel(), np.zeros(column.size)], axis=1)
-        corners: NDArray[np.float64] = flat * self.square_m
+        row, column = np.divmod(np.arange(self.columns * self.rows), self.columns)
+        corners = np.zeros((self.columns * self.rows, 3))
+        corners[:, 0], corners[:, 1] = column * self.square_m, row * self.square_m
         return corners
