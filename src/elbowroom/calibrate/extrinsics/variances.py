@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-START = {"corner": 1.5, "plane": 1.5, "turn": 3e-4**2, "shift": 5e-4**2, "depth": 1e-3**2}
+START = {"corner": 1.5, "plane": 1.5, "turn": 2e-4**2, "shift": 3e-4**2, "depth": 1e-3**2}
 """Before views are compared: factors, and squares of [rad], [m], [m]."""
 START_FREEDOM = 4.0
 """Degrees of freedom that the start weighs."""
