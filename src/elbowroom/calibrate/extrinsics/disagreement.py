@@ -88,23 +88,23 @@ def require_still(seen: Sequence[SeenBoard], solution: Solution, corners: Array)
         by_pose[one.view.pose].append(one)
     off = {(one.view.pose, one.view.camera): 0.0 for one in seen}
     bad: dict[tuple[int, str], float] = {}
+    pairs: list[tuple[str, str]] = []
     for pose, views in by_pose.items():
         for number, one in enumerate(views):
             for other in views[number + 1 :]:
                 apart, allowed = _apart(one, other, solution, corners)
                 if apart > allowed:
+                    pairs.append((one.view.camera, other.view.camera))
                     for camera in (one.view.camera, other.view.camera):
                         bad[pose, camera] = max(bad.get((pose, camera), 0.0), apart)
     if not bad:
         return
     poses = sorted({pose for pose, _ in bad})
-    views_of: dict[str, int] = defaultdict(int)
-    bad_of: dict[str, int] = defaultdict(int)
-    for pose, camera in off:
-        views_of[camera] += 1
-        bad_of[camera] += (pose, camera) in bad
-    suspect = max(bad_of, key=lambda name: bad_of[name])
-    if len(poses) > 2 and bad_of[suspect] >= max(0.4 * views_of[suspect], 0.6 * len(bad)):
+    off_cameras = sorted({camera for pair in pairs for camera in pair})
+    suspect = max(off_cameras, key=lambda camera: sum(camera in pair for pair in pairs))
+    bad_of = {camera: sum(camera == other for _, other in bad) for camera in off_cameras}
+    views_of = {camera: sum(camera == other for _, other in off) for camera in off_cameras}
+    if len(poses) > 2 and sum(suspect in pair for pair in pairs) >= 0.8 * len(pairs):
         raise CalibrationError(
             f"camera {suspect}: disagrees with the others in {bad_of[suspect]} of its {views_of[suspect]} poses "
             f"(by {max(a for (_, c), a in bad.items() if c == suspect) * 1e3:.0f} mm); it was moved between poses, "
