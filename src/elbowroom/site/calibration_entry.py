@@ -25,6 +25,7 @@ class BoardEntry(Entry):
     kind: Literal["printed", "cut_out"] = "printed"
     border_m: NotNegative = 0.0
     marked: Flag | None = None
+    thickness_m: NotNegative = 0.0
 
     @model_validator(mode="after")
     def _has_two_ends(self) -> "BoardEntry":
