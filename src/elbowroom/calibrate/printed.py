@@ -31,8 +31,8 @@ def printed_view(
     """The view of a printed board, or why there is none.
 
     OpenCV's sector-based detector finds the corners (Duda and Frese, "Accurate Detection and Localization of
-    Checkerboard Corners for Calibration", BMVC 2018). `corner_sigma_px` is by how much they scatter about a smooth surface over the
-    board, one for all.
+    Checkerboard Corners for Calibration", BMVC 2018). `corner_sigma_px` is by how much they scatter about a
+    smooth surface over the board, one for all.
 
     Args:
         camera: that took the image.
@@ -58,7 +58,7 @@ def printed_view(
             return Trouble(camera.name, pose, Fault.MIRRORED)
         if contrast < MARK_CONTRAST:
             return Trouble(camera.name, pose, Fault.NOT_SEEN, "its mark cannot be made out")
-    pixels, depths = _plane(camera, board, corners, depth_m)
+    pixels, depths = points_within(camera, corners, depth_m)
     flat = corners.reshape(-1, 2)
     return BoardView(
         camera=camera.name,
@@ -171,10 +171,19 @@ def _scatter(corners: Array) -> float:
     return float(np.sqrt(((left - explained) ** 2).sum() / max(free, 1)))
 
 
-def _plane(
-    camera: DepthCamera, board: Board, corners: Array, depth_m: NDArray[np.floating] | None
+def points_within(
+    camera: DepthCamera, corners: Array, depth_m: NDArray[np.floating] | None
 ) -> tuple[Array, Array]:
-    """Pixels among the corners that have a return on the board's plane, and their depth."""
+    """Pixels among the corners that have a return on the board's plane, and their depth.
+
+    Args:
+        camera: that took the depth image.
+        corners: in it, shape (rows, columns, 2) [px].
+        depth_m: shape (h, w) [m, the camera's kind]; None: there is none.
+
+    Returns:
+        shape (n, 2), u then v [px]; shape (n,) [m].
+    """
     nothing = np.zeros((0, 2)), np.zeros(0)
     if depth_m is None:
         return nothing
