@@ -10,15 +10,17 @@ from PIL import Image as Pictures
 
 from elbowroom.calibrate.board import Board
 from elbowroom.calibrate.board_view import BoardView
+from elbowroom.calibrate.colour import carried_to_depth
 from elbowroom.calibrate.cut_out import cut_out_view
 from elbowroom.calibrate.printed import printed_view
 from elbowroom.calibrate.trouble import Fault, Trouble
 from elbowroom.errors import CalibrationError, FrameError
-from elbowroom.geometry import DepthCamera
+from elbowroom.geometry import DepthCamera, Intrinsics, nearest_rigid
 from elbowroom.geometry.parallel import spread
 from elbowroom.site import Site
+from elbowroom.site.calibration_entry import CaptureImagesEntry
 from elbowroom.site.images import Image, images_of_cameras
-from elbowroom.site.paths import existing_folder
+from elbowroom.site.paths import existing_folder, inside
 from elbowroom.site.recording_entry import StampedFolder
 
 LOOKED_AT_AGAIN = 24
@@ -152,11 +154,40 @@ def seen_in(site: Site, board: Board, image: Image, pose: int, *, other_sizes: b
     frame = image.read()
     if entry is None or entry.images.folder is None:
         return cut_out_view(image.camera, board, frame.depth_m, pose, image.stamp_ns, other_sizes=other_sizes)
-    folder = existing_folder(entry.images.folder, site.path.parent)
-    path = folder / image.camera.name / image.path.name
-    grey = read_grey(path, image.camera)
-    depth = frame.depth_m if entry.images.kind == "infrared" else None
-    return printed_view(image.camera, board, grey, depth, pose, image.stamp_ns)
+    path = picture_path(site, entry.images, image, pose)
+    lens = entry.images.lenses.get(image.camera.name)
+    if lens is None:
+        grey = read_grey(path, image.camera)
+        depth = frame.depth_m if entry.images.kind == "infrared" else None
+        return printed_view(image.camera, board, grey, depth, pose, image.stamp_ns)
+    k = Intrinsics(lens.fx, lens.fy, lens.cx, lens.cy, lens.distortion)
+    colour = DepthCamera(image.camera.name, lens.width, lens.height, np.eye(4), k)
+    seen = printed_view(colour, board, read_grey(path, colour), None, pose, image.stamp_ns)
+    if isinstance(seen, Trouble):
+        return seen
+    where = nearest_rigid(
+        lens.colour_from_depth, f"camera {colour.name}: colour_from_depth", CalibrationError
+    )
+    return carried_to_depth(seen, colour, where, board, image.camera, frame.depth_m)
+
+
+def picture_path(site: Site, images: CaptureImagesEntry, image: Image, pose: int) -> Path:
+    """The infrared or colour picture that belongs to a depth image.
+
+    Raises:
+        SiteError: the folder is not there.
+        CalibrationError: fewer pictures are listed than there are depth images.
+    """
+    folder = existing_folder(images.folder or "", site.path.parent)
+    listed = images.files.get(image.camera.name)
+    if listed is None:
+        return folder / image.camera.name / image.path.name
+    if pose >= len(listed):
+        raise CalibrationError(
+            f"{site.path}: calibration.images.files: {len(listed)} pictures of camera {image.camera.name}, "
+            f"but it has a depth image of pose {pose}"
+        )
+    return folder / inside(folder, listed[pose])
 
 
 def read_grey(path: Path, camera: DepthCamera) -> NDArray[np.uint8]:

@@ -64,7 +64,7 @@ def printed_view(
             return Trouble(camera.name, pose, Fault.MIRRORED)
         if contrast < MARK_CONTRAST:
             return Trouble(camera.name, pose, Fault.NOT_SEEN, "its mark cannot be made out")
-    pixels, depths = _plane(camera, board, corners, depth_m)
+    pixels, depths = points_within(camera, corners, depth_m)
     scatter = _scatter(corners)
     refined = _refined(camera, board, grey, corners)
     if refined is None:
@@ -237,10 +237,19 @@ def _scatter(corners: Array) -> float:
     return float(np.sqrt(((left - explained) ** 2).sum() / max(free, 1)))
 
 
-def _plane(
-    camera: DepthCamera, board: Board, corners: Array, depth_m: NDArray[np.floating] | None
+def points_within(
+    camera: DepthCamera, corners: Array, depth_m: NDArray[np.floating] | None
 ) -> tuple[Array, Array]:
-    """Pixels among the corners that have a return on the board's plane, and their depth."""
+    """Pixels among the corners that have a return on the board's plane, and their depth.
+
+    Args:
+        camera: that took the depth image.
+        corners: in it, shape (rows, columns, 2) [px].
+        depth_m: shape (h, w) [m, the camera's kind]; None: there is none.
+
+    Returns:
+        shape (n, 2), u then v [px]; shape (n,) [m].
+    """
     nothing = np.zeros((0, 2)), np.zeros(0)
     if depth_m is None:
         return nothing
