@@ -3,6 +3,7 @@
 import typer
 
 from elbowroom.cli.calibrate_extrinsics import extrinsics
+from elbowroom.cli.calibrate_intrinsics import intrinsics
 from elbowroom.cli.calibrate_simulate import simulate
 
 calibrate_app = typer.Typer(
@@ -15,3 +16,6 @@ calibrate_app.command(
 calibrate_app.command(
     epilog="Example: elbowroom calibrate extrinsics capture --out calibrated.yaml --report report"
 )(extrinsics)
+calibrate_app.command(epilog="Example: elbowroom calibrate intrinsics capture --out intrinsics.yaml")(
+    intrinsics
+)
