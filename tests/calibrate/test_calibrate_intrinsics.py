@@ -98,7 +98,7 @@ def test_a_board_never_seen_is_refused() -> None:
 
 
 def test_parallel_poses_are_refused() -> None:
-    with pytest.raises(CalibrationError, match="parallel.*tilt the board"):
+    with pytest.raises(CalibrationError, match=r"parallel.*tilt the board"):
         solve_intrinsics(camera(), BOARD, views(6, tilt_deg=0.0))
 
 

@@ -1,5 +1,6 @@
 """The numbers that are sought of one camera and of the board's poses before it, and what they predict."""
 
+import itertools
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -62,11 +63,20 @@ class LensModel:
         corner_rows = [2 * len(view.corner_ids) for view in views]
         depth_rows = [len(depths.depth_m) for depths in self.depths]
         ends = np.cumsum([0, *(c + d for c, d in zip(corner_rows, depth_rows, strict=True))])
-        self.rows = [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+        self.rows = [slice(a, b) for a, b in itertools.pairwise(ends)]
         self.is_corner = np.concatenate(
             [np.r_[np.ones(c, bool), np.zeros(d, bool)] for c, d in zip(corner_rows, depth_rows, strict=True)]
         )
         self.seen_rows = int(ends[-1])
+        every = np.arange(len(self.views))
+        self._corner_view = np.repeat(every, [len(view.corner_ids) for view in self.views])
+        self._corners = np.concatenate(self.corners)
+        self._corners_px = np.concatenate([view.corners_px for view in self.views])
+        self._corner_sigma = np.concatenate([view.corner_sigma_px for view in self.views])
+        self._depth_view = np.repeat(every, depth_rows)
+        self._depth_px = np.concatenate([depths.pixels for depths in self.depths])
+        self._depth_m = np.concatenate([depths.depth_m for depths in self.depths])
+        self._depth_sigma = np.concatenate([depths.sigma_m for depths in self.depths])
 
     def intrinsics(self, numbers: Array) -> Intrinsics:
         """The lens that the numbers describe."""
@@ -83,20 +93,37 @@ class LensModel:
         pose[:3, 3] = numbers[at + 3 : at + 6]
         return pose
 
-    def residuals(self, numbers: Array) -> Array:
-        """Corners and depths less what is predicted, over their sigmas, then the priors."""
+    def residuals(self, numbers: Array, rays: Array | None = None) -> Array:
+        """Corners and depths less what is predicted, over their sigmas, then the priors.
+
+        Args:
+            numbers: that are sought.
+            rays: of `rays_of` for the same lens, where they are known.
+        """
         k = self.intrinsics(numbers)
         scale, bias = numbers[self.shared - 2 : self.shared]
-        parts = []
-        for n, (view, depths) in enumerate(zip(self.views, self.depths, strict=True)):
-            pose = self.camera_from_board(numbers, n)
-            pixels, _ = project(k, self.corners[n] @ pose[:3, :3].T + pose[:3, 3])
-            parts.append(((view.corners_px - pixels) / view.corner_sigma_px[:, None]).ravel())
-            if len(depths.depth_m):
-                true = self.face_depth(k, pose, depths.pixels)
-                parts.append((depths.depth_m - scale * true - bias) / depths.sigma_m)
+        poses = numbers[self.shared :].reshape(-1, POSE)
+        turns, shifts = Rotation.from_rotvec(poses[:, :3]).as_matrix(), poses[:, 3:]
+        corners = np.einsum("nij,nj->ni", turns[self._corner_view], self._corners)
+        pixels, _ = project(k, corners + shifts[self._corner_view])
+        result = np.empty(self.seen_rows)
+        result[self.is_corner] = ((self._corners_px - pixels) / self._corner_sigma[:, None]).ravel()
+        rays = self.rays_of(numbers) if rays is None else rays
+        normals = turns[:, :, 2]
+        offset = (normals * shifts).sum(axis=1)[self._depth_view]
+        z = offset / np.einsum("ni,ni->n", rays, normals[self._depth_view])
+        true = z * np.linalg.norm(rays, axis=1) if self.camera.depth_kind == "radial" else z
+        result[~self.is_corner] = (self._depth_m - scale * true - bias) / self._depth_sigma
         prior = numbers[PINHOLE : PINHOLE + self.coefficients] / PRIOR_DISTORTION[: self.coefficients]
-        return np.concatenate([*parts, prior, [(scale - 1) / PRIOR_SCALE, bias / PRIOR_BIAS_M]])
+        return np.concatenate([result, prior, [(scale - 1) / PRIOR_SCALE, bias / PRIOR_BIAS_M]])
+
+    def rays_of(self, numbers: Array) -> Array:
+        """Directions of the pixels with depths, z = 1, shape (m, 3)."""
+        if not len(self._depth_px):
+            return np.zeros((0, 3))
+        return np.column_stack(
+            [directions(self.intrinsics(numbers), self._depth_px), np.ones(len(self._depth_px))]
+        )
 
     def face_depth(self, k: Intrinsics, camera_from_board: Array, pixels: Array) -> Array:
         """Depth of the board's face along the rays of pixels, in the camera's kind [m]."""
@@ -107,7 +134,8 @@ class LensModel:
 
     def jacobian(self, numbers: Array) -> Array:
         """Derivative of the residuals by differences: each number of the poses is moved in all views at once."""
-        here = self.residuals(numbers)
+        rays = self.rays_of(numbers)
+        here = self.residuals(numbers, rays)
         result = np.zeros((len(here), len(numbers)))
         for column in range(self.shared):
             step = STEP * max(1.0, abs(numbers[column]))
@@ -117,7 +145,7 @@ class LensModel:
         for number in range(POSE):
             moved = numbers.copy()
             moved[self.shared + number :: POSE] += STEP
-            change = (self.residuals(moved) - here) / STEP
+            change = (self.residuals(moved, rays) - here) / STEP
             for view, rows in enumerate(self.rows):
                 result[rows, self.shared + POSE * view + number] = change[rows]
         return result

@@ -67,8 +67,8 @@ def solve_intrinsics(
         camera: as the site has it: its focal length is where the search starts.
         board: the board.
         views: this camera's.
-        coefficients: 0, 5 or 8 of distortion; None: 5 if they explain the corners better than none (Bayesian
-            information criterion, Schwarz 1978), else none.
+        coefficients: 0, 5 or 8 of distortion; None: 5 if they explain the corners better than none (Akaike's
+            information criterion, 1974), else none.
         least_views: fewer are refused.
 
     Raises:
@@ -83,7 +83,7 @@ def solve_intrinsics(
     start = _first_solution(camera, board, mine)
     wanted = (0, 5) if coefficients is None else (coefficients,)
     solved = [_solved(LensModel(camera, board, mine, count), start) for count in wanted]
-    model, numbers, covariance, criterion = min(solved, key=lambda found: found[3])
+    model, numbers, covariance, _criterion = min(solved, key=lambda found: found[3])
     return _result(camera, board, model, numbers, covariance)
 
 
@@ -96,7 +96,7 @@ def _first_solution(camera: DepthCamera, board: Board, views: Sequence[BoardView
     seen = [view.corners_px.astype(np.float32).reshape(-1, 1, 2) for view in views]
     poses = []
     for corners, pixels in zip(points, seen, strict=True):
-        found, turn, shift = cv2.solvePnP(corners, pixels, matrix, np.array(k.distortion or (0.0,) * 5))
+        found, turn, _shift = cv2.solvePnP(corners, pixels, matrix, np.array(k.distortion or (0.0,) * 5))
         if not found:
             raise CalibrationError(
                 f"camera {camera.name}: no pose of the board fits its corners; capture again"
@@ -157,7 +157,7 @@ def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[LensModel, Ar
     covariance: Array = spread * np.asarray(
         np.linalg.inv(jacobian.T @ (jacobian * weight[:, None])), dtype=np.float64
     )
-    criterion = 2 * cost / spread + np.log(model.seen_rows) * model.coefficients
+    criterion = 2 * cost / spread + 2 * model.coefficients
     return model, numbers, covariance, float(criterion)
 
 

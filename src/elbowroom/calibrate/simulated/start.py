@@ -18,7 +18,8 @@ class Start:
     Args:
         turned_deg, moved_m: each camera's pose in the file is off by so much, in a random direction.
         focal_pct: true focal lengths and principal points differ by up to this share of the focal length [%].
-        lens: true lenses bend by five coefficients, such that no lens folds back within 90 degrees; the file says nothing of it.
+        lens: true lenses bend by five coefficients, such that no lens folds back within 90 degrees; the
+            file says nothing of it.
         depth_scale_pct, depth_bias_m: true depth is measured too long by up to this share [%] and length [m].
 
     Raises:
