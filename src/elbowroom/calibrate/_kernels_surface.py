@@ -95,7 +95,9 @@ def compare(view, inverse, first, last, measured, trust, normal, gradient, count
             drawn = 1.0 / w
             stretch = length if view.radial else 1.0
             beyond = max(drawn * stretch - view.offset, 0.0)
-            sigma = (view.constant + view.linear * drawn * stretch + view.quadratic * beyond * beyond) / stretch
+            sigma = (
+                view.constant + view.linear * drawn * stretch + view.quadratic * beyond * beyond
+            ) / stretch
             slope = trust.lateral_px * math.sqrt(across * across + down * down) * drawn * drawn
             sigma = math.sqrt(sigma * sigma + trust.floor_m**2 + slope * slope + trust.widening_m**2)
             r = (z - drawn) / sigma

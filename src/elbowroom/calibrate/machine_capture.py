@@ -1,7 +1,7 @@
 """A machine that went through poses before the cameras: images, and where its joints were at each."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,11 +26,13 @@ class MachineViews:
     Args:
         images: of all poses that it has an image of.
         poses: which they are, shape (n,): numbers that all cameras share.
+        positions: of the joints at each, shape (n, joints) [m or rad].
         base_from_links: where the links are at each, shape (n, links, 4, 4).
     """
 
     images: PlanarImages
     poses: NDArray[np.int64]
+    positions: NDArray[np.float64]
     base_from_links: NDArray[np.float64]
 
     @property
@@ -40,7 +42,7 @@ class MachineViews:
 
     def coarser(self, step: int) -> "MachineViews":
         """The same with every so many pixels."""
-        return MachineViews(self.images.coarser(step), self.poses, self.base_from_links)
+        return replace(self, images=self.images.coarser(step))
 
 
 def machine_views(
@@ -90,9 +92,11 @@ def _views(
             f"camera {camera.name}: images of {len(kept)} poses, at least {LEAST_POSES} are needed; "
             "look whether it was running, or leave it out"
         )
-    placed = machine.world_from_link_array(np.stack([positions for _, _, positions in kept]))
+    positions = np.stack([positions for _, _, positions in kept])
+    placed = machine.world_from_link_array(positions)
     return MachineViews(
         planar_images(camera, [frame for _, frame, _ in kept]),
         np.array([pose for pose, _, _ in kept]),
+        positions,
         invert_rigid(machine.world_from_base) @ placed,
     )

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.calibrate._kernels_surface import Trust
 from elbowroom.calibrate.drawn_machine import DrawnMachine
 from elbowroom.calibrate.machine_capture import MachineViews
 from elbowroom.calibrate.surface_sums import TRUST, SurfaceSums, surface_sums
@@ -23,8 +24,8 @@ STAGES: tuple[tuple[int, float, int], ...] = (
     (1, 0.0, 20),
 )
 """Every so many pixels, so much added to sigma [m], at most so many steps."""
-STILL = 2e-6
-"""A step below this is the last one [m, rad]: a fiftieth of what one image can say."""
+STILL = 0.05
+"""A step of fewer sigmas, as the images know the pose, is the last one."""
 EASE = 1e-9
 """Keeps the equations solvable where a direction is free; the covariance is what tells of it."""
 
@@ -109,7 +110,13 @@ def fit(
             "the machine's base and all cameras at once: nothing fixes the world; name cameras whose poses hold with "
             "--hold, or find the cameras by a board first"
         )
-    state = _State(machine, machine.world_from_base, {v.camera.name: starts[v.camera.name] for v in views}, known, free_base)
+    state = _State(
+        machine,
+        machine.world_from_base,
+        {v.camera.name: starts[v.camera.name] for v in views},
+        known,
+        free_base,
+    )
     trust = TRUST if model_sigma_m is None else TRUST._replace(floor_m=model_sigma_m)
     sums: dict[str, SurfaceSums] = {}
     for step, widening_m, rounds in STAGES:
@@ -127,13 +134,11 @@ def fit(
     return _finish(state, sums, converged)
 
 
-def _look(state: _State, views: Sequence[MachineViews], trust, sums: dict[str, SurfaceSums]) -> None:
+def _look(state: _State, views: Sequence[MachineViews], trust: Trust, sums: dict[str, SurfaceSums]) -> None:
     """Compares the images of all cameras that still move."""
     drawn = DrawnMachine(state.machine, state.world_from_base)
     moving = [v for v in views if v.camera.name not in state.still]
-    results = spread(
-        lambda v: surface_sums(drawn, v, state.world_from_cameras[v.camera.name], trust), moving
-    )
+    results = spread(lambda v: surface_sums(drawn, v, state.world_from_cameras[v.camera.name], trust), moving)
     for v, result in zip(moving, results, strict=True):
         sums[v.camera.name] = result
 
@@ -141,21 +146,20 @@ def _look(state: _State, views: Sequence[MachineViews], trust, sums: dict[str, S
 def _step(state: _State, sums: Mapping[str, SurfaceSums]) -> None:
     """One step of Gauss and Newton for all cameras and the base."""
     normal, gradient = _equations(state, sums, dict.fromkeys(sums, 1.0))
-    twist = -np.linalg.solve(normal + EASE * np.diag(np.diag(normal)) + EASE * np.eye(len(normal)), gradient)
-    for row, name in enumerate(state.free):
-        part = twist[6 * row : 6 * row + 6]
+    eased = normal + EASE * np.diag(np.diag(normal)) + EASE * np.eye(len(normal))
+    twist = -np.linalg.solve(eased, gradient)
+    parts = {name: twist[6 * row : 6 * row + 6] for row, name in enumerate(state.free)}
+    for name, part in parts.items():
         state.world_from_cameras[name] = moved(state.world_from_cameras[name], part)
     if state.free_base:
         state.world_from_base = moved(state.world_from_base, twist[-6:])
-        if np.abs(twist).max() < STILL:
+        if twist @ normal @ twist < STILL**2:
             state.still.update(state.world_from_cameras)
-    else:
-        state.still.update(
-            name
-            for row, name in enumerate(state.free)
-            if np.abs(twist[6 * row : 6 * row + 6]).max() < STILL
-        )
-        state.still.update(set(state.world_from_cameras) - set(state.free))
+        return
+    for name, own in sums.items():
+        part = parts.get(name, np.zeros(6))
+        if part @ own.normal.sum(axis=0) @ part < STILL**2:
+            state.still.add(name)
 
 
 def _equations(

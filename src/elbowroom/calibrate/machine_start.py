@@ -20,7 +20,7 @@ WIDER = 0.35
 """The surface is drawn in an image that reaches so much farther on each side: the camera may look elsewhere."""
 MOVED_SIGMAS, MOVED_M = 6.0, 0.03
 """What is nearer than the farthest of all poses by so much has moved."""
-FEWEST_POINTS = 60
+FEWEST_POINTS = 25
 """Poses with fewer moving points have no say."""
 REACH_M = 0.5
 """Points farther from the surface are nobody's at the start [m]."""
@@ -104,26 +104,25 @@ def moving_points(small: PlanarImages, images: PlanarImages) -> list[Array]:
 
     Args:
         small: the images at the points' density.
-        images: the same, dense: depth is the mean of 5 x 5 pixels that moved and lie together.
+        images: the same, dense: depth is the mean of up to 5 x 5 pixels that moved and lie together.
     """
     depth = images.depth_m
     far = depth.max(axis=0)
     sigma = images.camera.noise.sigma(far) if images.camera.noise is not None else 0.0
     step = small.step // images.step
     x, y = np.meshgrid(*small.thinned.intrinsics.normalised(small.thinned.width, small.thinned.height))
-    picked = (slice(step // 2, None, step),) * 2
+    picked, about = (slice(step // 2, None, step),) * 2, min(2 * step - 1, 5)
     found = []
     for image in depth:
         has_moved = (image > 0) & (image < far - (MOVED_SIGMAS * sigma + MOVED_M))
         kept = np.where(has_moved, image, 0.0)
         share, mean, square = (
-            uniform_filter(part, 5)[picked][: x.shape[0], : x.shape[1]]
+            uniform_filter(part, about)[picked][: x.shape[0], : x.shape[1]]
             for part in (has_moved.astype(float), kept, kept.astype(float) ** 2)
         )
         mean, square = mean / np.maximum(share, 1e-9), square / np.maximum(share, 1e-9)
-        lies_together = square - mean**2 < 0.06**2
-        z = mean[(share > 0.6) & lies_together]
-        chosen = (share > 0.6) & lies_together
+        chosen = (share > 0.6) & (square - mean**2 < 0.06**2)
+        z = mean[chosen]
         found.append(np.stack([x[chosen] * z, y[chosen] * z, z], axis=-1).astype(float))
     return found
 

@@ -61,14 +61,18 @@ def planar_images(camera: DepthCamera, frames: Sequence[DepthFrame], step: int |
     step = step or max(1, round(camera.width / FITTED_WIDTH_PX))
     small = thinned(camera, step)
     look = _look_up(camera, small)
-    scale = np.float32(1) if camera.depth_kind == "planar" else (1 / small.radial_over_planar).astype(np.float32)
+    scale = (
+        np.float32(1) if camera.depth_kind == "planar" else (1 / small.radial_over_planar).astype(np.float32)
+    )
     depth = np.zeros((len(frames), small.height, small.width), dtype=np.float32)
     for row, frame in enumerate(frames):
         raw = frame.depth_m
         valid = (raw > 0) & (raw >= camera.min_depth_m) & (raw <= camera.max_depth_m) & (raw < np.inf)
         clean = np.where(valid, raw, np.float32(0))
         depth[row] = (
-            _interpolated(clean, *look) if look else clean[step // 2 :: step, step // 2 :: step][: small.height, : small.width]
+            _interpolated(clean, *look)
+            if look
+            else clean[step // 2 :: step, step // 2 :: step][: small.height, : small.width]
         ) * scale
     return PlanarImages(camera, small, step, depth)
 
