@@ -12,18 +12,24 @@ from rich.table import Table as RichTable
 from elbowroom.cli.evaluate_run import watched
 from elbowroom.cli.json_output import json_rows, meta
 from elbowroom.errors import InputError
-from elbowroom.evaluate.blocks import Block, Part, Table
 from elbowroom.evaluate.due import due_table
 from elbowroom.evaluate.kept import Kept, source_state
-from elbowroom.evaluate.page import page
+from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.task import Outcome, Settings, Task
 from elbowroom.evaluate.thesis import SENSORS
 from elbowroom.evaluate.work_force import do_tasks
 from elbowroom.geometry.parallel import default_threads
 from elbowroom.view.atomic import folder, whole_file
+from elbowroom.view.blocks import Block, Table
+from elbowroom.view.page import page
 
 PARTS = ("reconstruction", "motions", "calibration", "scale", "more")
 """Names of the parts, which are those of their modules in `elbowroom.evaluate`, in the order of the page."""
+TITLE = "The thesis' experiments"
+ABOUT = (
+    "I. Hamersma, *Collision avoidance using multiple correlated 3D depth measurements*, Eindhoven 2011, "
+    "run again with elbowroom: its figures stand beside ours."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +95,7 @@ def run_parts(
                 console.print(_rich(block))
     if out is not None:
         with whole_file(out / "report.html") as unfinished:
-            unfinished.write_text(page(sections, meta()), encoding="utf-8")
+            unfinished.write_text(page(TITLE, ABOUT, sections, meta()), encoding="utf-8")
         console.print(f"\nPage: {out / 'report.html'}")
 
 
