@@ -86,3 +86,34 @@ def agreement(
         int((beyond >= within_m).sum()),
         int((beyond <= -within_m).sum()),
     )
+
+
+def seen_from(
+    camera: DepthCamera, other: DepthCamera, planar_other: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """What another camera measured, as seen from this one: depth along the axis of the nearest point in each pixel.
+
+    Args:
+        camera, other: pinhole cameras at their places.
+        planar_other: the other's image, depth along its axis [m]; 0: no return.
+
+    Returns:
+        shape (height, width) of `camera`, float32 [m]; 0 where no point falls.
+    """
+    x, y = np.meshgrid(*other.intrinsics.normalised(other.width, other.height))
+    there = planar_other > 0
+    z = planar_other[there].astype(float)
+    in_other = np.stack([x[there] * z, y[there] * z, z, np.ones_like(z)], axis=-1)
+    point = in_other @ (camera.camera_from_world @ other.world_from_camera).T
+    point = point[point[:, 2] > 1e-6]
+    k = camera.intrinsics
+    u = np.rint(k.fx * point[:, 0] / point[:, 2] + k.cx)
+    v = np.rint(k.fy * point[:, 1] / point[:, 2] + k.cy)
+    inside = (u >= 0) & (u < camera.width) & (v >= 0) & (v < camera.height)
+    nearest = np.full((camera.height, camera.width), np.inf, dtype=np.float32)
+    np.minimum.at(
+        nearest,
+        (v[inside].astype(np.intp), u[inside].astype(np.intp)),
+        point[inside, 2].astype(np.float32),
+    )
+    return np.where(np.isfinite(nearest), nearest, np.float32(0))

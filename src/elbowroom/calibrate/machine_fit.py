@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ STILL = 0.05
 EASE = 1e-9
 """Keeps the equations solvable where a direction is free; the covariance is what tells of it."""
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 
 class Known(NamedTuple):
@@ -188,10 +188,10 @@ def _equations(
             normal[at, -6:] += part @ by_base
             normal[-6:, at] += by_base.T @ part
         if name in state.known:
-            before = state.known[name]
-            weight = np.linalg.inv(before.covariance)
+            before, covariance = state.known[name]
+            weight = np.linalg.inv(np.asarray(covariance))
             normal[at, at] += weight
-            gradient[at] += weight @ between(before.world_from_camera, here)
+            gradient[at] += weight @ between(before, here)
     return normal, gradient
 
 

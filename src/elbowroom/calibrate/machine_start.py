@@ -1,6 +1,6 @@
 """Where a camera is, roughly: what moved before it, laid on the surface that the machine shows it."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import small_gicp
@@ -31,7 +31,7 @@ FARTHEST_M, FARTHEST_RAD = 0.6, 0.45
 ALONG_SURFACE = 0.1
 """Weight of what a point is off along the surface: without it nothing pulls from far away."""
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 
 class Surface(NamedTuple):

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ BEND = 0.02
 MOST_POINTS = 3000
 """Points of an image that are laid on another; more say the same again."""
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 
 class Points(NamedTuple):
@@ -138,11 +138,11 @@ def pair_sums(
         view = view_of(other.images.thinned)
         _, rows, other_rows = np.intersect1d(one.moments, other.moments, return_indices=True)
         for row, at in zip(rows, other_rows, strict=True):
-            points = one.points[row]
-            off = np.full(len(points.points), np.nan)
+            points, normals, sigmas = one.points[row]
+            off = np.full(len(points), np.nan)
             compare_points(
-                view, other.images.depth_m[at], other.planes[at], *points, other_from_one, rule,
-                normal, gradient, counts, off,
+                view, other.images.depth_m[at], other.planes[at], points, normals, sigmas,
+                other_from_one, rule, normal, gradient, counts, off,
             )  # fmt: skip
             offs.append(off[np.isfinite(off)])
         return PairSums(one.name, other.name, normal, gradient, counts, np.concatenate(offs))

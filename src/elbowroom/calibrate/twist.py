@@ -1,12 +1,14 @@
 """Small motions as six numbers: rotation vector [rad], then translation [m], in the frame that moves."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
+from elbowroom.calibrate.rigid import cross_matrix, exp, log
 from elbowroom.geometry.transforms import invert_rigid
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
 
 def moved(to_from_frame: Array, twist: Array) -> Array:
@@ -16,24 +18,20 @@ def moved(to_from_frame: Array, twist: Array) -> Array:
         to_from_frame: pose, shape (4, 4).
         twist: rotation vector [rad], then translation [m], shape (6,), in the frame.
     """
-    motion = np.eye(4)
-    motion[:3, :3] = Rotation.from_rotvec(twist[:3]).as_matrix()
-    motion[:3, 3] = twist[3:]
-    return to_from_frame @ motion
+    return to_from_frame @ exp(twist)
 
 
 def between(to_from_frame: Array, to_from_moved: Array) -> Array:
     """The twist that brings one pose to another: `moved(to_from_frame, twist) = to_from_moved`, shape (6,)."""
-    motion = invert_rigid(to_from_frame) @ to_from_moved
-    return np.concatenate([Rotation.from_matrix(motion[:3, :3]).as_rotvec(), motion[:3, 3]])
+    return log(invert_rigid(to_from_frame) @ to_from_moved)
 
 
 def adjoint(to_from_frame: Array) -> Array:
     """Matrix that turns a small twist in `frame` into the same motion in `to`, shape (6, 6)."""
-    rotation, (x, y, z) = to_from_frame[:3, :3], to_from_frame[:3, 3]
+    rotation = to_from_frame[:3, :3]
     result = np.zeros((6, 6))
     result[:3, :3] = result[3:, 3:] = rotation
-    result[3:, :3] = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ rotation
+    result[3:, :3] = cross_matrix(to_from_frame[:3, 3]) @ rotation
     return result
 
 

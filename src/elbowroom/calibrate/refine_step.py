@@ -1,0 +1,90 @@
+"""One step of the least squares over all pairs of cameras, with what was known of each camera before."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.calibrate.overlap import PairSums
+from elbowroom.calibrate.twist import adjoint, between, moved
+from elbowroom.geometry import invert_rigid
+
+Array = NDArray[Any]
+BOTH_WAYS = 2.0
+"""Each two cameras are compared both ways, with the same images: that is not twice the knowledge."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Before:
+    """What was known of the cameras before.
+
+    Args:
+        poses: world_from_camera of all of them, by name.
+        covariances: of the twists of those that may move, shape (6, 6).
+    """
+
+    poses: Mapping[str, Array]
+    covariances: Mapping[str, Array]
+
+    @property
+    def free(self) -> list[str]:
+        """Names of the cameras that may move."""
+        return list(self.covariances)
+
+    def square_moved(self, name: str, world_from_camera: Array) -> float:
+        """Squared Mahalanobis distance of a pose from what was known of it."""
+        twist = between(self.poses[name], world_from_camera)
+        return float(twist @ np.linalg.solve(self.covariances[name], twist))
+
+
+def step(
+    sums: Sequence[PairSums],
+    poses: Mapping[str, Array],
+    before: Before,
+) -> tuple[dict[str, Array], Array, float]:
+    """One step of Gauss and Newton; new poses, normal equations, and the step's length in sigmas.
+
+    A point of the one camera sees, in the other's frame, the one's twist brought there minus the other's own.
+    """
+    free = before.free
+    normal, gradient = np.zeros((6 * len(free),) * 2), np.zeros(6 * len(free))
+    at = {name: slice(6 * row, 6 * row + 6) for row, name in enumerate(free)}
+    for pair in sums:
+        inflation = BOTH_WAYS * inflation_of(pair)
+        own, slope = pair.normal.sum(axis=0) / inflation, pair.gradient.sum(axis=0) / inflation
+        by = {
+            pair.one: adjoint(invert_rigid(poses[pair.other]) @ poses[pair.one]),
+            pair.other: -np.eye(6),
+        }
+        for name in by.keys() & at.keys():
+            gradient[at[name]] += by[name].T @ slope
+            for other in by.keys() & at.keys():
+                normal[at[name], at[other]] += by[name].T @ own @ by[other]
+    for name in free:
+        weight = np.linalg.inv(before.covariances[name])
+        normal[at[name], at[name]] += weight
+        gradient[at[name]] += weight @ between(before.poses[name], poses[name])
+    twist = -np.linalg.solve(normal, gradient)
+    new = dict(poses)
+    for name in free:
+        new[name] = moved(poses[name], twist[at[name]])
+    return new, normal, float(np.sqrt(twist @ normal @ twist))
+
+
+def inflation_of(pair: PairSums) -> float:
+    """By how much the covariance of a pair must grow for the parts of the image to agree with each other, at least 1.
+
+    What a lens, a depth scale or a warped reading adds is the same in all points of a part of the image. So the sums of
+    the parts scatter more than single points' noise would make them, by this factor.
+    """
+    whole = pair.normal.sum(axis=0)
+    used = pair.normal.any(axis=(1, 2))
+    count = int(used.sum())
+    if count < 3:
+        return 1.0
+    step = np.linalg.pinv(whole, rcond=1e-9) @ pair.gradient.sum(axis=0)
+    left = pair.gradient[used] - pair.normal[used] @ step
+    scatter = np.einsum("ti,tj->ij", left, left) * count / (count - 1)
+    return max(1.0, float(np.trace(np.linalg.pinv(whole, rcond=1e-9) @ scatter)) / 6)
