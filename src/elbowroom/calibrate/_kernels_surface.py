@@ -50,26 +50,28 @@ def is_smooth(inverse, u, v, border, step_m):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def compare(view, inverse, first, last, measured, trust, normal, gradient, counts, residuals):
+def compare(view, inverse, first, last, measured, bias, scale, trust, normal, gradient, counts, residuals):
     """Adds up normal equations of a camera's pose from one image of a surface.
 
     Residual: measured minus drawn planar depth, over sigma. With the drawn point p, its normal n and the ray d (z 1),
-    a camera that moves by the twist (w, t) in its own frame changes the drawn depth by -n.(w x p + t) / n.d.
+    a camera that moves by the twist (w, t) in its own frame changes the drawn depth by -n.(w x p + t) / n.d. The sensor
+    reads (1 + scale) times the true distance plus bias. Unknowns: w, t, bias, scale.
 
     Args:
         view: the camera.
         inverse: (height, width) float32, 1 / drawn planar depth, 0 where nothing is.
         first, last: (height,) first and last column drawn in each row.
         measured: (height, width) float32 planar depth [m], 0 without return.
+        bias, scale: what the sensor's depth is taken to be off by [m, 1], along its kind of depth.
         trust: which pixels count.
-        normal, gradient: (6, 6), (6,) sums of weight J^T J and weight J^T r, r in sigmas; added to.
+        normal, gradient: (8, 8), (8,) sums of weight J^T J and weight J^T r, r in sigmas; added to.
         counts: (5,) as named above; added to.
         residuals: (height, width) float32, measured minus drawn depth [m] of the pixels that agree; NaN elsewhere.
 
     Returns:
         Tukey's cost: half squares of sigmas, bounded, over all pixels judged that have a return.
     """
-    row = np.empty(6)
+    row = np.empty(8)
     cost = 0.0
     limit = trust.reach * trust.reach / 6.0
     for v in range(view.height):
@@ -100,25 +102,27 @@ def compare(view, inverse, first, last, measured, trust, normal, gradient, count
             ) / stretch
             slope = trust.lateral_px * math.sqrt(across * across + down * down) * drawn * drawn
             sigma = math.sqrt(sigma * sigma + trust.floor_m**2 + slope * slope + trust.widening_m**2)
-            r = (z - drawn) / sigma
+            off = z - drawn * (1.0 + scale) - bias / stretch
+            r = off / sigma
             if abs(r) >= trust.reach:
                 counts[BEHIND if r > 0 else BEFORE] += 1
                 cost += limit
                 continue
             counts[AGREES] += 1
-            residuals[v, u] = z - drawn
+            residuals[v, u] = off
             inside = 1.0 - (r / trust.reach) ** 2
             cost += limit * (1.0 - inside**3)
             weight = inside * inside
             # d(drawn)/d(twist) = -(p x n, n) / (n.d); n / (n.d) = q / w; r falls as drawn grows
             px, py = x * drawn, y * drawn
-            scale = drawn / sigma
-            row[0] = (py * qz - drawn * qy) * scale
-            row[1] = (drawn * qx - px * qz) * scale
-            row[2] = (px * qy - py * qx) * scale
-            row[3], row[4], row[5] = qx * scale, qy * scale, qz * scale
-            for i in range(6):
+            by = drawn / sigma
+            row[0] = (py * qz - drawn * qy) * by
+            row[1] = (drawn * qx - px * qz) * by
+            row[2] = (px * qy - py * qx) * by
+            row[3], row[4], row[5] = qx * by, qy * by, qz * by
+            row[6], row[7] = -1.0 / (stretch * sigma), -drawn / sigma
+            for i in range(8):
                 gradient[i] += weight * row[i] * r
-                for j in range(6):
+                for j in range(8):
                     normal[i, j] += weight * row[i] * row[j]
     return cost

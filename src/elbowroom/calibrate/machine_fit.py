@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 from elbowroom.calibrate._kernels_surface import Trust
 from elbowroom.calibrate.drawn_machine import DrawnMachine
 from elbowroom.calibrate.machine_capture import MachineViews
-from elbowroom.calibrate.surface_sums import TRUST, SurfaceSums, surface_sums
+from elbowroom.calibrate.surface_sums import (
+    TRUST,
+    SurfaceSums,
+    depth_error_step,
+    of_pose,
+    surface_sums,
+    whole,
+)
 from elbowroom.calibrate.twist import adjoint, between, moved
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import invert_rigid
@@ -49,6 +56,8 @@ class MachineFit:
         covariances: of each camera's twist, shape (6, 6).
         base_covariance: of the base's twist in its own frame, shape (6, 6); None: it was not asked for.
         sums: what each camera's images say at the end.
+        depth_errors: by camera: bias [m] and scale of its depth, shape (2,): it reads (1 + scale) times the distance,
+            plus bias.
         inflation: by camera: by how much its images disagree from pose to pose more than their noise explains.
         converged: whether the last step was small.
     """
@@ -58,6 +67,7 @@ class MachineFit:
     covariances: Mapping[str, Array]
     base_covariance: Array | None
     sums: Mapping[str, SurfaceSums]
+    depth_errors: Mapping[str, Array]
     inflation: Mapping[str, float]
     converged: Mapping[str, bool]
 
@@ -71,6 +81,7 @@ class _State:
     world_from_cameras: dict[str, Array]
     known: Mapping[str, Known]
     free_base: bool
+    depth_errors: dict[str, Array] = field(default_factory=dict)
     still: set[str] = field(default_factory=set)
 
     @property
@@ -138,7 +149,13 @@ def _look(state: _State, views: Sequence[MachineViews], trust: Trust, sums: dict
     """Compares the images of all cameras that still move."""
     drawn = DrawnMachine(state.machine, state.world_from_base)
     moving = [v for v in views if v.camera.name not in state.still]
-    results = spread(lambda v: surface_sums(drawn, v, state.world_from_cameras[v.camera.name], trust), moving)
+
+    def look(view: MachineViews) -> SurfaceSums:
+        name = view.camera.name
+        error = state.depth_errors.setdefault(name, np.zeros(2))
+        return surface_sums(drawn, view, state.world_from_cameras[name], error, trust)
+
+    results = spread(look, moving)
     for v, result in zip(moving, results, strict=True):
         sums[v.camera.name] = result
 
@@ -149,17 +166,22 @@ def _step(state: _State, sums: Mapping[str, SurfaceSums]) -> None:
     eased = normal + EASE * np.diag(np.diag(normal)) + EASE * np.eye(len(normal))
     twist = -np.linalg.solve(eased, gradient)
     parts = {name: twist[6 * row : 6 * row + 6] for row, name in enumerate(state.free)}
-    for name, part in parts.items():
-        state.world_from_cameras[name] = moved(state.world_from_cameras[name], part)
+    base_twist = twist[-6:] if state.free_base else np.zeros(6)
+    for name, own in sums.items():
+        if name in state.still:
+            continue
+        here = state.world_from_cameras[name]
+        part = parts.get(name, np.zeros(6))
+        seen = part - adjoint(invert_rigid(here) @ state.world_from_base) @ base_twist
+        equations = whole(own)
+        state.depth_errors[name] = state.depth_errors[name] + depth_error_step(*equations, seen)
+        state.world_from_cameras[name] = moved(here, part)
+        if not state.free_base and part @ of_pose(*equations)[0] @ part < STILL**2:
+            state.still.add(name)
     if state.free_base:
-        state.world_from_base = moved(state.world_from_base, twist[-6:])
+        state.world_from_base = moved(state.world_from_base, base_twist)
         if twist @ normal @ twist < STILL**2:
             state.still.update(state.world_from_cameras)
-        return
-    for name, own in sums.items():
-        part = parts.get(name, np.zeros(6))
-        if part @ own.normal.sum(axis=0) @ part < STILL**2:
-            state.still.add(name)
 
 
 def _equations(
@@ -173,7 +195,8 @@ def _equations(
     size = 6 * (len(free) + state.free_base)
     normal, gradient = np.zeros((size, size)), np.zeros(size)
     for name, own in sums.items():
-        part, slope = own.normal.sum(axis=0) / inflation[name], own.gradient.sum(axis=0) / inflation[name]
+        part, slope = of_pose(*whole(own))
+        part, slope = part / inflation[name], slope / inflation[name]
         here = state.world_from_cameras[name]
         if state.free_base:
             by_base = -adjoint(invert_rigid(here) @ state.world_from_base)
@@ -205,6 +228,7 @@ def _finish(state: _State, sums: dict[str, SurfaceSums], converged: dict[str, bo
         {name: covariance[6 * r : 6 * r + 6, 6 * r : 6 * r + 6] for r, name in enumerate(state.free)},
         covariance[-6:, -6:] if state.free_base else None,
         sums,
+        dict(state.depth_errors),
         inflation,
         converged,
     )
@@ -218,16 +242,21 @@ def inflation_of(sums: SurfaceSums) -> float:
     leaving out one pose after the other gives (jackknife) tells by how much; one number is taken of it, for a dozen
     poses do not say more.
     """
-    whole = sums.normal.sum(axis=0)
-    used = [row for row in range(len(sums.normal)) if sums.normal[row].any()]
+    everything, _ = whole(sums)
     changes = []
-    for row in used:
-        rest = whole - sums.normal[row]
-        if np.linalg.cond(rest) > 1e12:
-            continue
-        changes.append(np.linalg.solve(rest, sums.gradient[row]))
+    for normal, gradient in zip(sums.normal, sums.gradient, strict=True):
+        rest = everything - normal
+        if normal.any() and np.linalg.cond(rest * _scale(rest)) < 1e12:
+            changes.append(np.linalg.solve(rest, gradient))
     if len(changes) < 3:
         return 1.0
     spread_out = np.array(changes) - np.mean(changes, axis=0)
     jackknife = (len(changes) - 1) / len(changes) * spread_out.T @ spread_out
-    return max(1.0, float(np.trace(whole @ jackknife)) / 6)
+    by_images = np.trace(np.linalg.solve(everything + EASE * np.eye(8), sums.normal.sum(axis=0)))
+    return max(1.0, float(np.trace(everything @ jackknife) / max(by_images, 1.0)))
+
+
+def _scale(normal: Array) -> Array:
+    """Brings a matrix's diagonal to one: its condition then does not depend on units."""
+    root = 1 / np.sqrt(np.maximum(np.diag(normal), 1e-30))
+    return np.outer(root, root)
