@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,14 +34,19 @@ class MachineCalibration:
         machine: where its base is.
         base_covariance: of the twist of world_from_base in the base's frame, rotation vector [rad], then translation
             [m], shape (6, 6); None: the base was not asked for and fixes the world.
+        depth_errors: by camera: bias [m] and scale: it reads (1 + scale) times the distance, plus bias.
         poses: how many were used.
+        rows: of kind "machine", one a camera: poses and pixels that agree, see through the model, have something before
+            it; by how many times poses disagree more than noise explains.
         pictures: of each camera the pose in which most of the machine agrees.
     """
 
     cameras: tuple[CalibratedCamera, ...]
     machine: Machine
     base_covariance: NDArray[np.float64] | None
+    depth_errors: Mapping[str, tuple[float, float]]
     poses: int
+    rows: tuple[dict[str, Any], ...]
     pictures: tuple[SurfacePicture, ...]
 
 
@@ -108,7 +114,9 @@ def calibrate_from_machine(
         calibrated,
         machine,
         found.base_covariance,
+        {name: (float(bias), float(scale)) for name, (bias, scale) in found.depth_errors.items()},
         len(np.unique(np.concatenate([v.poses for v in views]))),
+        tuple(_row(v, found) for v in views),
         tuple(_picture(drawn, v, found) for v in views),
     )
 
@@ -181,6 +189,26 @@ def _calibrated(views: MachineViews, found: MachineFit, notes: tuple[str, ...]) 
         residuals_m=along_ray[np.isfinite(along_ray)],
         notes=notes,
     )
+
+
+def _row(views: MachineViews, found: MachineFit) -> dict[str, Any]:
+    name, sums = views.camera.name, found.sums[views.camera.name]
+    bias, scale = found.depth_errors[name]
+    off = sums.residuals[np.isfinite(sums.residuals)]
+    return {
+        "kind": "machine",
+        "camera": name,
+        "poses": int((np.isfinite(sums.residuals).sum(axis=(1, 2)) > 0).sum()),
+        "pixels": sums.agreeing,
+        "through": sums.behind,
+        "before": sums.before,
+        "silent": sums.silent,
+        "rms_m": float(np.sqrt(np.mean(off.astype(float) ** 2))),
+        "median_m": float(np.median(off)),
+        "bias_m": float(bias),
+        "scale": float(scale),
+        "inflation": found.inflation[name],
+    }
 
 
 def _picture(drawn: DrawnMachine, views: MachineViews, found: MachineFit) -> SurfacePicture:

@@ -21,6 +21,8 @@ UNFIXED_M, UNFIXED_RAD = 0.010, np.radians(0.3)
 """One sigma in the weakest direction: beyond, the pose is not found."""
 WEAK_M, WEAK_RAD = 0.003, np.radians(0.1)
 """One sigma beyond which it is said what would help."""
+DEPTH_OFF_M, DEPTH_OFF = 0.01, 0.01
+"""Errors of the depth itself that are worth a note [m, 1]."""
 HARDLY = 0.1
 """A joint that went through less than this share of its range hardly moved."""
 
@@ -84,6 +86,12 @@ def notes_of(machine: Machine, views: MachineViews, found: MachineFit) -> tuple[
         notes.append(
             f"{name}: poses disagree by {np.sqrt(found.inflation[name]):.0f} times what noise explains; look at the "
             "joints' zero positions and at the machine's model"
+        )
+    bias, scale = found.depth_errors[name]
+    if abs(bias) > DEPTH_OFF_M or abs(scale) > DEPTH_OFF:
+        notes.append(
+            f"{name}: its depth reads {bias * 1e3:+.0f} mm and {scale * 100:+.1f} % off; its margin allows for it, or "
+            "calibrate intrinsics and depth_scale_m"
         )
     if sums.before > sums.agreeing:
         notes.append(
