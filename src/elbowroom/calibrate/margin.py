@@ -1,7 +1,7 @@
 """What a pose's covariance makes of the carve margin: lateral pixels, and metres at range.
 
-A point x that a camera measures lies, because of the pose's error (w, t) in the camera's frame, at x + w × x + t. That is
-linear in the error, so over the ellipsoid e^T S^-1 e <= k^2 each displacement a^T e is at most k sqrt(a^T S a). With
+A point x that a camera measures lies, because of the pose's error (w, t) in the camera's frame, at x + w × x + t. That
+is linear in the error, so over the ellipsoid e^T S^-1 e <= k^2 each displacement a^T e is at most k sqrt(a^T S a). With
 k^2 the quantile of chi-square with 6 degrees of freedom, all displacements of all pixels at all depths stay within
 their bounds at once, with the stated confidence (Scheffé's method).
 """

@@ -1,7 +1,7 @@
 """The plane that a depth image of the board shows: three numbers and how sure they are.
 
-A plane is m with m · X = 1 for its points X, camera frame [1/m]. The return in direction d, at depth z, is the point z d,
-so 1/z = m · d: the depth points say of the board's pose what m and its covariance say.
+A plane is m with m · X = 1 for its points X, camera frame [1/m]. The return in direction d, at depth z, is the point
+z d, so 1/z = m · d: the depth points say of the board's pose what m and its covariance say.
 """
 
 from dataclasses import dataclass
@@ -67,7 +67,7 @@ def seen_plane(camera: DepthCamera, pixels: Array, depth_m: Array) -> SeenPlane 
     rows = d * (depth_m / sigma)[:, None]
     if np.linalg.cond(rows.T @ rows) > WORST_CONDITION:
         return None
-    m = np.linalg.solve(rows.T @ rows, rows.T @ (1 / sigma))
+    m = np.asarray(np.linalg.solve(rows.T @ rows, rows.T @ (1 / sigma)), dtype=np.float64)
     weight = np.ones(len(depth_m))
     for _ in range(8):
         inverse = d @ m
@@ -87,9 +87,10 @@ def seen_plane(camera: DepthCamera, pixels: Array, depth_m: Array) -> SeenPlane 
     inverse = d @ m
     slope = d / inverse[:, None] ** 2
     rows = slope * (np.sqrt(weight) / sigma)[:, None]
-    information = rows.T @ rows
+    information = np.asarray(rows.T @ rows, dtype=np.float64)
     if np.linalg.cond(information) > WORST_CONDITION or (inverse <= 0).any():
         return None
     # a bias b lets m move as the fit follows z + b
-    by_bias = -np.linalg.solve(information, rows.T @ (np.sqrt(weight) / sigma))
-    return SeenPlane(m, np.linalg.cholesky(information).T, by_bias, -m, depth_m - 1 / inverse)
+    by_bias = np.asarray(-np.linalg.solve(information, rows.T @ (np.sqrt(weight) / sigma)), dtype=np.float64)
+    off_m = np.asarray(depth_m - 1 / inverse, dtype=np.float64)
+    return SeenPlane(m, np.linalg.cholesky(information).T, by_bias, -m, off_m)

@@ -1,23 +1,22 @@
-"""The joint least squares over all poses of cameras and board, with robust weights and honest variances.
+"""The joint least squares over all poses of cameras and board.
 
-Unknown are a motion of each camera and of each pose of the board on the right of its pose, and of each camera with depth a
-bias and a scale error of its depth, which a prior keeps small. What the anchor fixes does not move. Residuals are those
-of corners [px / sigma] and of planes (`SeenPlane`), each divided by a variance factor of its camera.
+Unknown are a motion of each camera and of each pose of the board on the right of its pose, and of each camera with
+depth a bias and a scale error of its depth, which a prior keeps small. What the anchor fixes does not move.
 
-The factors are estimated (Förstner 1979) at the level of views, not of corners: what all corners of one image have in
-common, such as a hand that shook or a lens that is a little off, shows only there, and a factor from single corners
-would make the covariance too small.
+Each view comes down to nine numbers: of its corners the six that depend on poses (by a QR decomposition), and the
+three of its plane. What they scatter by is estimated with the poses (`variances.py`), and views that fit badly all the
+same are weighted down: so the covariance says what is true, not what the sigmas of corners promise.
 """
 
-from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.extrinsics.anchor import Anchor, BoardAnchor, CameraAnchor, PointsAnchor
 from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, corner_rows, plane_rows
+from elbowroom.calibrate.extrinsics.variances import Variances, ViewRows
 from elbowroom.calibrate.lens import project
 from elbowroom.calibrate.rigid import cross_matrix, exp
 from elbowroom.geometry import DepthCamera, invert_rigid
@@ -26,16 +25,10 @@ Array = NDArray[np.float64]
 BIAS_SIGMA_M = 0.005
 SCALE_SIGMA = 0.005
 """Prior of a camera's depth: constant error [m] and error per metre; what makers promise is of this size."""
-ROUNDS, STEPS = 8, 12
-"""Of weights and factors; of Levenberg-Marquardt within each."""
-LEAST_FACTOR = 0.05
-SHRINKAGE = 40.0
-"""Degrees of freedom that the factor of all cameras weighs against a camera's own."""
-DOUBTED_FACTOR = 1.5
-DOUBT_FREEDOM = 6.0
-"""Before views were compared, their common errors are held to be half as large again, and that weighs this much."""
-OUTLYING = 4.0
-"""A view is weighted down if its chi-square per degree of freedom is more than so many times the factor."""
+ROUNDS, STEPS = 4, 15
+"""Of linearisations with variances estimated anew; of Levenberg-Marquardt before."""
+RENEWALS = 12
+"""Of variances at one linearisation, at most."""
 
 
 @dataclass(eq=False)
@@ -91,20 +84,6 @@ class Index:
         self.size = at
 
 
-@dataclass(eq=False)
-class Weights:
-    """What residuals are weighted by.
-
-    Args:
-        corner, plane: variance factors by camera.
-        view: of each view, 0 to 1, shape (n,).
-    """
-
-    corner: dict[str, float]
-    plane: dict[str, float]
-    view: Array = field(repr=False)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Solution:
     """What the least squares found.
@@ -113,17 +92,13 @@ class Solution:
         state: poses and depth errors.
         covariance: of all unknowns, shape (n, n).
         index: where they stand in it.
-        weights: that were used in the end.
-        freedom: degrees of freedom of the views taken together.
-        rounds: that it took.
+        variances: what views scatter by.
     """
 
     state: State
     covariance: Array
     index: Index
-    weights: Weights
-    freedom: float
-    rounds: int
+    variances: Variances
 
     def of_camera(self, name: str) -> Array:
         """Covariance of a camera's pose in its own frame, shape (6, 6); zero for the one that is held."""
@@ -131,16 +106,6 @@ class Solution:
             return np.zeros((6, 6))
         at = self.index.cameras[name]
         return self.covariance[at, at]
-
-
-@dataclass(eq=False)
-class _View:
-    """A view's normal equations, corners and plane apart, over (camera, board, bias, scale) of 14 columns."""
-
-    corner_rows: Array
-    corner_residual: Array
-    plane_rows: Array
-    plane_residual: Array
 
 
 def adjust(
@@ -155,28 +120,28 @@ def adjust(
         anchor: what fixes the world.
     """
     index = Index(state, anchor)
-    names = list(state.cameras)
-    weights = Weights(dict.fromkeys(names, 1.0), dict.fromkeys(names, 1.0), np.ones(len(seen)))
-    within = _within(seen)
-    covariance, freedom, number = np.zeros((index.size, index.size)), 0.0, 0
-    for number in range(1, ROUNDS + 1):
-        state = _solved(cameras, seen, state, anchor, index, weights)
-        views = [_view(one, state) for one in seen]
-        normal, _, _ = _normal(cameras, seen, views, state, anchor, index, weights)
-        covariance = _inverse(normal)
-        renewed, freedom = _renewed(seen, views, covariance, index, weights, within, first=number == 1)
-        change = max(
-            abs(np.log(new[name] / old[name]))
-            for new, old in ((renewed.corner, weights.corner), (renewed.plane, weights.plane))
-            for name in names
-        )
-        weights = renewed
-        if change < 0.02 and number > 2:
+    variances = Variances.start(list(state.cameras), len(seen))
+    state = _solved(cameras, seen, state, anchor, index, variances)
+    for number in range(ROUNDS):
+        views = [_rows(one, state, index) for one in seen]
+        prior, pull, _ = _prior(cameras, state, anchor, index)
+        for renewal in range(RENEWALS):
+            normal, slope, _ = _summed(views, variances, prior, pull)
+            covariance = _inverse(normal)
+            step = -covariance @ slope
+            off = [view.y + view.rows @ step[view.among] for view in views]
+            # only when variances are near their values is it known which views fit badly
+            renewed = variances.renewed(views, off, covariance, robust=number > 0 or renewal > 3)
+            change, variances = renewed.change(variances), renewed
+            if change < 0.02 and renewal > 4:
+                break
+        state = _solved(cameras, seen, state, anchor, index, variances)
+        if number and float(np.abs(step).max()) < 1e-6:
             break
-    state = _solved(cameras, seen, state, anchor, index, weights)
-    views = [_view(one, state) for one in seen]
-    normal, _, _ = _normal(cameras, seen, views, state, anchor, index, weights)
-    return Solution(state, _inverse(normal), index, weights, freedom, number)
+    views = [_rows(one, state, index) for one in seen]
+    prior, pull, _ = _prior(cameras, state, anchor, index)
+    normal, _, _ = _summed(views, variances, prior, pull)
+    return Solution(state, _inverse(normal), index, variances)
 
 
 def _solved(
@@ -185,25 +150,29 @@ def _solved(
     state: State,
     anchor: Anchor,
     index: Index,
-    weights: Weights,
+    variances: Variances,
 ) -> State:
-    """Levenberg-Marquardt with the weights as they are."""
+    """Levenberg-Marquardt with the variances as they are."""
+
+    def equations(state: State) -> tuple[Array, Array, float]:
+        prior, pull, cost = _prior(cameras, state, anchor, index)
+        normal, slope, more = _summed([_rows(one, state, index) for one in seen], variances, prior, pull)
+        return normal, slope, cost + more
+
     damping = 1e-6
-    normal, slope, cost = _equations(cameras, seen, state, anchor, index, weights)
+    normal, slope, cost = equations(state)
     for _ in range(STEPS):
-        step = -np.linalg.solve(normal + damping * np.diag(np.diag(normal)), slope)
+        damped = normal + damping * np.diag(np.diag(normal))
+        step = np.asarray(-np.linalg.solve(damped, slope), dtype=np.float64)
         tried = state.moved(step, index)
-        if not _all_in_front(seen, tried):
-            damping = max(damping * 100, 1e-3)
-            continue
-        new_normal, new_slope, new_cost = _equations(cameras, seen, tried, anchor, index, weights)
-        if not new_cost <= cost * (1 + 1e-12) + 1e-18:
+        new = equations(tried) if _all_in_front(seen, tried) else None
+        if new is None or not new[2] <= cost * (1 + 1e-9) + 1e-18:
             damping = max(damping * 100, 1e-3)
             if damping > 1e6:
                 break
             continue
-        done = cost - new_cost < 1e-7 * cost + 1e-15
-        state, normal, slope, cost = tried, new_normal, new_slope, new_cost
+        done = abs(cost - new[2]) < 1e-7 * cost + 1e-15
+        state, (normal, slope, cost) = tried, new
         damping = max(damping / 100, 1e-9)
         if done:
             break
@@ -223,34 +192,30 @@ def camera_from_board(one: SeenBoard, state: State) -> Array:
     return np.asarray(invert_rigid(state.cameras[one.view.camera]) @ state.boards[one.view.pose])
 
 
-def _view(one: SeenBoard, state: State) -> _View:
+def _rows(one: SeenBoard, state: State, index: Index) -> ViewRows:
+    """A view's nine numbers, or six without depth, and their derivatives."""
     pose = camera_from_board(one, state)
     residual, by_camera, by_board = corner_rows(one.camera, pose, one.corners, one.view)
     root = np.repeat(np.sqrt(one.weight), 2)
-    rows = np.zeros((len(residual), 14))
-    rows[:, :6], rows[:, 6:12] = by_camera, by_board
-    if one.plane is None:
-        return _View(rows * root[:, None], residual * root, np.zeros((0, 14)), np.zeros(0))
-    of_plane, by_camera, by_board, by_errors = plane_rows(one.plane, pose)
-    more = np.concatenate([by_camera, by_board, by_errors], axis=1)
-    errors = state.depth_errors[one.view.camera]
-    return _View(rows * root[:, None], residual * root, more, of_plane + by_errors @ errors)
+    across, of_board = np.linalg.qr(by_board * root[:, None])
+    size = 6 if one.plane is None else 9
+    rows, y, by_depth = np.zeros((size, 14)), np.zeros(size), np.zeros(size)
+    y[:6] = across.T @ (residual * root)
+    rows[:6, :6], rows[:6, 6:12] = across.T @ (by_camera * root[:, None]), of_board
+    if one.plane is not None:
+        of_plane, by_camera, by_board, by_errors = plane_rows(one.plane, pose)
+        # predicted less measured, of which the depth's errors are taken out
+        y[6:] = of_plane + by_errors @ state.depth_errors[one.view.camera]
+        rows[6:, :6], rows[6:, 6:12], rows[6:, 12:] = by_camera, by_board, by_errors
+        by_depth[6:] = by_errors[:, 0]
+    own, among = _places(one, index)
+    return ViewRows(one.view.camera, among, rows[:, own], y, rows[:, 6:12], by_depth)
 
 
-def _equations(
-    cameras: Mapping[str, DepthCamera],
-    seen: Sequence[SeenBoard],
-    state: State,
-    anchor: Anchor,
-    index: Index,
-    weights: Weights,
-) -> tuple[Array, Array, float]:
-    return _normal(cameras, seen, [_view(one, state) for one in seen], state, anchor, index, weights)
-
-
-def _places(one: SeenBoard, index: Index) -> tuple[Array, Array]:
+def _places(one: SeenBoard, index: Index) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Columns of a view's 14 that move, and where they stand among the unknowns."""
-    own, among = [], []
+    own: list[int] = []
+    among: list[int] = []
     for first, place in (
         (0, index.cameras.get(one.view.camera)),
         (6, index.boards.get(one.view.pose)),
@@ -259,64 +224,49 @@ def _places(one: SeenBoard, index: Index) -> tuple[Array, Array]:
         if place is not None:
             own += range(first, first + place.stop - place.start)
             among += range(place.start, place.stop)
-    return np.array(own), np.array(among)
+    return np.array(own, dtype=np.int64), np.array(among, dtype=np.int64)
 
 
-def _normal(
-    cameras: Mapping[str, DepthCamera],
-    seen: Sequence[SeenBoard],
-    views: Sequence[_View],
-    state: State,
-    anchor: Anchor,
-    index: Index,
-    weights: Weights,
+def _summed(
+    views: Sequence[ViewRows], variances: Variances, prior: Array, pull: Array
 ) -> tuple[Array, Array, float]:
-    """Normal matrix, gradient and half the cost's double, of all residuals, priors and named points."""
+    """Normal matrix and gradient of views and prior, and the views' sum of squares."""
+    normal, slope, cost = prior.copy(), pull.copy(), 0.0
+    for view, weight in zip(views, variances.view, strict=True):
+        inverse = variances.inverse(view, float(weight))
+        weighted = inverse @ view.rows
+        normal[np.ix_(view.among, view.among)] += view.rows.T @ weighted
+        slope[view.among] += weighted.T @ view.y
+        cost += float(view.y @ inverse @ view.y)
+    return normal, slope, cost
+
+
+def _prior(
+    cameras: Mapping[str, DepthCamera], state: State, anchor: Anchor, index: Index
+) -> tuple[Array, Array, float]:
+    """Normal matrix, gradient and sum of squares of depth errors and of named points."""
     normal, slope, cost = np.zeros((index.size, index.size)), np.zeros(index.size), 0.0
-    for number, (one, view) in enumerate(zip(seen, views, strict=True)):
-        own, among = _places(one, index)
-        name, weight = one.view.camera, weights.view[number]
-        for rows, residual, factor in (
-            (view.corner_rows, view.corner_residual, weights.corner[name]),
-            (view.plane_rows, view.plane_residual, weights.plane[name]),
-        ):
-            if len(residual):
-                used = rows[:, own]
-                normal[np.ix_(among, among)] += weight / factor * (used.T @ used)
-                slope[among] += weight / factor * (used.T @ residual)
-                cost += weight / factor * float(residual @ residual)
     for name, error in state.depth_errors.items():
         at, inverse = index.depths[name], np.array([BIAS_SIGMA_M, SCALE_SIGMA]) ** -2.0
         normal[at, at] += np.diag(inverse)
         slope[at] += inverse * error
         cost += float(inverse @ error**2)
     if isinstance(anchor, PointsAnchor):
-        cost += _add_points(cameras, state, anchor, index, normal, slope)
+        for sighting in anchor.sightings:
+            pose = invert_rigid(state.cameras[sighting.camera])
+            in_camera = pose[:3, :3] @ sighting.world_m + pose[:3, 3]
+            if in_camera[2] <= 0:
+                return normal, slope, float("inf")
+            at_px, by_point = project(cameras[sighting.camera].intrinsics, in_camera[None])
+            residual = (at_px[0] - sighting.pixel) / anchor.sigma_px
+            rows = (
+                by_point[0] @ np.concatenate([cross_matrix(in_camera), -np.eye(3)], axis=1) / anchor.sigma_px
+            )
+            place = index.cameras[sighting.camera]
+            normal[place, place] += rows.T @ rows
+            slope[place] += rows.T @ residual
+            cost += float(residual @ residual)
     return normal, slope, cost
-
-
-def _add_points(
-    cameras: Mapping[str, DepthCamera],
-    state: State,
-    anchor: PointsAnchor,
-    index: Index,
-    normal: Array,
-    slope: Array,
-) -> float:
-    cost = 0.0
-    for sighting in anchor.sightings:
-        pose = invert_rigid(state.cameras[sighting.camera])
-        in_camera = pose[:3, :3] @ sighting.world_m + pose[:3, 3]
-        if in_camera[2] <= 0:
-            return float("inf")
-        at, by_point = project(cameras[sighting.camera].intrinsics, in_camera[None])
-        residual = (at[0] - sighting.pixel) / anchor.sigma_px
-        rows = by_point[0] @ np.concatenate([cross_matrix(in_camera), -np.eye(3)], axis=1) / anchor.sigma_px
-        place = index.cameras[sighting.camera]
-        normal[place, place] += rows.T @ rows
-        slope[place] += rows.T @ residual
-        cost += float(residual @ residual)
-    return cost
 
 
 def _inverse(normal: Array) -> Array:
@@ -324,89 +274,3 @@ def _inverse(normal: Array) -> Array:
     scale = 1 / np.sqrt(np.diag(normal))
     inverse = np.linalg.inv(normal * np.outer(scale, scale))
     return np.asarray((inverse + inverse.T) / 2 * np.outer(scale, scale))
-
-
-def _within(seen: Sequence[SeenBoard]) -> float:
-    """Variance factor of corners about the best pose of each view alone."""
-    squares, freedom = 0.0, 0
-    for one in seen:
-        residual = corner_rows(one.camera, one.lone[0].camera_from_board, one.corners, one.view)[0]
-        squares += float(np.repeat(one.weight, 2) @ residual**2)
-        freedom += len(residual) - 6
-    return squares / max(freedom, 1)
-
-
-def _renewed(
-    seen: Sequence[SeenBoard],
-    views: Sequence[_View],
-    covariance: Array,
-    index: Index,
-    weights: Weights,
-    within: float,
-    *,
-    first: bool,
-) -> tuple[Weights, float]:
-    """Factors and weights of views from what views are off by, and the degrees of freedom in all.
-
-    The first factors are medians, which views that are far off do not raise; only then are such views weighted down.
-    """
-    corner: dict[str, list[tuple[float, float]]] = defaultdict(list)
-    plane: dict[str, list[tuple[float, float]]] = defaultdict(list)
-    off = np.zeros(len(seen))
-    for number, (one, view) in enumerate(zip(seen, views, strict=True)):
-        own, among = _places(one, index)
-        name, weight = one.view.camera, weights.view[number]
-        of_block = covariance[np.ix_(among, among)]
-        relative = view.corner_rows[:, 6:12]
-        slope, information = relative.T @ view.corner_residual, relative.T @ relative
-        square = float(slope @ np.linalg.solve(information, slope))
-        used = view.corner_rows[:, own]
-        # the share of the view's six numbers that the solution follows
-        freedom = 6 - weight / weights.corner[name] * float(np.sum((used.T @ used) * of_block))
-        corner[name].append((weight * square, max(freedom, 0.0)))
-        ratio = square / weights.corner[name] / 6
-        if len(view.plane_residual):
-            used = view.plane_rows[:, own]
-            square = float(view.plane_residual @ view.plane_residual)
-            freedom = 3 - weight / weights.plane[name] * float(np.sum((used.T @ used) * of_block))
-            plane[name].append((weight * square, max(freedom, 0.0)))
-            ratio = max(ratio, square / weights.plane[name] / 3)
-        off[number] = ratio
-    start = DOUBTED_FACTOR * max(within, LEAST_FACTOR)
-    if first:
-        renewed = Weights(
-            _medians(weights.corner, corner, start),
-            _medians(weights.plane, plane, DOUBTED_FACTOR),
-            weights.view,
-        )
-    else:
-        renewed = Weights(
-            _factors(weights.corner, corner, start),
-            _factors(weights.plane, plane, DOUBTED_FACTOR),
-            np.minimum(1.0, OUTLYING / np.maximum(off, 1e-9)),
-        )
-    return renewed, sum(freedom for parts in (*corner.values(), *plane.values()) for _, freedom in parts)
-
-
-def _factors(
-    before: Mapping[str, float], parts: Mapping[str, Sequence[tuple[float, float]]], start: float
-) -> dict[str, float]:
-    """A factor for each camera: its own, drawn towards that of all, which is drawn towards the start."""
-    every = [part for of_camera in parts.values() for part in of_camera]
-    squares, freedom = sum(s for s, _ in every), sum(f for _, f in every)
-    shared = (DOUBT_FREEDOM * start + squares) / (DOUBT_FREEDOM + freedom)
-    factors = {}
-    for name in before:
-        own = parts.get(name, ())
-        value = (SHRINKAGE * shared + sum(s for s, _ in own)) / (SHRINKAGE + sum(f for _, f in own))
-        factors[name] = max(value, LEAST_FACTOR)
-    return factors
-
-
-def _medians(
-    before: Mapping[str, float], parts: Mapping[str, Sequence[tuple[float, float]]], start: float
-) -> dict[str, float]:
-    """One factor for all cameras: the median of the views' own."""
-    own = [square / freedom for of_camera in parts.values() for square, freedom in of_camera if freedom > 0.5]
-    factor = max(float(np.median(own)) if len(own) > 2 else start, LEAST_FACTOR)
-    return dict.fromkeys(before, factor)

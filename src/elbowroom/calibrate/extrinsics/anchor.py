@@ -150,7 +150,7 @@ def _crossing(
         across = np.eye(3) - np.outer(along, along)
         left += across
         right += across @ pose[:3, 3]
-    return np.linalg.solve(left, right)
+    return np.asarray(np.linalg.solve(left, right), dtype=np.float64)
 
 
 def _fitted(base: Array, world: Array) -> Array:

@@ -43,8 +43,8 @@ def require_board_size(board: Board, seen: Sequence[SeenBoard]) -> None:
         )
     if abs(by_camera[worst] / overall - 1) > SIZE_SHARE and len(by_camera) > 2:
         raise CalibrationError(
-            f"camera {worst}: its depth makes the board's squares {board.square_m * by_camera[worst]:.4g} m, the others "
-            f"{board.square_m * overall:.4g} m; check its depth_scale_m, depth_kind and fx"
+            f"camera {worst}: its depth makes the board's squares {board.square_m * by_camera[worst]:.4g} m, "
+            f"the others {board.square_m * overall:.4g} m; check its depth_scale_m, depth_kind and fx"
         )
 
 
@@ -95,16 +95,16 @@ def require_still(seen: Sequence[SeenBoard], solution: Solution, corners: Array)
     if len(poses) > 2 and bad_of[suspect] >= max(0.4 * views_of[suspect], 0.6 * len(bad)):
         raise CalibrationError(
             f"camera {suspect}: disagrees with the others in {bad_of[suspect]} of its {views_of[suspect]} poses "
-            f"(by {max(a for (_, c), a in bad.items() if c == suspect) * 1e3:.0f} mm); it was moved between poses, or its "
-            "intrinsics are wrong: fix it, calibrate intrinsics, and capture again"
+            f"(by {max(a for (_, c), a in bad.items() if c == suspect) * 1e3:.0f} mm); it was moved between poses, "
+            "or its intrinsics are wrong: fix it, calibrate intrinsics, and capture again"
         )
     pose = max(poses, key=lambda p: max(apart for (q, _), apart in bad.items() if q == p))
     apart = max(a for (q, _), a in bad.items() if q == pose)
     cameras = sorted(camera for q, camera in off if q == pose)
     more = f" (and poses {', '.join(str(p) for p in poses if p != pose)})" if len(poses) > 1 else ""
     raise CalibrationError(
-        f"pose {pose}{more}: cameras {', '.join(cameras)} do not agree where the board was ({apart * 1e3:.0f} mm); it was "
-        f"moved between their images: capture again, or leave out by --without-pose {pose}"
+        f"pose {pose}{more}: cameras {', '.join(cameras)} do not agree where the board was ({apart * 1e3:.0f} mm); "
+        f"it was moved between their images: capture again, or leave out by --without-pose {pose}"
     )
 
 
@@ -113,7 +113,7 @@ def _off(one: SeenBoard, solution: Solution, corners: Array) -> tuple[float, flo
     together = camera_from_board(one, solution.state)
     apart, allowed = np.inf, 0.0
     box = corners[[0, int(np.argmax(corners[:, 0])), int(np.argmax(corners[:, 1])), len(corners) - 1]]
-    factor = max(solution.weights.corner[one.view.camera], 1.0)
+    factor = max(solution.variances.corner[one.view.camera], 1.0)
     for lone in one.lone:
         other = lone.camera_from_board
         distance = float(

@@ -1,8 +1,9 @@
 """Cameras and poses of the board as a graph: does it hang together, and where everything stands to begin with.
 
-Two cameras that saw the board in the same poses have one relative pose. Each shared pose proposes one (more than one where
-a view is in doubt); the proposal that most shared poses agree with is taken, and what it is supported by is the edge's
-weight. A maximum spanning tree over these edges places all cameras, then each pose of the board where its views agree.
+Two cameras that saw the board in the same poses have one relative pose. Each shared pose proposes one (more than one
+where a view is in doubt); the proposal that most shared poses agree with is taken, and what it is supported by is the
+edge's weight. A maximum spanning tree over these edges places all cameras, then each pose of the board where its views
+agree.
 """
 
 from collections import defaultdict

@@ -20,8 +20,7 @@ STEPS = 30
 HUBER = 2.5
 """Corners farther off than so many sigmas pull no more than that."""
 WORST_PX = 4.0
-"""A view whose corners are this many sigmas off at best, in the root mean square, and by more than `WORST_SHARE`, does not
-show this board."""
+"""A view whose corners are this many sigmas off at best and by more than `WORST_SHARE` does not show this board."""
 WORST_SHARE = 0.15
 """Of a square's width in the image."""
 DOUBT = 25.0
@@ -195,15 +194,16 @@ def _refined(
     """Levenberg-Marquardt from a start, with Huber's weights; the pose, and the corners' weights."""
     pose, damping = start, 1e-3
     weight = np.ones(len(corners))
-    cost, rows, residual = _equations(camera, corners, view, plane, pose, weight)
+    cost, rows, residual, raw = _equations(camera, corners, view, plane, pose, weight)
     for _ in range(STEPS):
         normal = rows.T @ rows
-        step = -np.linalg.solve(normal + damping * np.diag(np.diag(normal) + 1e-12), rows.T @ residual)
+        damped = normal + damping * np.diag(np.diag(normal) + 1e-12)
+        step = np.asarray(-np.linalg.solve(damped, rows.T @ residual), dtype=np.float64)
         tried = pose @ exp(step)
         if (corners @ tried[2, :3] + tried[2, 3]).min() <= 0:
             damping *= 10
             continue
-        new_cost, new_rows, new_residual = _equations(camera, corners, view, plane, tried, weight)
+        new_cost, _, _, raw = _equations(camera, corners, view, plane, tried, weight)
         if new_cost > cost:
             damping *= 10
             if damping > 1e8:
@@ -211,11 +211,10 @@ def _refined(
             continue
         converged = cost - new_cost < 1e-5 * cost + 1e-12
         pose, damping = tried, max(damping / 10, 1e-9)
-        raw = corner_rows(camera, pose, corners, view)[0].reshape(-1, 2)
         size = np.linalg.norm(raw, axis=1)
         spread = max(1.0, float(np.median(size)) / 1.1774)
         weight = np.minimum(1.0, HUBER * spread / np.maximum(size, 1e-12))
-        cost, rows, residual = _equations(camera, corners, view, plane, pose, weight)
+        cost, rows, residual, raw = _equations(camera, corners, view, plane, pose, weight)
         if converged:
             break
     return Lone(pose, rows.T @ rows, cost), weight
@@ -228,10 +227,11 @@ def _equations(
     plane: SeenPlane | None,
     pose: Array,
     weight: Array,
-) -> tuple[float, Array, Array]:
-    residual, _, rows = corner_rows(camera, pose, corners, view)
+) -> tuple[float, Array, Array, Array]:
+    """Sum of squares, rows by a motion of the board, residuals; and the corners' own residuals, shape (n, 2)."""
+    raw, _, rows = corner_rows(camera, pose, corners, view)
     root = np.repeat(np.sqrt(weight), 2)
-    residual, rows = residual * root, rows * root[:, None]
+    residual, rows = raw * root, rows * root[:, None]
     if plane is not None:
         more, _, more_rows, _ = plane_rows(plane, pose)
         # bias and scale of the depth are not known yet: a millimetre and a thousandth at least
@@ -239,7 +239,7 @@ def _equations(
         whiten = np.linalg.inv(np.linalg.cholesky(np.eye(3) + errors @ errors.T))
         residual = np.concatenate([residual, whiten @ more])
         rows = np.concatenate([rows, whiten @ more_rows])
-    return float(residual @ residual), rows, residual
+    return float(residual @ residual), rows, residual, raw.reshape(-1, 2)
 
 
 def _require_this_board(
@@ -253,8 +253,9 @@ def _require_this_board(
     square_px = board.square_m * camera.intrinsics.fx / middle[2]
     if in_sigmas > WORST_PX and off_px > WORST_SHARE * square_px:
         raise CalibrationError(
-            f"{what}: no pose of the board explains its corners ({off_px:.1f} px off, squares are {square_px:.0f} px wide); "
-            "a mirrored image, another board, or a lens that is not calibrated: check columns and rows, or leave it out"
+            f"{what}: no pose of the board explains its corners ({off_px:.1f} px off, squares are {square_px:.0f} px "
+            "wide); a mirrored image, another board, or a lens that is not calibrated: check columns and rows, or "
+            "leave it out"
         )
 
 

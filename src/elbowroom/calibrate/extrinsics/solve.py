@@ -160,11 +160,11 @@ def _found(
         world_from_board=solution.state.boards,
         depth_bias_m={name: float(error[0]) for name, error in errors.items()},
         depth_scale={name: float(error[1]) for name, error in errors.items()},
-        corner_factor=solution.weights.corner,
-        plane_factor=solution.weights.plane,
+        corner_factor=solution.variances.corner,
+        plane_factor=solution.variances.plane,
         seen=tuple(seen),
         shared=shared,
-        view_weight=solution.weights.view,
+        view_weight=solution.variances.view,
     )
 
 
@@ -175,8 +175,7 @@ def corner_distances(one: SeenBoard, state: State) -> Array:
 
 
 def depth_distances(one: SeenBoard, state: State) -> Array:
-    """Depth measured less that of the board where it is, without the camera's bias and scale taken out, shape (n,) [m]."""
-
+    """Depth measured, with the camera's bias and scale error in it, less that of the board, shape (n,) [m]."""
     if not len(one.view.plane_depth_m):
         return np.zeros(0)
     pose = camera_from_board(one, state)
