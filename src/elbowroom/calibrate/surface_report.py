@@ -32,9 +32,9 @@ def machine_sections(found: MachineCalibration, rows: Sequence[Mapping[str, Any]
         rows: of kind "camera", as `change_rows` makes them.
     """
     words = (
-        f"{found.poses} poses of {found.machine.name}. Residuals are measured depth minus the model's, along the ray, of "
-        "the pixels that agree with the model. Pixels that see through the model would say that the machine is not where "
-        "its joints and the pose say."
+        f"{found.poses} poses of {found.machine.name}. Residuals are measured depth minus the model's, of the pixels "
+        "that agree with the model. Pixels that see through the model would say that the machine is not where its "
+        "joints and the pose say."
     )
     if found.base_covariance is not None:
         sigma_m, sigma_deg = _sigmas(found.base_covariance)
@@ -51,8 +51,8 @@ def machine_sections(found: MachineCalibration, rows: Sequence[Mapping[str, Any]
 def refine_sections(found: Refinement, rows: Sequence[Mapping[str, Any]]) -> list[Section]:
     """Titles and blocks of the page of `calibrate refine`; arguments as of `machine_sections`."""
     words = (
-        f"{found.moments} moments of the room, {len(found.pairs)} pairs of cameras. Each camera was moved no farther than "
-        "the covariance of its pose allows (99 %)."
+        f"{found.moments} moments of the room, {len(found.pairs)} pairs of cameras. Each camera was moved no farther "
+        "than the covariance of its pose allows (99 %)."
     )
     overview: list[Block] = [Words(words), change_table(rows), _notes(found.cameras)]
     return [
@@ -135,9 +135,7 @@ def _picture(one: SurfacePicture) -> Picture:
     there = one.expected_m > 0
     both = np.concatenate([one.measured_m[one.measured_m > 0], one.expected_m[there]])
     near, far = (float(v) for v in np.percentile(both, (1, 99))) if len(both) else (0.0, 1.0)
-    parts = [
-        depth_picture(image, near_m=near, far_m=far) for image in (one.measured_m, one.expected_m)
-    ]
+    parts = [depth_picture(image, near_m=near, far_m=far) for image in (one.measured_m, one.expected_m)]
     parts.append(Image.fromarray(difference_picture(one)))
     width, height = parts[0].size
     joined = Image.new("RGB", (3 * width + 8, height), (255, 255, 255))
@@ -149,8 +147,8 @@ def _picture(one: SurfacePicture) -> Picture:
     rms = f"{np.sqrt(np.mean(off.astype(float) ** 2)) * 1e3:.1f} mm rms" if len(off) else "nothing agrees"
     return Picture(
         buffer.getvalue(),
-        f"{one.camera}, {one.title}: measured, expected, and difference (blue: measured {SHOWN_M * 100:.0f} cm nearer or "
-        f"more, red: farther, grey: nothing to compare); {rms} of the pixels that agree",
+        f"{one.camera}, {one.title}: measured, expected, and difference (blue: measured {SHOWN_M * 100:.0f} cm "
+        f"nearer or more, red: farther, grey: nothing to compare); {rms} of the pixels that agree",
         PICTURE_WIDTH_PX,
     )
 

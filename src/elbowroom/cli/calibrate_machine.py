@@ -10,7 +10,9 @@ from elbowroom.cli.options import JsonFile
 Only = Annotated[
     list[str] | None,
     typer.Option(
-        "--camera", metavar="NAME", help="Only this one; may be given more than once. Others stay as they are."
+        "--camera",
+        metavar="NAME",
+        help="Only this one; may be given more than once. Others stay as they are.",
     ),
 ]
 
@@ -29,7 +31,9 @@ def machine(
     ] = False,
     hold: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="With --base: this camera's pose holds; may be given more than once."),
+        typer.Option(
+            metavar="NAME", help="With --base: this camera's pose holds; may be given more than once."
+        ),
     ] = None,
     model_mm: Annotated[
         float, typer.Option(min=0.1, max=50.0, help="How well the machine's model fits the machine [mm].")
@@ -44,4 +48,6 @@ def machine(
     """
     from elbowroom.cli.calibrate_machine_run import Wanted, run_machine
 
-    run_machine(Wanted(site, out, report, tuple(camera or ()), base, tuple(hold or ()), model_mm, confidence), json)
+    run_machine(
+        Wanted(site, out, report, tuple(camera or ()), base, tuple(hold or ()), model_mm, confidence), json
+    )

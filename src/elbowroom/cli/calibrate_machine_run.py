@@ -75,9 +75,7 @@ def run_machine(wanted: Wanted, json_file: Path | None) -> None:
         add(_base_row(found, time.perf_counter() - begun))
         written = with_margins(site, found.cameras, wanted.confidence, found.depth_errors)
         base = None if found.base_covariance is None else found.machine.world_from_base
-        rows = write_result(
-            site, found.cameras, written, wanted.out, "machine", add, world_from_base=base
-        )
+        rows = write_result(site, found.cameras, written, wanted.out, "machine", add, world_from_base=base)
         _say_base(found)
         if wanted.report is not None:
             about = f"{site.name}: cameras from the machine itself"
@@ -90,9 +88,7 @@ def _hold(
     """Cameras that fix the world when the base is to be found: named ones exactly, sure ones within covariance."""
     if not wanted.base:
         if wanted.hold:
-            raise CalibrationError(
-                "--hold: goes with --base; without it the machine's base fixes the world"
-            )
+            raise CalibrationError("--hold: goes with --base; without it the machine's base fixes the world")
         return {}
     known = {camera.name: site.pose_covariance(camera.name) for camera in cameras}
     hold = {name: covariance for name, covariance in known.items() if covariance is not None}
@@ -120,7 +116,9 @@ def _base_row(found: MachineCalibration, seconds: float) -> dict:
 def _say_base(found: MachineCalibration) -> None:
     x, y, z = found.machine.world_from_base[:3, 3]
     if found.base_covariance is None:
-        print(f"base      {found.machine.name} at ({x:.4f}, {y:.4f}, {z:.4f}) m, as the site says: it fixes the world")
+        print(
+            f"base      {found.machine.name} at ({x:.4f}, {y:.4f}, {z:.4f}) m, as the site says: it fixes the world"
+        )
         return
     sigma_mm = 1e3 * np.sqrt(np.trace(found.base_covariance[3:, 3:]))
     sigma_deg = np.degrees(np.sqrt(np.trace(found.base_covariance[:3, :3])))

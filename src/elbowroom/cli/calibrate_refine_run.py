@@ -115,5 +115,7 @@ def _sure_to(text: str | None) -> NDArray[np.float64] | None:
     except ValueError:
         place_mm = turn_deg = float("nan")
     if not (np.isfinite(place_mm) and np.isfinite(turn_deg) and place_mm > 0 and turn_deg > 0):
-        raise InputError(f"--sure-to: {text!r} is not two numbers above 0; write mm and degrees, such as 50,3")
+        raise InputError(
+            f"--sure-to: {text!r} is not two numbers above 0; write mm and degrees, such as 50,3"
+        )
     return np.diag([np.radians(turn_deg) ** 2] * 3 + [(place_mm / 1e3) ** 2] * 3)
