@@ -115,7 +115,7 @@ def compare(view, inverse, first, last, measured, bias, scale, trust, normal, gr
             weight = inside * inside
             # d(drawn)/d(twist) = -(p x n, n) / (n.d); n / (n.d) = q / w; r falls as drawn grows
             px, py = x * drawn, y * drawn
-            by = drawn / sigma
+            by = drawn * (1.0 + scale) / sigma
             row[0] = (py * qz - drawn * qy) * by
             row[1] = (drawn * qx - px * qz) * by
             row[2] = (px * qy - py * qx) * by

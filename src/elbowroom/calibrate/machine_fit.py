@@ -28,13 +28,19 @@ STAGES: tuple[tuple[int, float, int], ...] = (
     (2, 0.02, 3),
     (2, 0.01, 3),
     (2, 0.005, 3),
-    (1, 0.0, 20),
+    (1, 0.0, 24),
 )
 """Every so many pixels, so much added to sigma [m], at most so many steps."""
 STILL = 0.05
 """A step of fewer sigmas, as the images know the pose, is the last one."""
+RESTLESS = 0.5
+"""Pixels that come and go keep the pose swinging a little: steps that stay longer than this never came to rest."""
+HALF_AFTER = 6
+"""Steps of a stage after which they are halved, so that such swinging dies down."""
+DAMPING = np.array([0.05] * 3 + [0.1] * 3) ** -2.0
+"""A direction that the images leave free to this [rad, m] is hardly moved; what they know better is not held back."""
 EASE = 1e-9
-"""Keeps the equations solvable where a direction is free; the covariance is what tells of it."""
+"""Keeps the covariance finite where a direction is free, and large."""
 
 Array = NDArray[Any]
 
@@ -83,6 +89,7 @@ class _State:
     free_base: bool
     depth_errors: dict[str, Array] = field(default_factory=dict)
     still: set[str] = field(default_factory=set)
+    lengths: dict[str, float] = field(default_factory=dict)
 
     @property
     def free(self) -> list[str]:
@@ -133,13 +140,13 @@ def fit(
     for step, widening_m, rounds in STAGES:
         thinner = [v.coarser(step if v.images.thinned.width >= 160 else 1) for v in views]
         state.still.clear()
-        for _ in range(rounds):
+        for number in range(rounds):
             _look(state, thinner, trust._replace(widening_m=widening_m), sums)
-            _step(state, sums)
+            _step(state, sums, 1.0 if number < HALF_AFTER else 0.5)
             done()
             if len(state.still) == len(views):
                 break
-    converged = {name: name in state.still for name in state.world_from_cameras}
+    converged = {name: state.lengths[name] < RESTLESS for name in state.world_from_cameras}
     state.still.clear()
     _look(state, views, trust, sums)
     return _finish(state, sums, converged)
@@ -160,11 +167,11 @@ def _look(state: _State, views: Sequence[MachineViews], trust: Trust, sums: dict
         sums[v.camera.name] = result
 
 
-def _step(state: _State, sums: Mapping[str, SurfaceSums]) -> None:
-    """One step of Gauss and Newton for all cameras and the base."""
+def _step(state: _State, sums: Mapping[str, SurfaceSums], share: float) -> None:
+    """One step of Gauss and Newton for all cameras and the base, or a share of it."""
     normal, gradient = _equations(state, sums, dict.fromkeys(sums, 1.0))
-    eased = normal + EASE * np.diag(np.diag(normal)) + EASE * np.eye(len(normal))
-    twist = -np.linalg.solve(eased, gradient)
+    damped = normal + np.diag(np.tile(DAMPING, len(normal) // 6))
+    twist = -share * np.linalg.solve(damped, gradient)
     parts = {name: twist[6 * row : 6 * row + 6] for row, name in enumerate(state.free)}
     base_twist = twist[-6:] if state.free_base else np.zeros(6)
     for name, own in sums.items():
@@ -174,13 +181,16 @@ def _step(state: _State, sums: Mapping[str, SurfaceSums]) -> None:
         part = parts.get(name, np.zeros(6))
         seen = part - adjoint(invert_rigid(here) @ state.world_from_base) @ base_twist
         equations = whole(own)
-        state.depth_errors[name] = state.depth_errors[name] + depth_error_step(*equations, seen)
+        state.depth_errors[name] = state.depth_errors[name] + share * depth_error_step(
+            *equations, seen / share
+        )
         state.world_from_cameras[name] = moved(here, part)
-        if not state.free_base and part @ of_pose(*equations)[0] @ part < STILL**2:
+        state.lengths[name] = float(np.sqrt(max(seen @ of_pose(*equations)[0] @ seen, 0.0))) / share
+        if not state.free_base and state.lengths[name] < STILL:
             state.still.add(name)
     if state.free_base:
         state.world_from_base = moved(state.world_from_base, base_twist)
-        if twist @ normal @ twist < STILL**2:
+        if np.sqrt(max(twist @ normal @ twist, 0.0)) < share * STILL:
             state.still.update(state.world_from_cameras)
 
 

@@ -27,6 +27,8 @@ RULE = Overlap(gate_m=0.0, reach=4.7, floor_m=0.002, least_cosine=0.8, tiles=4)
 ROUGH_COSINE = 0.6
 STILL = 0.05
 """A step of fewer sigmas is the last one."""
+RESTLESS, HALF_AFTER = 1.0, 8
+"""Points that come and go keep the poses swinging a little: later steps are halved; longer ones never came to rest."""
 MOST_MOMENTS, MOST_COMPARISONS = 12, 1500
 """Of the room, and of images with images: a still room says no more the oftener it is seen."""
 
@@ -97,15 +99,14 @@ def refine(
         progress("bringing surfaces together")
         rule = RULE._replace(gate_m=gate_m, floor_m=max(RULE.floor_m, gate_m / 10), least_cosine=ROUGH_COSINE)
         poses, _, _ = step(pair_sums(pairs, poses, rule), poses, before)
-    converged = False
-    for _ in range(FINE_ROUNDS):
+    for number in range(FINE_ROUNDS):
         progress("least squares")
-        poses, _, length = step(pair_sums(pairs, poses, RULE), poses, before)
+        share = 1.0 if number < HALF_AFTER else 0.5
+        poses, _, length = step(pair_sums(pairs, poses, RULE), poses, before, share)
         if length < STILL:
-            converged = True
             break
     sums = pair_sums(pairs, poses, RULE)
-    check_refined(sums, poses, before, converged)
+    check_refined(sums, poses, before, length < RESTLESS)
     _, normal, _ = step(sums, poses, before)
     common = [(pair, own) for pair, own in zip(pairs, sums, strict=True) if own.compared >= FEWEST_COMMON]
     return Refinement(

@@ -43,8 +43,9 @@ def step(
     sums: Sequence[PairSums],
     poses: Mapping[str, Array],
     before: Before,
+    share: float = 1.0,
 ) -> tuple[dict[str, Array], Array, float]:
-    """One step of Gauss and Newton; new poses, normal equations, and the step's length in sigmas.
+    """One step of Gauss and Newton, or a share of it; new poses, normal equations, the whole step's length in sigmas.
 
     A point of the one camera sees, in the other's frame, the one's twist brought there minus the other's own.
     """
@@ -69,7 +70,7 @@ def step(
     twist = -np.linalg.solve(normal, gradient)
     new = dict(poses)
     for name in free:
-        new[name] = moved(poses[name], twist[at[name]])
+        new[name] = moved(poses[name], share * twist[at[name]])
     return new, normal, float(np.sqrt(twist @ normal @ twist))
 
 
