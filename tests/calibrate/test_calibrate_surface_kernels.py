@@ -56,13 +56,13 @@ def test_overlap_sums_are_those_of_the_twin():
     a, b = (
         surfaces(planar_images(c, [frame]), [0]) for c, frame in zip((one, other), moment.frames, strict=True)
     )
-    rule = Overlap(gate_m=0.1, reach=4.7, floor_m=0.002, least_cosine=0.6, tiles=3)
+    rule = Overlap(gate_m=0.1, reach=4.7, floor_m=0.002, least_cosine=0.6, tiles=3, arm_px=7.0)
     other_from_one = invert_rigid(other.world_from_camera) @ one.world_from_camera
     normal, gradient, counts = np.zeros((9, 6, 6)), np.zeros((9, 6)), np.zeros(4, dtype=np.int64)
-    offs = np.full(len(a.points[0].points), np.nan)
+    offs, by_noise = np.full(len(a.points[0].points), np.nan), np.zeros((6, 6))
     compare_points(
         view_of(b.images.thinned), b.images.depth_m[0], b.planes[0], *a.points[0], other_from_one, rule,
-        normal, gradient, counts, offs,
+        normal, gradient, by_noise, counts, offs,
     )  # fmt: skip
     slow = calibrate_overlap.compare_points(
         other, b.images.depth_m[0], b.planes[0], *a.points[0], other_from_one, rule
@@ -71,4 +71,5 @@ def test_overlap_sums_are_those_of_the_twin():
     assert (counts == slow[2]).all()
     assert np.allclose(normal.sum(axis=0), slow[0], rtol=1e-6, atol=1e-6 * np.abs(slow[0]).max())
     assert np.allclose(gradient.sum(axis=0), slow[1], rtol=1e-6, atol=1e-6 * np.abs(slow[1]).max())
+    assert np.allclose(by_noise, slow[3], rtol=1e-6, atol=1e-6 * np.abs(slow[3]).max())
     assert (normal.any(axis=(1, 2))).sum() > 1

@@ -28,7 +28,8 @@ def fit_plane(depth, u, v, camera, half, bend):
 
 
 def compare_points(camera, depth, planes, points, normals, sigmas, other_from_one, rule):
-    """Sums of all tiles together, and counts."""
+    """Sums of all tiles together, counts, and what noise in the slopes makes up."""
+    by_noise = np.zeros((6, 6))
     normal, gradient, counts = np.zeros((6, 6)), np.zeros(6), np.zeros(4, dtype=int)
     k = camera.intrinsics
     for point, direction, own in zip(points, normals, sigmas, strict=True):
@@ -63,4 +64,8 @@ def compare_points(camera, depth, planes, points, normals, sigmas, other_from_on
         slopes = np.array([(moved(LITTLE * one) - moved(-LITTLE * one)) / (2 * LITTLE) for one in np.eye(6)])
         normal += weight * np.outer(slopes, slopes)
         gradient += weight * off * slopes
-    return normal, gradient, counts
+        tilt = noise * k.fx / (z * rule.arm_px)
+        for axis in np.linalg.svd(n[None])[2][1:]:
+            along = np.concatenate([np.cross(p, axis), axis])
+            by_noise += weight * tilt**2 * np.outer(along, along)
+    return normal, gradient, counts, by_noise

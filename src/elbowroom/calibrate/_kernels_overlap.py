@@ -18,6 +18,8 @@ class Overlap(NamedTuple):
     floor_m: sigma that is left however good the sensors are [m].
     least_cosine: of the angle between the two normals.
     tiles: the other image is cut into tiles x tiles, whose sums are kept apart.
+    arm_px: root of the sum of squared distances of a window's pixels from its middle column: the longer, the less a
+        plane's slope suffers from noise [px].
     """
 
     gate_m: float
@@ -25,6 +27,7 @@ class Overlap(NamedTuple):
     floor_m: float
     least_cosine: float
     tiles: int
+    arm_px: float
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -75,7 +78,7 @@ def fit_planes(depth, fx, fy, cx, cy, half, bend, planes):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def compare_points(
-    view, depth, planes, points, normals, sigmas, other_from_one, rule, normal, gradient, counts, offs
+    view, depth, planes, points, normals, sigmas, other_from_one, rule, normal, gradient, by_noise, counts, offs
 ):
     """Adds up normal equations of the twist of one camera relative to another from points of the one.
 
@@ -90,6 +93,8 @@ def compare_points(
         other_from_one: (4, 4).
         rule: which points count.
         normal, gradient: (tiles^2, 6, 6), (tiles^2, 6); added to.
+        by_noise: (6, 6), the part of `normal` that stems from noise in the planes' slopes alone: a flat wall, whose
+            normals scatter, would seem to say something of shifts along itself; added to.
         counts: (4,) as named above; added to.
         offs: (n,) distance from the plane [m] of points that count, NaN of others.
     """
@@ -122,7 +127,9 @@ def compare_points(
         cosine = abs(nx * x + ny * y + nz) / math.sqrt(x * x + y * y + 1.0)
         stretch = math.sqrt(x * x + y * y + 1.0) if view.radial else 1.0
         beyond = max(z * stretch - view.offset, 0.0)
-        sigma = (view.constant + view.linear * z * stretch + view.quadratic * beyond * beyond) * cosine
+        noise = view.constant + view.linear * z * stretch + view.quadratic * beyond * beyond
+        sigma = noise * cosine
+        tilt = noise * view.fx / (z * rule.arm_px)
         sigma = math.sqrt(sigma * sigma + sigmas[i] * sigmas[i] + rule.floor_m * rule.floor_m)
         limit = max(rule.gate_m, rule.reach * sigma)
         if abs(off) >= limit or facing < rule.least_cosine:
@@ -142,3 +149,19 @@ def compare_points(
             gradient[tile, j] += weight * row[j] * off
             for k in range(6):
                 normal[tile, j, k] += weight * row[j] * row[k]
+                by_noise[j, k] -= weight * tilt * tilt * row[j] * row[k]
+        # the sum over three axes less that along the normal: over two axes along the surface
+        for axis in range(3):
+            # unit vector e: (p x e, e)
+            row[0], row[1], row[2] = 0.0, 0.0, 0.0
+            row[3], row[4], row[5] = 0.0, 0.0, 0.0
+            row[3 + axis] = 1.0
+            if axis == 0:
+                row[1], row[2] = pz, -py
+            elif axis == 1:
+                row[0], row[2] = -pz, px
+            else:
+                row[0], row[1] = py, -px
+            for j in range(6):
+                for k in range(6):
+                    by_noise[j, k] += weight * tilt * tilt * row[j] * row[k]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate._kernels_overlap import COMPARED, Overlap, compare_points, fit_planes
 from elbowroom.calibrate.planar_images import PlanarImages
-from elbowroom.geometry import invert_rigid
+from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.rasterise import view_of
 
@@ -59,6 +59,7 @@ class PairSums:
     Args:
         one, other: names; the points are the one's.
         normal, gradient: by tile, shapes (tiles, 6, 6) and (tiles, 6): of the twist of the points in the other's frame.
+        by_noise: the part of all tiles' normal equations that noise in the slopes of planes makes up, shape (6, 6).
         counts: points compared, agreeing, hidden, in conflict.
         offs: distance from the other's surface of the points that agree [m].
     """
@@ -67,6 +68,7 @@ class PairSums:
     other: str
     normal: Array
     gradient: Array
+    by_noise: Array
     counts: NDArray[np.int64]
     offs: Array
 
@@ -85,7 +87,7 @@ def surfaces(images: PlanarImages, moments: Sequence[int]) -> Surfaces:
     """
     camera = images.thinned
     k, noise = camera.intrinsics, camera.noise
-    half = HALF_WINDOW_PX if camera.width >= 160 else 1
+    half = half_window(camera)
     planes = np.zeros((*images.depth_m.shape, 3), dtype=np.float32)
     rays = np.stack(
         [*np.meshgrid(*k.normalised(camera.width, camera.height)), np.ones((camera.height, camera.width))], -1
@@ -106,6 +108,11 @@ def surfaces(images: PlanarImages, moments: Sequence[int]) -> Surfaces:
         cosine = np.abs((normals * ray).sum(axis=1)) / reach
         found.append(Points(points, normals, sigma * cosine / (2 * half + 1)))
     return Surfaces(images, np.asarray(moments, dtype=np.int64), planes, tuple(found))
+
+
+def half_window(camera: DepthCamera) -> int:
+    """Half the window in which planes are fitted [px]."""
+    return HALF_WINDOW_PX if camera.width >= 160 else 1
 
 
 def pairs_of(views: Sequence[Surfaces]) -> list[tuple[Surfaces, Surfaces]]:
@@ -131,7 +138,9 @@ def pair_sums(
 
     def compare(pair: tuple[Surfaces, Surfaces]) -> PairSums:
         one, other = pair
-        tiles = rule.tiles**2
+        half = half_window(other.images.thinned)
+        fitting = rule._replace(arm_px=float(np.sqrt((2 * half + 1) ** 2 * half * (half + 1) / 3)))
+        tiles, by_noise = rule.tiles**2, np.zeros((6, 6))
         normal, gradient = np.zeros((tiles, 6, 6)), np.zeros((tiles, 6))
         counts, offs = np.zeros(4, dtype=np.int64), []
         other_from_one = invert_rigid(poses[other.name]) @ poses[one.name]
@@ -142,9 +151,9 @@ def pair_sums(
             off = np.full(len(points), np.nan)
             compare_points(
                 view, other.images.depth_m[at], other.planes[at], points, normals, sigmas,
-                other_from_one, rule, normal, gradient, counts, off,
+                other_from_one, fitting, normal, gradient, by_noise, counts, off,
             )  # fmt: skip
             offs.append(off[np.isfinite(off)])
-        return PairSums(one.name, other.name, normal, gradient, counts, np.concatenate(offs))
+        return PairSums(one.name, other.name, normal, gradient, by_noise, counts, np.concatenate(offs))
 
     return spread(compare, pairs)

@@ -12,7 +12,7 @@ from elbowroom.calibrate.agreement import Agreement, agreement, seen_from
 from elbowroom.calibrate.calibrated_camera import CalibratedCamera
 from elbowroom.calibrate.overlap import PairSums, Surfaces, pair_sums, pairs_of, surfaces
 from elbowroom.calibrate.planar_images import planar_images
-from elbowroom.calibrate.refine_step import Before, step
+from elbowroom.calibrate.refine_step import Before, equations, step
 from elbowroom.calibrate.refine_verdict import FEWEST_COMMON, check_refined, untouched_notes
 from elbowroom.calibrate.surface_picture import SurfacePicture
 from elbowroom.errors import CalibrationError
@@ -23,7 +23,8 @@ from elbowroom.site import RecordedMoment
 GATES_M = (0.40,) * 6 + (0.25,) * 6 + (0.15,) * 6 + (0.10,) * 6 + (0.05,) * 8
 """How far apart surfaces may be and still be the same, round by round [m]; then by sigmas alone."""
 FINE_ROUNDS = 30
-RULE = Overlap(gate_m=0.0, reach=4.7, floor_m=0.002, least_cosine=0.8, tiles=4)
+RULE = Overlap(gate_m=0.0, reach=4.7, floor_m=0.002, least_cosine=0.8, tiles=4, arm_px=np.nan)
+
 ROUGH_COSINE = 0.6
 STILL = 0.05
 """A step of fewer sigmas is the last one."""
@@ -98,19 +99,20 @@ def refine(
     for gate_m in GATES_M:
         progress("bringing surfaces together")
         rule = RULE._replace(gate_m=gate_m, floor_m=max(RULE.floor_m, gate_m / 10), least_cosine=ROUGH_COSINE)
-        poses, _, _ = step(pair_sums(pairs, poses, rule), poses, before)
+        poses, _ = step(pair_sums(pairs, poses, rule), poses, before)
     for number in range(FINE_ROUNDS):
         progress("least squares")
         share = 1.0 if number < HALF_AFTER else 0.5
-        poses, _, length = step(pair_sums(pairs, poses, RULE), poses, before, share)
+        poses, length = step(pair_sums(pairs, poses, RULE), poses, before, share)
         if length < STILL:
             break
     sums = pair_sums(pairs, poses, RULE)
     check_refined(sums, poses, before, length < RESTLESS)
-    _, normal, _ = step(sums, poses, before)
     common = [(pair, own) for pair, own in zip(pairs, sums, strict=True) if own.compared >= FEWEST_COMMON]
     return Refinement(
-        _refined(cameras, sums, poses, before, np.linalg.inv(normal)),
+        _refined(
+            cameras, sums, poses, before, np.linalg.inv(equations(sums, poses, before, without_noise=True)[0])
+        ),
         tuple(_agreement(pair, before.poses, poses) for pair, _ in common),
         used,
         _pictures(views, common, poses),

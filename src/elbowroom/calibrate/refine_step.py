@@ -12,8 +12,8 @@ from elbowroom.calibrate.twist import adjoint, between, moved
 from elbowroom.geometry import invert_rigid
 
 Array = NDArray[Any]
-BOTH_WAYS = 2.0
-"""Each two cameras are compared both ways, with the same images: that is not twice the knowledge."""
+NOISIER = 2.0
+"""Noise of neighbouring pixels goes together in real sensors: slopes scatter more than single pixels say."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,38 +40,75 @@ class Before:
 
 
 def step(
-    sums: Sequence[PairSums],
-    poses: Mapping[str, Array],
-    before: Before,
-    share: float = 1.0,
-) -> tuple[dict[str, Array], Array, float]:
-    """One step of Gauss and Newton, or a share of it; new poses, normal equations, the whole step's length in sigmas.
+    sums: Sequence[PairSums], poses: Mapping[str, Array], before: Before, share: float = 1.0
+) -> tuple[dict[str, Array], float]:
+    """One step of Gauss and Newton, or a share of it: new poses, and the whole step's length in sigmas."""
+    normal, gradient = equations(sums, poses, before)
+    twist = -np.linalg.solve(normal, gradient)
+    new = dict(poses)
+    for row, name in enumerate(before.free):
+        new[name] = moved(poses[name], share * twist[6 * row : 6 * row + 6])
+    return new, float(np.sqrt(twist @ normal @ twist))
+
+
+def equations(
+    sums: Sequence[PairSums], poses: Mapping[str, Array], before: Before, *, without_noise: bool = False
+) -> tuple[Array, Array]:
+    """Normal equations of the twists of all cameras that may move, six each, and their right-hand side.
 
     A point of the one camera sees, in the other's frame, the one's twist brought there minus the other's own.
+
+    Args:
+        sums: of all pairs.
+        poses: world_from_camera by name, at which they were taken.
+        before: what was known.
+        without_noise: leave out what noise in the slopes of planes only seems to say, as a covariance should.
     """
     free = before.free
     normal, gradient = np.zeros((6 * len(free),) * 2), np.zeros(6 * len(free))
     at = {name: slice(6 * row, 6 * row + 6) for row, name in enumerate(free)}
+    shared = times_used(sums)
     for pair in sums:
-        inflation = BOTH_WAYS * inflation_of(pair)
-        own, slope = pair.normal.sum(axis=0) / inflation, pair.gradient.sum(axis=0) / inflation
+        inflation = shared[pair.one, pair.other] * inflation_of(pair)
+        own = said_by(pair) if without_noise else pair.normal.sum(axis=0)
+        slope = pair.gradient.sum(axis=0)
         by = {
             pair.one: adjoint(invert_rigid(poses[pair.other]) @ poses[pair.one]),
             pair.other: -np.eye(6),
         }
         for name in by.keys() & at.keys():
-            gradient[at[name]] += by[name].T @ slope
+            gradient[at[name]] += by[name].T @ slope / inflation
             for other in by.keys() & at.keys():
-                normal[at[name], at[other]] += by[name].T @ own @ by[other]
+                normal[at[name], at[other]] += by[name].T @ own @ by[other] / inflation
     for name in free:
         weight = np.linalg.inv(before.covariances[name])
         normal[at[name], at[name]] += weight
         gradient[at[name]] += weight @ between(before.poses[name], poses[name])
-    twist = -np.linalg.solve(normal, gradient)
-    new = dict(poses)
-    for name in free:
-        new[name] = moved(poses[name], share * twist[at[name]])
-    return new, normal, float(np.sqrt(twist @ normal @ twist))
+    return normal, gradient
+
+
+def times_used(sums: Sequence[PairSums]) -> dict[tuple[str, str], float]:
+    """By pair: in how many comparisons its two cameras' images take part, on average.
+
+    The same noise is in all of them: seven partners, both ways, are not fourteen times the knowledge.
+    """
+    uses: dict[str, int] = {}
+    for pair in sums:
+        if pair.compared:
+            for name in (pair.one, pair.other):
+                uses[name] = uses.get(name, 0) + 1
+    return {
+        (pair.one, pair.other): max(1.0, (uses.get(pair.one, 0) + uses.get(pair.other, 0)) / 2)
+        for pair in sums
+    }
+
+
+def said_by(pair: PairSums) -> Array:
+    """What a pair's surfaces say without what their noise seems to say, shape (6, 6); nowhere below nothing."""
+    whole = pair.normal.sum(axis=0)
+    scale = np.sqrt(np.maximum(np.diag(whole), 1e-30))
+    values, vectors = np.linalg.eigh((whole - NOISIER * pair.by_noise) / np.outer(scale, scale))
+    return np.asarray((vectors * np.maximum(values, 0.0)) @ vectors.T * np.outer(scale, scale))
 
 
 def inflation_of(pair: PairSums) -> float:
