@@ -53,6 +53,7 @@ class Shaken:
     hand_m: float = 0.0
 
 
+ROUGH = Shaken()
 EXACT = Shaken(0.0, 0.0)
 
 
@@ -80,7 +81,7 @@ def views_of(
     cameras: Sequence[DepthCamera],
     poses: Sequence[Array],
     rng: np.random.Generator,
-    shaken: Shaken = Shaken(),
+    shaken: Shaken = ROUGH,
     board: Board = BOARD,
     sigma_px: float | None = None,
 ) -> list[BoardView]:

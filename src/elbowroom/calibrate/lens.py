@@ -77,9 +77,11 @@ def directions(k: Intrinsics, pixels: Array) -> Array:
         at, slope = bent(k, found[:, 0], found[:, 1])
         off = at - wanted
         if np.abs(off).max() < 1e-12:
-            return found
+            break
         found -= np.linalg.solve(slope, off[:, :, None])[:, :, 0]
-    if not np.abs(off).max() < 1e-6:
+    # beyond where a lens model turns back there are other directions with the same pixel
+    folded = (np.linalg.det(slope) <= 0) | ((at * found).sum(axis=1) < -1e-12)
+    if not np.abs(off).max() < 1e-6 or folded.any():
         raise CalibrationError(
             "lens: distortion coefficients have no direction for some pixels of the image; calibrate intrinsics first"
         )

@@ -18,7 +18,7 @@ from elbowroom.sensing import Margin
 
 CONFIDENCE = 0.95
 """That nothing a camera sees is displaced by more than its margin."""
-NEAR_M = 0.5
+NEAR_M = 1.0
 """A shift of the camera is more pixels the nearer a thing is: the lateral margin holds from here on [m]."""
 GRID = (33, 25)
 """Places of the image, along u and v, borders included, at which displacements are bounded."""

@@ -18,6 +18,9 @@ ASSUMED_SIGMA_M = 0.002
 """Of depth, where a camera has no noise model [m]."""
 WORST_CONDITION = 1e12
 """Of the normal equations: beyond it the points lie in a line."""
+MOST_INDEPENDENT = 300.0
+"""Points that count as independent: what neighbouring pixels have in common does not average out. Where their
+noise is independent after all, the variances that are estimated with the poses say so."""
 TUKEY = 4.685
 """Residuals beyond so many sigmas count nothing (95 % efficiency; Holland, Welsch 1977)."""
 
@@ -67,7 +70,7 @@ def seen_plane(camera: DepthCamera, pixels: Array, depth_m: Array) -> SeenPlane 
     rows = d * (depth_m / sigma)[:, None]
     if np.linalg.cond(rows.T @ rows) > WORST_CONDITION:
         return None
-    m = np.asarray(np.linalg.solve(rows.T @ rows, rows.T @ (1 / sigma)), dtype=np.float64)
+    m = np.linalg.solve(rows.T @ rows, rows.T @ (1 / sigma))
     weight = np.ones(len(depth_m))
     for _ in range(8):
         inverse = d @ m
@@ -93,4 +96,7 @@ def seen_plane(camera: DepthCamera, pixels: Array, depth_m: Array) -> SeenPlane 
     # a bias b lets m move as the fit follows z + b
     by_bias = np.asarray(-np.linalg.solve(information, rows.T @ (np.sqrt(weight) / sigma)), dtype=np.float64)
     off_m = np.asarray(depth_m - 1 / inverse, dtype=np.float64)
-    return SeenPlane(m, np.linalg.cholesky(information).T, by_bias, -m, off_m)
+    found: Array = m.astype(np.float64)
+    information *= min(1.0, MOST_INDEPENDENT / float(weight.sum()))
+    root: Array = np.linalg.cholesky(information).T.astype(np.float64)
+    return SeenPlane(found, root, by_bias, -found, off_m)

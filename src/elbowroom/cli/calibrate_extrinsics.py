@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.calibrate_options import Confidence, OutSite, ReportFolder, SiteOrFolder
+from elbowroom.cli.calibrate_options import Confidence, Near, OutSite, ReportFolder, SiteOrFolder
 from elbowroom.cli.options import JsonFile
 
 
@@ -17,6 +17,7 @@ def extrinsics(
         typer.Option(metavar="NUMBER", help="Leave a pose of the board out; may be given more than once."),
     ] = None,
     confidence: Confidence = 0.95,
+    near: Near = None,
     json: JsonFile = None,
 ) -> None:
     """Find where the cameras are from a board that two or more of them see at a time, and how sure that is.
@@ -26,4 +27,4 @@ def extrinsics(
     """
     from elbowroom.cli.calibrate_extrinsics_run import run_extrinsics
 
-    run_extrinsics(site, out, report, tuple(without_pose or ()), confidence, json)
+    run_extrinsics(site, out, report, tuple(without_pose or ()), confidence, near, json)

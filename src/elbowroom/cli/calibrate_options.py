@@ -34,6 +34,13 @@ Confidence = Annotated[
     float,
     typer.Option(min=0.5, max=0.9999, help="That nothing is displaced by more than a camera's margin."),
 ]
+Near = Annotated[
+    float | None,
+    typer.Option(
+        metavar="METRES",
+        help="Lateral margins hold from this depth on. Default: 1, or a camera's least depth if that is more.",
+    ),
+]
 
 
 def site_path(given: Path) -> Path:

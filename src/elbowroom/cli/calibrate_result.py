@@ -30,6 +30,7 @@ def with_margins(
     found: Sequence[CalibratedCamera],
     confidence: float,
     depth_errors: Mapping[str, tuple[float, float]] | None = None,
+    near_m: float | None = None,
 ) -> list[DepthCamera]:
     """The cameras with margins of sensor and pose together.
 
@@ -39,6 +40,7 @@ def with_margins(
         confidence: that nothing is displaced by more.
         depth_errors: bias [m] and scale by which a camera's depth was found to read wrong; a site file has no place to
             take them out, so they are allowed for.
+        near_m: depth from which lateral margins hold [m]; None: as `pose_margin`.
     """
     cameras = []
     listed = site.simulated is None or site.lists_cameras
@@ -51,7 +53,9 @@ def with_margins(
             bias_m=max(sensor.bias_m, abs(bias)),
             range_linear=max(sensor.range_linear, abs(scale)),
         )
-        margin: Margin = pose_margin(one.camera, one.covariance, confidence=confidence).over(sensor)
+        margin: Margin = pose_margin(one.camera, one.covariance, confidence=confidence, near_m=near_m).over(
+            sensor
+        )
         cameras.append(replace(one.camera, margin=margin))
     return cameras
 

@@ -120,7 +120,7 @@ def adjust(
         anchor: what fixes the world.
     """
     index = Index(state, anchor)
-    variances = Variances.start(list(state.cameras), len(seen))
+    variances = Variances.before(list(state.cameras), len(seen), _within(seen))
     state = _solved(cameras, seen, state, anchor, index, variances)
     for number in range(ROUNDS):
         views = [_rows(one, state, index) for one in seen]
@@ -142,6 +142,15 @@ def adjust(
     prior, pull, _ = _prior(cameras, state, anchor, index)
     normal, _, _ = _summed(views, variances, prior, pull)
     return Solution(state, _inverse(normal), index, variances)
+
+
+def _within(seen: Sequence[SeenBoard]) -> float:
+    """Variance of corners about the best pose of each view alone, over what their sigmas promise; the median view's."""
+    ratios = []
+    for one in seen:
+        residual = corner_rows(one.camera, one.lone[0].camera_from_board, one.corners, one.view)[0]
+        ratios.append(float(np.repeat(one.weight, 2) @ residual**2) / max(len(residual) - 6, 1))
+    return float(np.median(ratios))
 
 
 def _solved(

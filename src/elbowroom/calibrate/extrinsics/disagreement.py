@@ -7,16 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.extrinsics.adjustment import Solution, camera_from_board
-from elbowroom.calibrate.extrinsics.seen_board import SeenBoard
+from elbowroom.calibrate.extrinsics.adjustment import Solution
+from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, spread
 from elbowroom.errors import CalibrationError
 
 Array = NDArray[np.float64]
 SIZE_SHARE = 0.03
 """Distances by corners and by depth may differ by so much: no depth camera's scale is off by more."""
 MOVED_M = 0.004
-MOVED_SIGMAS = 6.0
-"""A view's own pose of the board may lie so far from that of all views together."""
+MOVED_SIGMAS = 4.0
+"""Two views' own poses of the board may lie so far apart."""
+MOST_SHIFT_M = 0.002
+"""More than this a hand does not shake [m]."""
 SAME_PLANE_DEG, SAME_PLANE_M = 3.0, 0.03
 LEAST_POSES_FOR_PLANE = 3
 
@@ -81,18 +83,28 @@ def require_still(seen: Sequence[SeenBoard], solution: Solution, corners: Array)
     Raises:
         CalibrationError: a pose in which the board was moved, or a camera that was.
     """
-    off = {(one.view.pose, one.view.camera): _off(one, solution, corners) for one in seen}
-    bad = {key: apart for key, (apart, allowed) in off.items() if apart > allowed}
+    by_pose: dict[int, list[SeenBoard]] = defaultdict(list)
+    for one in seen:
+        by_pose[one.view.pose].append(one)
+    off = {(one.view.pose, one.view.camera): 0.0 for one in seen}
+    bad: dict[tuple[int, str], float] = {}
+    pairs: list[tuple[str, str]] = []
+    for pose, views in by_pose.items():
+        for number, one in enumerate(views):
+            for other in views[number + 1 :]:
+                apart, allowed = _apart(one, other, solution, corners)
+                if apart > allowed:
+                    pairs.append((one.view.camera, other.view.camera))
+                    for camera in (one.view.camera, other.view.camera):
+                        bad[pose, camera] = max(bad.get((pose, camera), 0.0), apart)
     if not bad:
         return
     poses = sorted({pose for pose, _ in bad})
-    views_of: dict[str, int] = defaultdict(int)
-    bad_of: dict[str, int] = defaultdict(int)
-    for pose, camera in off:
-        views_of[camera] += 1
-        bad_of[camera] += (pose, camera) in bad
-    suspect = max(bad_of, key=lambda name: bad_of[name])
-    if len(poses) > 2 and bad_of[suspect] >= max(0.4 * views_of[suspect], 0.6 * len(bad)):
+    off_cameras = sorted({camera for pair in pairs for camera in pair})
+    suspect = max(off_cameras, key=lambda camera: sum(camera in pair for pair in pairs))
+    bad_of = {camera: sum(camera == other for _, other in bad) for camera in off_cameras}
+    views_of = {camera: sum(camera == other for _, other in off) for camera in off_cameras}
+    if len(poses) > 2 and sum(suspect in pair for pair in pairs) >= 0.8 * len(pairs):
         raise CalibrationError(
             f"camera {suspect}: disagrees with the others in {bad_of[suspect]} of its {views_of[suspect]} poses "
             f"(by {max(a for (_, c), a in bad.items() if c == suspect) * 1e3:.0f} mm); it was moved between poses, "
@@ -108,25 +120,27 @@ def require_still(seen: Sequence[SeenBoard], solution: Solution, corners: Array)
     )
 
 
-def _off(one: SeenBoard, solution: Solution, corners: Array) -> tuple[float, float]:
-    """How far a view's own pose of the board lies from that of all views, and how far it may [m]."""
-    together = camera_from_board(one, solution.state)
-    apart, allowed = np.inf, 0.0
+def _apart(one: SeenBoard, other: SeenBoard, solution: Solution, corners: Array) -> tuple[float, float]:
+    """How far two views' own poses of the board lie apart in the world, and how far they may [m]."""
     box = corners[[0, int(np.argmax(corners[:, 0])), int(np.argmax(corners[:, 1])), len(corners) - 1]]
-    factor = max(solution.variances.corner[one.view.camera], 1.0)
-    for lone in one.lone:
-        other = lone.camera_from_board
-        distance = float(
-            np.linalg.norm(
-                box @ (together[:3, :3] - other[:3, :3]).T + together[:3, 3] - other[:3, 3], axis=1
+    reach, variances = float(np.abs(box).max()), solution.variances
+    # of all cameras, since what is looked for raises its camera's own
+    factor = max(float(np.median(list(variances.corner.values()))), 1.0)
+    shake = 6 * min(variances.shift + variances.turn * reach**2, MOST_SHIFT_M**2)
+    nearest, allowed = np.inf, 0.0
+    for first in one.lone:
+        for second in other.lone:
+            at, beside = (
+                solution.state.cameras[view.view.camera] @ lone.camera_from_board
+                for view, lone in ((one, first), (other, second))
+            )
+            off = np.linalg.norm(
+                box @ (at[:3, :3] - beside[:3, :3]).T + at[:3, 3] - beside[:3, 3], axis=1
             ).max()
-        )
-        covariance = np.linalg.inv(lone.information + 1e-9 * np.eye(6)) * factor
-        reach = float(np.abs(box).max())
-        spread = np.sqrt(np.trace(covariance[3:, 3:]) + np.trace(covariance[:3, :3]) * reach**2)
-        if distance < apart:
-            apart, allowed = distance, MOVED_M + MOVED_SIGMAS * float(spread)
-    return apart, allowed
+            if off < nearest:
+                square = sum(spread(lone, reach) ** 2 * factor for lone in (first, second)) + shake
+                nearest, allowed = float(off), MOVED_M + MOVED_SIGMAS * float(np.sqrt(square))
+    return nearest, allowed
 
 
 def _count(number: int) -> str:

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.extrinsics.seen_board import Lone, SeenBoard
+from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, spread
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import invert_rigid
 
@@ -138,13 +138,14 @@ def _relative(a: Sequence[SeenBoard], b: Sequence[SeenBoard], box: Array) -> tup
     number = np.array([n for n, _, _ in pairs])
     in_a = np.array([_moved(one.camera_from_board, box) for _, one, _ in pairs])
     in_b = np.array([_moved(other.camera_from_board, box) for _, _, other in pairs])
-    spread = np.array([np.hypot(_spread(one, box), _spread(other, box)) for _, one, other in pairs])
+    reach = float(np.abs(box).max())
+    own_spread = np.array([np.hypot(spread(one, reach), spread(other, reach)) for _, one, other in pairs])
     best: tuple[float, float, Array] | None = None
-    for (_, one, other), own in zip(pairs, spread, strict=True):
+    for (_, one, other), own in zip(pairs, own_spread, strict=True):
         a_from_b = one.camera_from_board @ invert_rigid(other.camera_from_board)
         off = np.linalg.norm(in_a - _moved(a_from_b, in_b), axis=2).max(axis=1)
         agreed = np.zeros(len(a))
-        np.maximum.at(agreed, number, np.exp(-((off / (LEAST_TOLERANCE_M + SIGMAS * spread)) ** 2)))
+        np.maximum.at(agreed, number, np.exp(-((off / (LEAST_TOLERANCE_M + SIGMAS * own_spread)) ** 2)))
         # of equal support the sharper proposal goes first
         if best is None or (round(agreed.sum(), 1), -own) > best[:2]:
             best = (round(float(agreed.sum()), 1), -float(own), a_from_b)
@@ -156,31 +157,26 @@ def _moved(to_from_from: Array, points: Array) -> Array:
     return np.asarray(points @ to_from_from[:3, :3].T + to_from_from[:3, 3])
 
 
-def _spread(lone: Lone, box: Array) -> float:
-    """How far the board's outer corners may be off in one view [m]."""
-    covariance = np.linalg.inv(lone.information + 1e-9 * np.eye(6))
-    reach = float(np.abs(box).max())
-    return float(np.sqrt(np.trace(covariance[3:, 3:]) + np.trace(covariance[:3, :3]) * reach**2))
-
-
 def _boards(seen: Sequence[SeenBoard], base_from_camera: Mapping[str, Array], box: Array) -> dict[int, Array]:
     """Each pose of the board as the view says it that the other views agree with most."""
     by_pose: dict[int, list[SeenBoard]] = defaultdict(list)
     for one in seen:
         by_pose[one.view.pose].append(one)
-    boards = {}
+    boards, reach = {}, float(np.abs(box).max())
     for pose, views in by_pose.items():
         said = [(number, lone) for number, one in enumerate(views) for lone in one.lone]
         placed = [base_from_camera[views[n].view.camera] @ lone.camera_from_board for n, lone in said]
         number = np.array([n for n, _ in said])
         at = np.array([_moved(base_from_board, box) for base_from_board in placed])
-        spread = np.array([_spread(lone, box) for _, lone in said])
+        own_spread = np.array([spread(lone, reach) for _, lone in said])
         worth = []
         for own in range(len(said)):
             off = np.linalg.norm(at - at[own], axis=2).max(axis=1)
-            agreed = np.exp(-((off / (LEAST_TOLERANCE_M + SIGMAS * np.hypot(spread, spread[own]))) ** 2))
+            agreed = np.exp(
+                -((off / (LEAST_TOLERANCE_M + SIGMAS * np.hypot(own_spread, own_spread[own]))) ** 2)
+            )
             best = np.zeros(len(views))
             np.maximum.at(best, number, agreed)
-            worth.append((round(float(best.sum()), 1), -float(spread[own])))
+            worth.append((round(float(best.sum()), 1), -float(own_spread[own])))
         boards[pose] = placed[max(range(len(said)), key=lambda n: worth[n])]
     return boards

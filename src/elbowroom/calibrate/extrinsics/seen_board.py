@@ -42,6 +42,17 @@ class Lone:
     chi2: float
 
 
+def spread(lone: Lone, reach_m: float) -> float:
+    """How far the board's outer corners may be off in a view by itself, one sigma [m].
+
+    Args:
+        lone: the pose.
+        reach_m: greatest coordinate of a corner [m].
+    """
+    covariance = np.linalg.inv(lone.information + 1e-9 * np.eye(6))
+    return float(np.sqrt(np.trace(covariance[3:, 3:]) + np.trace(covariance[:3, :3]) * reach_m**2))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class SeenBoard:
     """A view, made ready for the joint solution.
@@ -141,6 +152,8 @@ def seen_board(cameras: Mapping[str, DepthCamera], board: Board, view: BoardView
     if (view.corner_sigma_px <= 0).any():
         raise CalibrationError(f"{what}: corner_sigma_px must be above 0")
     corners = board.corners_in_board[ids]
+    if np.linalg.svd(corners - corners.mean(axis=0))[1][1] < 0.5 * board.square_m:
+        raise CalibrationError(f"{what}: the corners that are seen lie in one line; half-seen, leave it out")
     plane = seen_plane(camera, view.plane_px, view.plane_depth_m)
     starts = _starts(camera, corners, view, what)
     solved = [_refined(camera, corners, view, None, start) for start in starts]
@@ -150,6 +163,7 @@ def seen_board(cameras: Mapping[str, DepthCamera], board: Board, view: BoardView
     solved.sort(key=lambda s: s[0].chi2)
     best, weight = solved[0]
     _require_this_board(camera, board, corners, view, best, what)
+    _require_its_face(corners, best, what)
     kept = [best]
     for other, _ in solved[1:]:
         differs = np.linalg.norm(other.camera_from_board[:3, :3] - best.camera_from_board[:3, :3]) > 0.02
@@ -256,6 +270,16 @@ def _require_this_board(
             f"{what}: no pose of the board explains its corners ({off_px:.1f} px off, squares are {square_px:.0f} px "
             "wide); a mirrored image, another board, or a lens that is not calibrated: check columns and rows, or "
             "leave it out"
+        )
+
+
+def _require_its_face(corners: Array, best: Lone, what: str) -> None:
+    """The board's z axis points away from who sees its face; in a mirrored image it seems to point at the camera."""
+    middle = best.camera_from_board[:3, :3] @ corners.mean(axis=0) + best.camera_from_board[:3, 3]
+    if best.camera_from_board[:3, 2] @ middle <= 0:
+        raise CalibrationError(
+            f"{what}: the corners are numbered as in a mirror: the image is mirrored, or it shows the board's back; "
+            "mend the camera's driver, or leave the view out"
         )
 
 

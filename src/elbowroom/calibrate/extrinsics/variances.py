@@ -20,11 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-START = {"corner": 1.5, "plane": 1.5, "turn": 3e-4**2, "shift": 5e-4**2, "depth": 1e-3**2}
+START = {"corner": 1.5, "plane": 1.5, "turn": 2e-4**2, "shift": 3e-4**2, "depth": 1e-3**2}
 """Before views are compared: factors, and squares of [rad], [m], [m]."""
 START_FREEDOM = 4.0
 """Degrees of freedom that the start weighs."""
-LEAST = {"corner": 1e-2, "plane": 1e-2, "turn": 1e-7**2, "shift": 1e-7**2, "depth": 1e-7**2}
+LEAST = {"corner": 1e-2, "plane": 1e-3, "turn": 1e-7**2, "shift": 1e-7**2, "depth": 1e-7**2}
 SHRINKAGE = 40.0
 """Degrees of freedom that the factor of all cameras weighs against a camera's own."""
 OUTLYING = 4.0
@@ -59,6 +59,7 @@ class Variances:
     Args:
         corner, plane: factors by camera.
         turn, shift, depth: variances [rad^2], [m^2], [m^2].
+        start: of the corners' factor, for cameras of which views say little.
         view: weight of each view, 0 to 1, shape (n,).
     """
 
@@ -67,17 +68,26 @@ class Variances:
     turn: float
     shift: float
     depth: float
+    start: float
     view: Array = field(repr=False)
 
     @classmethod
-    def start(cls, cameras: Sequence[str], views: int) -> "Variances":
-        """Before anything is known."""
+    def before(cls, cameras: Sequence[str], views: int, within: float) -> "Variances":
+        """Before views are compared.
+
+        Args:
+            cameras: names.
+            views: how many.
+            within: variance of corners about the best pose of each view alone, over what their sigmas promise.
+        """
+        start = START["corner"] * max(1.0, within)
         return cls(
-            dict.fromkeys(cameras, START["corner"]),
+            dict.fromkeys(cameras, start),
             dict.fromkeys(cameras, START["plane"]),
             START["turn"],
             START["shift"],
             START["depth"],
+            start,
             np.ones(views),
         )
 
@@ -143,7 +153,15 @@ class Variances:
             )
             for name in ("turn", "shift", "depth")
         )
-        return Variances(_factors(corner, "corner"), _factors(plane, "plane"), turn, shift, depth_, weights)
+        return Variances(
+            _factors(corner, self.start, LEAST["corner"]),
+            _factors(plane, START["plane"], LEAST["plane"]),
+            turn,
+            shift,
+            depth_,
+            self.start,
+            weights,
+        )
 
     def change(self, other: "Variances") -> float:
         """The greatest relative change of a component that matters."""
@@ -153,11 +171,8 @@ class Variances:
         return float(max(abs(np.log(one / two)) for one, two in pairs))
 
 
-def _factors(sums: Mapping[str, Sequence[float]], name: str) -> dict[str, float]:
+def _factors(sums: Mapping[str, Sequence[float]], start: float, least: float) -> dict[str, float]:
     """A factor for each camera: its own, drawn towards that of all, which is drawn towards the start."""
     squares, freedom = sum(s for s, _ in sums.values()), sum(f for _, f in sums.values())
-    shared = (START_FREEDOM * START[name] + squares) / (START_FREEDOM + freedom)
-    return {
-        camera: max((SHRINKAGE * shared + s) / (SHRINKAGE + f), LEAST[name])
-        for camera, (s, f) in sums.items()
-    }
+    shared = (START_FREEDOM * start + squares) / (START_FREEDOM + freedom)
+    return {camera: max((SHRINKAGE * shared + s) / (SHRINKAGE + f), least) for camera, (s, f) in sums.items()}
