@@ -185,12 +185,12 @@ def _step(state: _State, sums: Mapping[str, SurfaceSums], share: float) -> None:
             *equations, seen / share
         )
         state.world_from_cameras[name] = moved(here, part)
-        state.lengths[name] = float(np.sqrt(max(seen @ of_pose(*equations)[0] @ seen, 0.0))) / share
+        state.lengths[name] = float(np.sqrt(np.maximum(seen @ of_pose(*equations)[0] @ seen, 0.0))) / share
         if not state.free_base and state.lengths[name] < STILL:
             state.still.add(name)
     if state.free_base:
         state.world_from_base = moved(state.world_from_base, base_twist)
-        if np.sqrt(max(twist @ normal @ twist, 0.0)) < share * STILL:
+        if np.sqrt(np.maximum(twist @ normal @ twist, 0.0)) < share * STILL:
             state.still.update(state.world_from_cameras)
 
 

@@ -31,8 +31,8 @@ def printed_view(
     """The view of a printed board, or why there is none.
 
     OpenCV's sector-based detector finds the corners (Duda and Frese, "Accurate Detection and Localization of
-    Checkerboard Corners for Calibration", BMVC 2018). `corner_sigma_px`, one for all, is
-    by how much they scatter about a smooth surface over the board.
+    Checkerboard Corners for Calibration", BMVC 2018). `corner_sigma_px` is by how much they scatter about a
+    smooth surface over the board, one for all.
 
     Args:
         camera: that took the image.
@@ -42,10 +42,13 @@ def printed_view(
         pose: number of the board's pose.
         stamp_ns: time of exposure [ns].
     """
-    found = _found(grey, board)
-    if found is None:
-        return Trouble(camera.name, pose, *_why_not(grey, board))
-    stretched, corners = found
+    stretched = _stretched(grey)
+    # stretching finds dark boards, but on real images it moved single corners by up to 7 px: first without
+    corners = _found(grey, board)
+    if corners is None:
+        corners = _found(stretched, board)
+    if corners is None:
+        return Trouble(camera.name, pose, *_why_not(stretched, board))
     turned = _from_first(stretched, corners, board)
     if turned is None:
         return Trouble(
@@ -58,7 +61,7 @@ def printed_view(
             return Trouble(camera.name, pose, Fault.MIRRORED)
         if contrast < MARK_CONTRAST:
             return Trouble(camera.name, pose, Fault.NOT_SEEN, "its mark cannot be made out")
-    pixels, depths = _plane(camera, board, corners, depth_m)
+    pixels, depths = points_within(camera, corners, depth_m)
     flat = corners.reshape(-1, 2)
     return BoardView(
         camera=camera.name,
@@ -72,18 +75,19 @@ def printed_view(
     )
 
 
-def _found(grey: NDArray[np.uint8], board: Board) -> tuple[NDArray[np.uint8], Array] | None:
-    """The image in which they were found, and corners as OpenCV orders them, shape (rows, columns, 2) [px].
+def _stretched(grey: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Local contrast raised: a board in the lamp's far field is nearly black."""
+    return np.asarray(opencv().createCLAHE(clipLimit=4.0, tileGridSize=(8, 8)).apply(grey))
 
-    An image whose board is nearly black, far from the lamp, needs its local contrast raised; others are better without.
-    """
+
+def _found(grey: NDArray[np.uint8], board: Board) -> Array | None:
+    """Corners as OpenCV orders them, shape (rows, columns, 2) [px]."""
     cv2 = opencv()
-    raised = cv2.createCLAHE(clipLimit=4.0, tileGridSize=(8, 8)).apply(grey)
-    thorough = cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_ACCURACY
-    for image, flags in ((grey, cv2.CALIB_CB_ACCURACY), (grey, thorough), (raised, thorough)):
-        found, corners = cv2.findChessboardCornersSB(image, (board.columns, board.rows), flags=flags)
+    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_ACCURACY
+    for more in (0, cv2.CALIB_CB_EXHAUSTIVE):
+        found, corners = cv2.findChessboardCornersSB(grey, (board.columns, board.rows), flags=flags | more)
         if found:
-            return image, np.asarray(corners, dtype=float).reshape(board.rows, board.columns, 2)
+            return np.asarray(corners, dtype=float).reshape(board.rows, board.columns, 2)
     return None
 
 
@@ -170,10 +174,19 @@ def _scatter(corners: Array) -> float:
     return float(np.sqrt(((left - explained) ** 2).sum() / max(free, 1)))
 
 
-def _plane(
-    camera: DepthCamera, board: Board, corners: Array, depth_m: NDArray[np.floating] | None
+def points_within(
+    camera: DepthCamera, corners: Array, depth_m: NDArray[np.floating] | None
 ) -> tuple[Array, Array]:
-    """Pixels among the corners that have a return on the board's plane, and their depth."""
+    """Pixels among the corners that have a return on the board's plane, and their depth.
+
+    Args:
+        camera: that took the depth image.
+        corners: in it, shape (rows, columns, 2) [px].
+        depth_m: shape (h, w) [m, the camera's kind]; None: there is none.
+
+    Returns:
+        shape (n, 2), u then v [px]; shape (n,) [m].
+    """
     nothing = np.zeros((0, 2)), np.zeros(0)
     if depth_m is None:
         return nothing
