@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.calibrate_options import Confidence, OutSite, ReportFolder, SiteOrFolder
+from elbowroom.cli.calibrate_options import Confidence, Near, OutSite, ReportFolder, SiteOrFolder
 from elbowroom.cli.options import JsonFile
 
 Only = Annotated[
@@ -39,6 +39,7 @@ def machine(
         float, typer.Option(min=0.1, max=50.0, help="How well the machine's model fits the machine [mm].")
     ] = 2.0,
     confidence: Confidence = 0.95,
+    near: Near = None,
     json: JsonFile = None,
 ) -> None:
     """Find where the cameras are from images of the machine in several poses, no board needed, and how sure that is.
@@ -49,5 +50,6 @@ def machine(
     from elbowroom.cli.calibrate_machine_run import Wanted, run_machine
 
     run_machine(
-        Wanted(site, out, report, tuple(camera or ()), base, tuple(hold or ()), model_mm, confidence), json
+        Wanted(site, out, report, tuple(camera or ()), base, tuple(hold or ()), model_mm, confidence, near),
+        json,
     )

@@ -33,6 +33,7 @@ class Wanted:
     hold: tuple[str, ...]
     model_mm: float
     confidence: float
+    near_m: float | None
 
 
 def run_machine(wanted: Wanted, json_file: Path | None) -> None:
@@ -73,7 +74,9 @@ def run_machine(wanted: Wanted, json_file: Path | None) -> None:
         for row in found.rows:
             add(row)
         add(_base_row(found, time.perf_counter() - begun))
-        written = with_margins(site, found.cameras, wanted.confidence, found.depth_errors)
+        written = with_margins(
+            site, found.cameras, wanted.confidence, found.depth_errors, near_m=wanted.near_m
+        )
         base = None if found.base_covariance is None else found.machine.world_from_base
         rows = write_result(site, found.cameras, written, wanted.out, "machine", add, world_from_base=base)
         _say_base(found)

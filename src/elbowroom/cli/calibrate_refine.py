@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from elbowroom.cli.calibrate_machine import Only
-from elbowroom.cli.calibrate_options import Confidence, OutSite, ReportFolder, SiteOrFolder
+from elbowroom.cli.calibrate_options import Confidence, Near, OutSite, ReportFolder, SiteOrFolder
 from elbowroom.cli.options import JsonFile
 
 
@@ -26,6 +26,7 @@ def refine(
         ),
     ] = None,
     confidence: Confidence = 0.95,
+    near: Near = None,
     json: JsonFile = None,
 ) -> None:
     """Move cameras until the walls, the floor and the furniture that they see in common fit together.
@@ -35,4 +36,6 @@ def refine(
     """
     from elbowroom.cli.calibrate_refine_run import Wanted, run_refine
 
-    run_refine(Wanted(site, out, report, tuple(camera or ()), tuple(hold or ()), sure_to, confidence), json)
+    run_refine(
+        Wanted(site, out, report, tuple(camera or ()), tuple(hold or ()), sure_to, confidence, near), json
+    )

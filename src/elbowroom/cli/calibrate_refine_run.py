@@ -32,6 +32,7 @@ class Wanted:
     hold: tuple[str, ...]
     sure_to: str | None
     confidence: float
+    near_m: float | None
 
 
 def run_refine(wanted: Wanted, json_file: Path | None) -> None:
@@ -60,7 +61,7 @@ def run_refine(wanted: Wanted, json_file: Path | None) -> None:
             found = refine(cameras, covariances, moments(site, joints={}), progress=progress)
         for row in pair_rows(found):
             add(row | {"seconds": time.perf_counter() - begun})
-        written = with_margins(site, found.cameras, wanted.confidence)
+        written = with_margins(site, found.cameras, wanted.confidence, near_m=wanted.near_m)
         rows = write_result(site, found.cameras, written, wanted.out, "refine", add)
         Console(highlight=False).print(rich_table(pair_table(found)))
         if wanted.report is not None:
