@@ -3,6 +3,8 @@
 import typer
 
 from elbowroom.cli.calibrate_extrinsics import extrinsics
+from elbowroom.cli.calibrate_machine import machine
+from elbowroom.cli.calibrate_refine import refine
 from elbowroom.cli.calibrate_simulate import simulate
 
 calibrate_app = typer.Typer(
@@ -15,3 +17,9 @@ calibrate_app.command(
 calibrate_app.command(
     epilog="Example: elbowroom calibrate extrinsics capture --out calibrated.yaml --report report"
 )(extrinsics)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate machine capture --out calibrated.yaml --report report"
+)(machine)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate refine calibrated.yaml --out refined.yaml --report report"
+)(refine)
