@@ -17,7 +17,7 @@ from elbowroom.simulate.rays import pixel_rays
 
 UNIT_M = 0.00025
 """Frames are kept in 16-bit steps of this: up to 16 m, a quarter of a millimetre fine."""
-SPOTS = 600
+SPOTS = 480
 """Spots per camera."""
 TILES = (8, 6)
 """The image in columns and rows, from which spots are taken in turn."""
@@ -193,14 +193,9 @@ def _spread_out(flat: NDArray[np.bool_], normal: NDArray[np.float64]) -> NDArray
     v, u = np.divmod(pixels, width)
     main = np.abs(normal.reshape(-1, 3)[pixels]).argmax(axis=1)
     group = (v * TILES[1] // height * TILES[0] + u * TILES[0] // width) * 3 + main
+    # a random order within the groups, then the firsts of all groups, the seconds of all groups, and so on
     shuffled = np.random.default_rng(0).permutation(len(pixels))
     by_group = shuffled[np.argsort(group[shuffled], kind="stable")]
-    sorted_group = group[by_group]
-    starts = np.concatenate([[0], np.flatnonzero(np.diff(sorted_group)) + 1]) if len(pixels) else []
-    rank = (
-        np.arange(len(pixels)) - np.repeat(starts, np.diff(np.append(starts, len(pixels))))
-        if len(pixels)
-        else []
-    )
-    order = by_group[np.argsort(rank, kind="stable")][:SPOTS] if len(pixels) else by_group
+    first = np.searchsorted(group[by_group], group[by_group])
+    order = by_group[np.argsort(np.arange(len(pixels)) - first, kind="stable")][:SPOTS]
     return np.sort(pixels[order]).astype(np.int64)

@@ -1,4 +1,4 @@
-"""How far a camera or a link has moved, from offsets of what it shows against where it should lie: arrays and floats."""
+"""How far a camera or a link has moved, from offsets against where surfaces should lie: arrays and floats."""
 
 import math
 from typing import NamedTuple
@@ -49,13 +49,13 @@ class Memory(NamedTuple):
     Fields:
         offset: mean offset along the normal, shape (n,) [m].
         sigma: of that mean [m].
-        count: how many frames are in it, at most `MEAN_OF`; 0: the spot is not in view.
+        frames: how many are in it, at most `MEAN_OF`; 0: the spot is not in view.
         used: int64, indices of the spots that are within the gate, in their order; the rest is meaningless.
     """
 
     offset: np.ndarray
     sigma: np.ndarray
-    count: np.ndarray
+    frames: np.ndarray
     used: np.ndarray
 
 
@@ -78,23 +78,23 @@ def listen(image, spots, least, greatest, gate, memory, counted):
         depth = float(image[spots.pixel[i]])
         if not (depth > 0.0 and depth >= least and depth <= greatest and depth < np.inf):
             counted[LOST] += 1
-            memory.count[i] = 0
+            memory.frames[i] = 0
             continue
         e = (depth - spots.depth[i]) * spots.scale[i]
         sigma = spots.sigma[i]
         reach = gate + 4.0 * sigma
         if e < -reach or e > reach:
             counted[NEARER if e < 0.0 else FARTHER] += 1
-            memory.count[i] = 0
+            memory.frames[i] = 0
             continue
-        count = memory.count[i]
+        count = memory.frames[i]
         if count == 0 or abs(e - memory.offset[i]) > STEP_M + STEP_SIGMAS * sigma:
             count = 1
             memory.offset[i] = e
         else:
             count = min(count + 1, MEAN_OF)
             memory.offset[i] += (e - memory.offset[i]) / count
-        memory.count[i] = count
+        memory.frames[i] = count
         memory.sigma[i] = max(sigma / math.sqrt(count), LEAST_SIGMA_M)
         memory.used[counted[FIT]] = i
         counted[FIT] += 1
@@ -117,39 +117,73 @@ def fit_motion(jacobian, offset, sigma, used, turn_sigma, move_sigma, motion, co
         said: shape (4,), written: log-likelihood of the motion over that of standing still, added over spots that
             speak for it, and over those that speak against it; shares of spots that fit without and with it.
     """
-    information = np.empty((6, 6))
+    n = used.size
+    # per spot: what it shows per turn and move, its offset, and the weight of the step; eight numbers for the processor
+    rows = np.empty((n, 8))
+    for j in range(n):
+        for k in range(6):
+            rows[j, k] = jacobian[used[j], k]
+        rows[j, 6] = offset[used[j]]
+    sums = np.empty((6, 8))
     rhs = np.empty(6)
     for k in range(6):
         motion[k] = 0.0
     for step in range(STEPS):
         width = WIDEST_M * (NARROWEST_M / WIDEST_M) ** (step / (STEPS - 1))
+        _weights(rows, sigma, used, motion, width)
+        _normal_equations(rows, sums)
         for k in range(6):
-            rhs[k] = 0.0
-            for m in range(6):
-                information[k, m] = 0.0
-        for n in range(used.size):
-            i = used[n]
-            e = offset[i]
-            r = e
-            for k in range(6):
-                r -= jacobian[i, k] * motion[k]
-            c = width + SIGMAS * sigma[i]
-            w = 1.0 / (1.0 + (r / c) ** 2)
-            w = w * w / (sigma[i] * sigma[i])
-            for k in range(6):
-                weighted = w * jacobian[i, k]
-                rhs[k] += weighted * e
-                for m in range(k + 1):
-                    information[k, m] += weighted * jacobian[i, m]
-        for k in range(6):
-            information[k, k] += 1.0 / (turn_sigma if k < 3 else move_sigma) ** 2
-        _factorise(information)
-        _solve(information, rhs, motion)
+            sums[k, k] += 1.0 / (turn_sigma if k < 3 else move_sigma) ** 2
+            rhs[k] = sums[k, 6]
+        _factorise(sums)
+        _solve(sums, rhs, motion)
     for m in range(6):
         for k in range(6):
             rhs[k] = 1.0 if k == m else 0.0
-        _solve(information, rhs, covariance[m])
-    _weigh(jacobian, offset, sigma, used, motion, said)
+        _solve(sums, rhs, covariance[m])
+    _weigh(rows, sigma, used, motion, said)
+
+
+@njit(nogil=True)
+def _weights(rows, sigma, used, motion, width):
+    """Weight of each spot by how well it fits the motion of the step before, into the last column."""
+    m0, m1, m2, m3, m4, m5 = motion[0], motion[1], motion[2], motion[3], motion[4], motion[5]
+    for j in range(rows.shape[0]):
+        s = sigma[used[j]]
+        r = rows[j, 6] - (rows[j, 0] * m0 + rows[j, 1] * m1 + rows[j, 2] * m2)
+        r -= rows[j, 3] * m3 + rows[j, 4] * m4 + rows[j, 5] * m5
+        ratio = r / (width + SIGMAS * s)
+        w = 1.0 / (1.0 + ratio * ratio)
+        rows[j, 7] = w * w / (s * s)
+
+
+@njit(nogil=True)
+def _normal_equations(rows, sums):
+    """Weighted sums of the products of each two of six columns, and of these with the seventh."""
+    s00 = s10 = s11 = s20 = s21 = s22 = s30 = s31 = s32 = s33 = 0.0
+    s40 = s41 = s42 = s43 = s44 = s50 = s51 = s52 = s53 = s54 = s55 = 0.0
+    r0 = r1 = r2 = r3 = r4 = r5 = 0.0
+    # numbers by name stay in registers, which an array of them does not
+    for j in range(rows.shape[0]):
+        a, b, c = rows[j, 0], rows[j, 1], rows[j, 2]
+        d, e, f = rows[j, 3], rows[j, 4], rows[j, 5]
+        g, w = rows[j, 6], rows[j, 7]
+        wa, wb, wc, wd, we, wf = w * a, w * b, w * c, w * d, w * e, w * f
+        s00 += wa * a
+        s10, s11 = s10 + wb * a, s11 + wb * b
+        s20, s21, s22 = s20 + wc * a, s21 + wc * b, s22 + wc * c
+        s30, s31, s32, s33 = s30 + wd * a, s31 + wd * b, s32 + wd * c, s33 + wd * d
+        s40, s41, s42, s43, s44 = s40 + we * a, s41 + we * b, s42 + we * c, s43 + we * d, s44 + we * e
+        s50, s51, s52, s53, s54 = s50 + wf * a, s51 + wf * b, s52 + wf * c, s53 + wf * d, s54 + wf * e
+        s55 += wf * f
+        r0, r1, r2, r3, r4, r5 = r0 + wa * g, r1 + wb * g, r2 + wc * g, r3 + wd * g, r4 + we * g, r5 + wf * g
+    sums[0, 0] = s00
+    sums[1, 0], sums[1, 1] = s10, s11
+    sums[2, 0], sums[2, 1], sums[2, 2] = s20, s21, s22
+    sums[3, 0], sums[3, 1], sums[3, 2], sums[3, 3] = s30, s31, s32, s33
+    sums[4, 0], sums[4, 1], sums[4, 2], sums[4, 3], sums[4, 4] = s40, s41, s42, s43, s44
+    sums[5, 0], sums[5, 1], sums[5, 2], sums[5, 3], sums[5, 4], sums[5, 5] = s50, s51, s52, s53, s54, s55
+    sums[0, 6], sums[1, 6], sums[2, 6], sums[3, 6], sums[4, 6], sums[5, 6] = r0, r1, r2, r3, r4, r5
 
 
 @njit(nogil=True)
@@ -179,23 +213,24 @@ def _solve(factor, rhs, solution):
 
 
 @njit(nogil=True)
-def _weigh(jacobian, offset, sigma, used, motion, said):
+def _weigh(rows, sigma, used, motion, said):
     """What each spot says of the motion against standing still: Gaussian with a share of strays."""
     speaks_for, against, fits_still, fits_moved = 0.0, 0.0, 0, 0
-    for n in range(used.size):
-        i = used[n]
-        e = offset[i]
+    for j in range(rows.shape[0]):
+        s, e = sigma[used[j]], rows[j, 6]
         r = e
         for k in range(6):
-            r -= jacobian[i, k] * motion[k]
-        half = 0.5 / (sigma[i] * sigma[i])
-        gain = math.log(STRAY + (1.0 - STRAY) * math.exp(-r * r * half))
-        gain -= math.log(STRAY + (1.0 - STRAY) * math.exp(-e * e * half))
+            r -= rows[j, k] * motion[k]
+        half = 0.5 / (s * s)
+        gain = math.log(
+            (STRAY + (1.0 - STRAY) * math.exp(-r * r * half))
+            / (STRAY + (1.0 - STRAY) * math.exp(-e * e * half))
+        )
         if gain > 0.0:
             speaks_for += gain
         else:
             against -= gain
-        near = FITS_M + FITS_SIGMAS * sigma[i]
+        near = FITS_M + FITS_SIGMAS * s
         fits_still += abs(e) <= near
         fits_moved += abs(r) <= near
     said[0], said[1] = speaks_for, against

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
 from elbowroom.monitor._kernels_watch import fit_motion
 from elbowroom.monitor.body_view import BodySpots, BodyView
@@ -15,9 +16,9 @@ from elbowroom.monitor.reference import MOVE_PRIOR_M, TURN_PRIOR_RAD
 from elbowroom.monitor.sequential import Tally
 from elbowroom.sensing import DepthFrame
 
-ROUND = 6
-"""Passes in which every camera has looked at the machine once."""
-ROUNDS = 5
+ROUND = 12
+"""Passes in which every camera has looked at the machine once, and every link was judged."""
+ROUNDS = 3
 """So many more rounds must say that a link is off than say, counted twice, that it is not."""
 TOLERANCE_M = 0.015
 LEAST_SPOTS = 20
@@ -29,19 +30,20 @@ AGREE = 0.6
 
 @dataclass(slots=True, eq=False)
 class BodyWatch:
-    """Looks through some cameras at each pass, and judges the machine's links once all have looked.
+    """Looks through some cameras at each pass, and judges some of the machine's links by what all showed last.
 
     Args:
         machine: the machine.
         cameras: of the room.
+        threads: None: all cores.
     """
 
     machine: Machine
     cameras: Sequence[DepthCamera]
+    threads: int | None = None
     stop: str | None = field(default=None, init=False)
     """Why nothing may move, once it was found; it stays."""
-    links: tuple[LinkHealth, ...] = field(default=(), init=False)
-    """What the last whole round said."""
+    _links: dict[str, LinkHealth] = field(default_factory=dict, init=False)
     _views: dict[str, BodyView] = field(init=False)
     _seen: dict[str, BodySpots] = field(default_factory=dict, init=False)
     _tallies: list[Tally] = field(init=False)
@@ -71,31 +73,39 @@ class BodyWatch:
         if looking:
             positions = np.array([self.machine.positions(joints_of[name]) for name in looking])
             placed = self.machine.world_from_link_array(positions)
-            for name, world_from_link in zip(looking, placed, strict=True):
-                self._seen[name] = self._views[name].look(frames[name].depth_m, world_from_link)
+
+            def look(number: int) -> BodySpots:
+                name = looking[number]
+                return self._views[name].look(frames[name].depth_m, placed[number])
+
+            looked = spread(look, range(len(looking)), self.threads)
+            self._seen.update(zip(looking, looked, strict=True))
+        for number in range(self._turn, len(self._tallies), ROUND):
+            self._judge(number, still)
         self._turn = (self._turn + 1) % ROUND
-        if self._turn == 0:
-            self._judge(still)
 
-    def _judge(self, still: set[str]) -> None:
-        seen = {name: spots for name, spots in self._seen.items() if name in still}
-        self.links = tuple(
-            health
-            for number in range(len(self.machine.links))
-            if (health := self._judge_link(number, seen)) is not None
-        )
-        off = {health.link: health for health in self.links}
-        for link, tally in zip(self.machine.links, self._tallies, strict=True):
-            tally.add(off[link.name].is_off if link.name in off else None)
-        if self.stop is None and any(tally.decided for tally in self._tallies):
-            self.stop = self._reason(off)
+    @property
+    def links(self) -> tuple[LinkHealth, ...]:
+        """What was said last of the links that some camera sees, from the base on."""
+        return tuple(self._links[link.name] for link in self.machine.links if link.name in self._links)
 
-    def _reason(self, healths: Mapping[str, LinkHealth]) -> str:
+    def _judge(self, number: int, still: set[str]) -> None:
+        name = self.machine.links[number].name
+        self._links.pop(name, None)
+        seen = {camera: spots for camera, spots in self._seen.items() if camera in still}
+        health = self._judge_link(number, seen)
+        if health is not None:
+            self._links[name] = health
+        decided = self._tallies[number].add(None if health is None else health.is_off)
+        if decided and self.stop is None:
+            self.stop = self._reason()
+
+    def _reason(self) -> str:
         """Names the link nearest to the base that is off: those behind it are carried along."""
         suspects = [
-            healths[link.name]
+            self._links[link.name]
             for link, tally in zip(self.machine.links, self._tallies, strict=True)
-            if tally.score >= ROUNDS - 2 and link.name in healths and healths[link.name].is_off
+            if tally.score > 0 and link.name in self._links and self._links[link.name].is_off
         ]
         first = suspects[0]
         return (

@@ -19,13 +19,13 @@ LEAST_SEEN = 60
 """So many spots must be in view for a frame to say anything."""
 LEAST_SEEN_SHARE = 0.15
 FOR_OVER_AGAINST = 5.0
-"""What speaks for a motion must outweigh so much what stands exactly where it was: a table that is pushed moves no wall."""
+"""What speaks for a motion must outweigh so much what stands where it was: a table that is pushed moves no wall."""
 LEAST_FOR = 20.0
 LEAST_FIT = 0.5
 """So much of what is in view must fit the motion."""
-FRAMES = 12
+FRAMES = 10
 """So many more frames must say that it moved than say, counted twice, that it did not."""
-CHANGED_FRAMES = 30
+CHANGED_FRAMES = 20
 CHANGED_FIT = 0.5
 COVERED_SHARE = 0.97
 COVERED_S = 5.0
@@ -96,13 +96,22 @@ class CameraWatch:
             InputError: the image is of another size than the reference's.
         """
         if frame is None:
-            return CameraHealth(self.camera.name, Condition.SILENT, None, 0.0)
+            return self._silent
         if self._newest is not None and frame.stamp_ns is not None and self._newest[0] == frame.stamp_ns:
             return self._newest[1]
         now = self._judge(frame)
         self._newest = frame.stamp_ns, now
         self._count(now, frame.stamp_ns if frame.stamp_ns is not None else now_ns)
         return now
+
+    @property
+    def newest(self) -> CameraHealth:
+        """What was said last; before there was a frame, that it gave none."""
+        return self._newest[1] if self._newest is not None else self._silent
+
+    @property
+    def _silent(self) -> CameraHealth:
+        return CameraHealth(self.camera.name, Condition.SILENT, None, 0.0)
 
     def _judge(self, frame: DepthFrame) -> CameraHealth:
         """What one frame says by itself."""

@@ -58,7 +58,7 @@ class CameraReference:
                 )
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-        if n and not (0 <= self.pixel.min() and self.pixel.max() < self.width * self.height):
+        if n and not (self.pixel.min() >= 0 and self.pixel.max() < self.width * self.height):
             raise CalibrationError(
                 f"reference of camera {self.camera}: pixels beyond its {self.width} x {self.height}"
             )

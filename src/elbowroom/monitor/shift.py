@@ -72,15 +72,16 @@ class Shift:
         else:
             turn = f"turned by {self.turn_deg:.1f} ± {2 * self.turn_sigma_deg:.1f} degrees"
             move = f"moved by {self.move_mm:.0f} ± {2 * self.move_sigma_mm:.0f} mm"
-        large = [np.linalg.norm(self.turn_rad) > turn_rad / 2, np.linalg.norm(self.move_m) > move_m / 2]
-        if large[0] == large[1]:
+        turn_is_large = bool(np.linalg.norm(self.turn_rad) > turn_rad / 2)
+        move_is_large = bool(np.linalg.norm(self.move_m) > move_m / 2)
+        if turn_is_large == move_is_large:
             return f"{turn} and {move}"
-        return turn if large[0] else move
+        return turn if turn_is_large else move
 
 
 def _along(vector: NDArray[np.float64], covariance: NDArray[np.float64]) -> float:
-    length = np.linalg.norm(vector)
+    length = float(np.linalg.norm(vector))
     if length < 1e-12:
-        return float(np.sqrt(np.linalg.eigvalsh(covariance)[-1]))
+        return float(np.linalg.norm(covariance, 2)) ** 0.5
     unit = vector / length
-    return float(np.sqrt(max(unit @ covariance @ unit, 0.0)))
+    return max(float(unit @ covariance @ unit), 0.0) ** 0.5

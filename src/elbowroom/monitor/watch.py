@@ -14,6 +14,8 @@ from elbowroom.sensing import DepthFrame, JointRecord
 Joints = Mapping[str, float] | JointRecord
 BODY = "machine"
 """The key of what is wrong with the machine among `Health.stops`."""
+TURNS = 2
+"""At each pass one camera in so many is listened to: their motions last, and reading their images takes time."""
 
 
 class Watch:
@@ -45,9 +47,10 @@ class Watch:
         by_name = {reference.camera: reference for reference in references}
         given = tolerance or Tolerance()
         self._watches = [CameraWatch(camera, by_name[camera.name], given) for camera in cameras]
-        self._body = None if machine is None else BodyWatch(machine, cameras)
+        self._body = None if machine is None else BodyWatch(machine, cameras, threads)
         self._threads = threads
         self._stops: dict[str, str] = {}
+        self._turn = 0
 
     def hear(self, frames: Sequence[DepthFrame], joints: Joints | None, now_ns: int) -> Health:
         """Judges the newest frames.
@@ -78,14 +81,20 @@ class Watch:
         return Health(cameras, self._body.links if self._body is not None else (), dict(self._stops))
 
     def _hear_cameras(self, newest: Mapping[str, DepthFrame], now_ns: int) -> tuple[CameraHealth, ...]:
+        """Listens to the cameras whose turn it is; of the others, what they said last."""
         threads = self._threads or default_threads()
-        shares = [self._watches[first::threads] for first in range(threads)]
+        turn, self._turn = self._watches[self._turn :: TURNS], (self._turn + 1) % TURNS
 
         def hear(share: list[CameraWatch]) -> list[CameraHealth]:
             return [watch.hear(newest.get(watch.camera.name), now_ns) for watch in share]
 
+        shares = [turn[first::threads] for first in range(threads)]
         heard = {health.camera: health for part in spread(hear, shares, threads) for health in part}
-        return tuple(heard[watch.camera.name] for watch in self._watches)
+        return tuple(
+            heard[name] if name in heard else watch.newest if name in newest else watch.hear(None, now_ns)
+            for watch in self._watches
+            for name in [watch.camera.name]
+        )
 
 
 def _at(joints: Joints, frame: DepthFrame) -> Mapping[str, float]:
