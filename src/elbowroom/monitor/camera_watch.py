@@ -142,9 +142,9 @@ class CameraWatch:
         if fits < CHANGED_FIT * (within + farther):
             return CameraHealth(name, Condition.CHANGED, None, share)
         moved = (
-            shift.exceeds(self.tolerance.turn_rad, self.tolerance.move_m, SIGMAS)
-            and speaks_for > max(FOR_OVER_AGAINST * against, LEAST_FOR)
+            speaks_for > max(FOR_OVER_AGAINST * against, LEAST_FOR)
             and fits_moved >= LEAST_FIT
+            and shift.exceeds(self.tolerance.turn_rad, self.tolerance.move_m, SIGMAS)
         )
         return CameraHealth(name, Condition.MOVED if moved else Condition.STILL, shift, share)
 

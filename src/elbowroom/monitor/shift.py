@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 STEADY_TURN_RAD = 0.0004
 STEADY_MOVE_M = 0.001
 """No shift is known better than this, however many frames speak: what is steady in the reference stays in the mean."""
+_STEADY = np.diag([STEADY_TURN_RAD**2] * 3 + [STEADY_MOVE_M**2] * 3)
 LARGE_TURN_DEG, LARGE_MOVE_MM = 2.0, 60.0
 """Beyond this the surfaces about the spots are others than those that were commissioned: sizes are rough."""
 
@@ -29,8 +30,7 @@ class Shift:
     @classmethod
     def of(cls, motion: NDArray[np.float64], covariance: NDArray[np.float64]) -> "Shift":
         """From the six numbers of the kernels, copied; never surer than `STEADY_TURN_RAD` and `STEADY_MOVE_M`."""
-        steady = np.diag([STEADY_TURN_RAD**2] * 3 + [STEADY_MOVE_M**2] * 3)
-        return cls(motion[:3].copy(), motion[3:].copy(), covariance + steady)
+        return cls(motion[:3].copy(), motion[3:].copy(), covariance + _STEADY)
 
     @property
     def turn_deg(self) -> float:

@@ -9,6 +9,7 @@ from elbowroom.monitor.body_watch import BodyWatch
 from elbowroom.monitor.camera_watch import CameraWatch, Tolerance
 from elbowroom.monitor.health import CameraHealth, Condition, Health
 from elbowroom.monitor.reference import CameraReference, require_references
+from elbowroom.monitor.shift import Shift
 from elbowroom.sensing import DepthFrame, JointRecord
 
 Joints = Mapping[str, float] | JointRecord
@@ -51,6 +52,16 @@ class Watch:
         self._threads = threads
         self._stops: dict[str, str] = {}
         self._turn = 0
+        self.listened = 0
+        """How many camera frames were judged."""
+
+    def shift_of(self, camera: str) -> Shift | None:
+        """By how much a camera had moved when that was found; None: it was not.
+
+        Raises:
+            KeyError: no camera of this name.
+        """
+        return {watch.camera.name: watch.shift for watch in self._watches}[camera]
 
     def hear(self, frames: Sequence[DepthFrame], joints: Joints | None, now_ns: int) -> Health:
         """Judges the newest frames.
@@ -89,6 +100,7 @@ class Watch:
             return [watch.hear(newest.get(watch.camera.name), now_ns) for watch in share]
 
         shares = [turn[first::threads] for first in range(threads)]
+        self.listened += sum(watch.camera.name in newest for watch in turn)
         heard = {health.camera: health for part in spread(hear, shares, threads) for health in part}
         return tuple(
             heard[name] if name in heard else watch.newest if name in newest else watch.hear(None, now_ns)
