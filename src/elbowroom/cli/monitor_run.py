@@ -17,7 +17,8 @@ from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.reconstruct_run import space_of
 from elbowroom.cli.room import Room, Scene
-from elbowroom.cli.rows import cycle_rows
+from elbowroom.cli.rows import cycle_rows, health_rows
+from elbowroom.cli.watching import UNWATCHED, watch_of
 from elbowroom.errors import InputError
 from elbowroom.geometry import bits
 from elbowroom.geometry.parallel import default_threads
@@ -61,8 +62,11 @@ def watch(room: Room, *, seconds: float | None, json_file: Path | None, out_dir:
         for note in room.site.notes:
             console.print(f"note: {note}", highlight=False, soft_wrap=True)
         _warm_up(room, cycle, console)
+        if cycle.watch is None:
+            console.print(f"note: {UNWATCHED}", highlight=False, soft_wrap=True)
         add(_room_row(room))
         last: tuple[Scene, CycleResult] | None = None
+        said: dict[str, str] = {}
         view.start()
         with _ended_by_interrupt():
             until = time.perf_counter() + (float("inf") if seconds is None else seconds)
@@ -71,6 +75,8 @@ def watch(room: Room, *, seconds: float | None, json_file: Path | None, out_dir:
                 view.show(result, scene.source_ms)
                 last = scene, result
                 for row in cycle_rows(result, scene.source_ms):
+                    add(row)
+                for row in health_rows(result, said):
                     add(row)
                 if time.perf_counter() >= until:
                     break
@@ -92,7 +98,8 @@ def _warm_up(room: Room, cycle: Cycle, console: Console) -> None:
         InputError: the first cycle failed, so that all would.
     """
     compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
-    with Steps(console, 3) as steps:
+    with Steps(console, 4) as steps:
+        cycle.watch = watch_of(room, steps)
         steps.begin("first frames")
         scene = next(room.scenes(), None)
         if scene is None:
@@ -154,6 +161,8 @@ def _summary_row(log: RunLog) -> dict[str, Any]:
         "cycles": log.cycles,
         "rate_hz": log.whole_rate_hz,
         "faults": log.faults.total(),
+        "watched": log.is_watched,
+        "stop_reasons": list(log.stops.values()),
     }
     for name, values in (("cycle", log.cycle_ms), ("source", log.source_ms)):
         for statistic, share in (("median", 50), ("p99", 99), ("max", 100)):

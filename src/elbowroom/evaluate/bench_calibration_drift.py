@@ -265,7 +265,8 @@ def false_alarm_row(scene: Commissioned, moments: int, tell: Tell) -> dict[str, 
     Each moment is a frame of every camera. Every second frame of a camera is listened to, and each that is listened
     to counts once, whatever came before: after an alarm a new watch goes on.
     """
-    watch, alarms, listened, said_moved, unsure = scene.watch(), [], 0, 0, 0
+    alarms: list[str] = []
+    watch, listened, said_moved, unsure = scene.watch(), 0, 0, 0
     for k in range(moments):
         if k % 50 == 0:
             tell(f"false alarms, noise {scene.noise}, moment {k} of {moments}")

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
@@ -74,6 +75,7 @@ class CameraWatch:
     """By how much it had moved when that was found."""
     _spots: Spots = field(init=False)
     _memory: Memory = field(init=False)
+    _since_moved: Memory = field(init=False)
     _moved: Tally = field(default_factory=lambda: Tally(FRAMES), init=False)
     _changed: Tally = field(default_factory=lambda: Tally(CHANGED_FRAMES), init=False)
     _since: dict[Condition, int] = field(default_factory=dict, init=False)
@@ -81,9 +83,8 @@ class CameraWatch:
 
     def __post_init__(self) -> None:
         self.reference.require(self.camera)
-        n = len(self.reference.pixel)
         self._spots = self.reference.spots()
-        self._memory = Memory(np.zeros(n), np.zeros(n), np.zeros(n, np.int64), np.zeros(n, np.int64))
+        self._memory, self._since_moved = _nothing_heard(self._spots), _nothing_heard(self._spots)
 
     def hear(self, frame: DepthFrame | None, now_ns: int) -> CameraHealth:
         """Judges the newest frame.
@@ -101,7 +102,7 @@ class CameraWatch:
             return self._newest[1]
         now = self._judge(frame)
         self._newest = frame.stamp_ns, now
-        self._count(now, frame.stamp_ns if frame.stamp_ns is not None else now_ns)
+        self._count(frame, now, frame.stamp_ns if frame.stamp_ns is not None else now_ns)
         return now
 
     @property
@@ -121,15 +122,9 @@ class CameraWatch:
                 f"watch: frame of {name} is {image.shape[1]} x {image.shape[0]} pixels, its reference "
                 f"{self.reference.width} x {self.reference.height}"
             )
-        counted, said = np.empty(4, dtype=np.int64), np.empty(4)
-        motion, covariance = np.empty(6), np.empty((6, 6))
-        judge_image(
-            image.ravel(), self._spots, float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M,
-            TURN_PRIOR_RAD, MOVE_PRIOR_M, self._memory, counted, motion, covariance, said,
-        )  # fmt: skip
+        counted, shift, said = self._listen(frame, self._memory)
         within, nearer, farther, lost = (int(number) for number in counted)
         total = len(self.reference.pixel)
-        shift = Shift.of(motion, covariance)
         speaks_for, against, fits_still, fits_moved = (float(share) for share in said)
         fits = max(fits_still, fits_moved) * within
         share = fits / total
@@ -148,7 +143,19 @@ class CameraWatch:
         )
         return CameraHealth(name, Condition.MOVED if moved else Condition.STILL, shift, share)
 
-    def _count(self, now: CameraHealth, stamp_ns: int) -> None:
+    def _listen(
+        self, frame: DepthFrame, memory: Memory
+    ) -> tuple[NDArray[np.int64], Shift, NDArray[np.float64]]:
+        """Adds a frame to a memory: numbers of spots, the shift that fits, and what speaks for it (`fit_motion`)."""
+        counted, said = np.empty(4, dtype=np.int64), np.empty(4)
+        motion, covariance = np.empty(6), np.empty((6, 6))
+        judge_image(
+            frame.depth_m.ravel(), self._spots, float(self.camera.min_depth_m), float(self.camera.max_depth_m),
+            GATE_M, TURN_PRIOR_RAD, MOVE_PRIOR_M, memory, counted, motion, covariance, said,
+        )  # fmt: skip
+        return counted, Shift.of(motion, covariance), said
+
+    def _count(self, frame: DepthFrame, now: CameraHealth, stamp_ns: int) -> None:
         """Lets the tests hear what the frame said."""
         condition = now.condition
         can_tell = condition in (Condition.MOVED, Condition.STILL)
@@ -159,8 +166,15 @@ class CameraWatch:
                 self._since.setdefault(lasting, stamp_ns)
             else:
                 self._since.pop(lasting, None)
-        if self.stop is None:
-            self.stop = self._found(now.shift if moved else None, changed, stamp_ns)
+        if self.stop is not None:
+            return
+        shift = None
+        if self._moved.score == 0:
+            self._since_moved.frames[:] = 0
+        else:
+            # the size is that of frames after the knock: the mean that found it holds some from before
+            _, shift, _ = self._listen(frame, self._since_moved)
+        self.stop = self._found(shift if moved else None, changed, stamp_ns)
 
     def _found(self, shift: Shift | None, changed: bool, stamp_ns: int) -> str | None:
         """The reason to stop, if a test has decided."""
@@ -175,3 +189,8 @@ class CameraWatch:
             if lasted >= limit_s:
                 return f"camera {name} {lasting.value}, for {lasted:.0f} s"
         return None
+
+
+def _nothing_heard(spots: Spots) -> Memory:
+    n = len(spots.pixel)
+    return Memory(np.zeros(n), np.zeros(n), np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64))

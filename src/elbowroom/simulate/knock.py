@@ -94,12 +94,24 @@ def require_known(knocks: Sequence[Knock], cameras: Sequence[DepthCamera], joint
             )
 
 
-def knocked_cameras(
-    knocks: Sequence[Knock], cameras: Sequence[DepthCamera], time_s: float
-) -> tuple[DepthCamera, ...]:
-    """The cameras where they truly are at a time: the last knock of each that has happened counts."""
-    happened = {knock.what: knock for knock in knocks if time_s >= knock.at_s}
-    return tuple(happened[c.name].camera(c) if c.name in happened else c for c in cameras)
+class PlacedKnocks:
+    """The cameras before and after their knocks, each made once: what never moves is cast once for each camera.
+
+    Args:
+        knocks: those of joints do nothing here.
+        cameras: where they are said to be.
+    """
+
+    def __init__(self, knocks: Sequence[Knock], cameras: Sequence[DepthCamera]) -> None:
+        by_name = {camera.name: camera for camera in cameras}
+        self._cameras = tuple(cameras)
+        mine = [knock for knock in knocks if knock.what in by_name]
+        self._after = [(knock, knock.camera(by_name[knock.what])) for knock in mine]
+
+    def cameras(self, time_s: float) -> tuple[DepthCamera, ...]:
+        """Where they truly are at a time: of each camera's knocks that have happened the last one counts."""
+        happened = {knock.what: camera for knock, camera in self._after if time_s >= knock.at_s}
+        return tuple(happened.get(camera.name, camera) for camera in self._cameras)
 
 
 def reported_joints(knocks: Sequence[Knock], joints: Mapping[str, float], time_s: float) -> dict[str, float]:
