@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from elbowroom.cli.bench import bench
+from elbowroom.cli.calibrate import calibrate_app
 from elbowroom.cli.check import check
 from elbowroom.cli.evaluate_thesis import evaluate_app
 from elbowroom.cli.monitor import monitor
@@ -49,6 +50,7 @@ app.command(
     )
 )(simulate)
 app.command(epilog=_example("elbowroom bench --json bench.json"))(bench)
+app.add_typer(calibrate_app, name="calibrate")
 app.add_typer(evaluate_app, name="evaluate")
 app.add_typer(placement_app, name="placement")
 app.add_typer(site_app, name="site")

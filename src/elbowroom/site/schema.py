@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from elbowroom.geometry import VoxelGrid
+from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Number, Point, Positive, Text, Whole
 from elbowroom.site.machine_entry import JointEntry, MachineEntry
@@ -108,6 +109,7 @@ class SiteEntry(Entry):
     room: RoomEntry | None = None
     placement: PlacementEntry | None = None
     watch: WatchEntry | None = None
+    calibration: CalibrationEntry | None = None
 
     @model_validator(mode="after")
     def _fits_together(self) -> "SiteEntry":

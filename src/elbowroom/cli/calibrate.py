@@ -1,0 +1,13 @@
+"""`elbowroom calibrate`: where cameras are and how they see."""
+
+import typer
+
+from elbowroom.cli.calibrate_simulate import simulate
+
+calibrate_app = typer.Typer(
+    help="Where cameras are and how they see: from a board, from the machine, from the room; and how sure that is.",
+    no_args_is_help=True,
+)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate simulate board --out capture --cameras 21 --noise kinect_v1"
+)(simulate)
