@@ -2,6 +2,7 @@
 
 import typer
 
+from elbowroom.cli.calibrate_commission import commission
 from elbowroom.cli.calibrate_simulate import simulate
 
 calibrate_app = typer.Typer(
@@ -11,3 +12,6 @@ calibrate_app = typer.Typer(
 calibrate_app.command(
     epilog="Example: elbowroom calibrate simulate board --out capture --cameras 21 --noise kinect_v1"
 )(simulate)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate commission my_room.yaml --out my_room_watched.yaml"
+)(commission)
