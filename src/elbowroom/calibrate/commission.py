@@ -111,7 +111,7 @@ class Commissioning:
         rays = pixel_rays(camera)
         x, y = rays.x.astype(np.float64), rays.y.astype(np.float64)
         per_planar = np.sqrt(1 + x * x + y * y) if camera.depth_kind == "radial" else np.ones_like(x)
-        found = flat_spots(depth / per_planar, x, y, scatter)
+        found = flat_spots(depth / per_planar, x, y, 1.25 * scatter / np.sqrt(count))
         chosen = _spread_out(found.flat, found.normal)
         if len(chosen) < LEAST_SPOTS:
             raise CalibrationError(

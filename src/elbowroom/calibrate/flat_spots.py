@@ -43,7 +43,7 @@ def flat_spots(
     Args:
         planar_m: depth along the optical axis, shape (h, w) [m]; 0: none.
         x, y: X/Z and Y/Z of the pixels, shape (h, w).
-        sigma_m: what depths may scatter by, shape (h, w) [m].
+        sigma_m: standard deviation of these depths, shape (h, w) [m].
     """
     pitch = float(np.median(np.abs(np.diff(x, axis=1)))) if x.shape[1] > 1 else 1.0
     size = 2 * max(1, round(ANGLE_RAD / pitch)) + 1
