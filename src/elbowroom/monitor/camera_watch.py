@@ -24,9 +24,9 @@ FOR_OVER_AGAINST = 5.0
 LEAST_FOR = 20.0
 LEAST_FIT = 0.5
 """So much of what is in view must fit the motion."""
-FRAMES = 10
+FRAMES = 6
 """So many more frames must say that it moved than say, counted twice, that it did not."""
-CHANGED_FRAMES = 20
+CHANGED_FRAMES = 12
 CHANGED_FIT = 0.5
 COVERED_SHARE = 0.97
 COVERED_S = 5.0

@@ -51,9 +51,8 @@ class Watch:
         self._body = None if machine is None else BodyWatch(machine, cameras, threads)
         self._threads = threads
         self._stops: dict[str, str] = {}
-        self._turn = 0
-        self.listened = 0
-        """How many camera frames were judged."""
+        self.turn = 0
+        """The next pass listens to the cameras from this one on, one in `TURNS`."""
 
     def shift_of(self, camera: str) -> Shift | None:
         """By how much a camera had moved when that was found; None: it was not.
@@ -94,13 +93,12 @@ class Watch:
     def _hear_cameras(self, newest: Mapping[str, DepthFrame], now_ns: int) -> tuple[CameraHealth, ...]:
         """Listens to the cameras whose turn it is; of the others, what they said last."""
         threads = self._threads or default_threads()
-        turn, self._turn = self._watches[self._turn :: TURNS], (self._turn + 1) % TURNS
+        turn, self.turn = self._watches[self.turn :: TURNS], (self.turn + 1) % TURNS
 
         def hear(share: list[CameraWatch]) -> list[CameraHealth]:
             return [watch.hear(newest.get(watch.camera.name), now_ns) for watch in share]
 
         shares = [turn[first::threads] for first in range(threads)]
-        self.listened += sum(watch.camera.name in newest for watch in turn)
         heard = {health.camera: health for part in spread(hear, shares, threads) for health in part}
         return tuple(
             heard[name] if name in heard else watch.newest if name in newest else watch.hear(None, now_ns)
