@@ -2,7 +2,7 @@
 
     python benchmarks/calibration_drift.py [part ...]
 
-Writes benchmarks/results/calibration_drift.json. Parts are knocks, joints, furniture, alarms and time; rows of parts that
+Writes benchmarks/results/calibration_drift.json. Parts are knocks, joints, furniture, alarms, time; rows of parts that
 are not named stay as they are in the file. All of them take some twenty minutes on two cores.
 """
 

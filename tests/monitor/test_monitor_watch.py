@@ -11,25 +11,10 @@ from elbowroom.monitor import Condition, Watch
 from elbowroom.monitor.camera_watch import BLIND_S, COVERED_S
 from elbowroom.monitor.sequential import Tally, mean_run_length
 from elbowroom.sensing import DepthFrame
-from reference.watch_twins import camera_at, frame, knocked, walls
+from reference.watch_twins import CAMERAS, NOISE_M, camera_at, commissioned, frame, knocked, walls
 
 MS = 1_000_000
-NOISE_M = 0.005
-CAMERAS = (
-    camera_at("north", (-1.9, 0.2, 2.3), (0.6, -0.2, 0.6)),
-    camera_at("east", (0.3, 1.8, 2.4), (0.0, -0.6, 0.5), depth_kind="radial"),
-    camera_at("low", (2.1, -1.9, 0.4), (-0.5, 0.3, 1.2)),
-)
-
-
-def commissioned(cameras=CAMERAS, noise_m=NOISE_M):
-    room = Commissioning(cameras, None, 10)
-    for number in range(10):
-        room.add([frame(camera, number, noise_m) for camera in cameras], None)
-    return room.references()
-
-
-REFERENCES = commissioned()
+REFERENCES = commissioned(CAMERAS)
 
 
 def run(watch, cameras, start=0, moments=60, noise_m=NOISE_M, change=lambda frame, k: frame):

@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from elbowroom.calibrate.commission import Commissioning
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.monitor import _kernels_watch as kernels
 from elbowroom.sensing import DepthFrame
@@ -94,3 +95,19 @@ def frame(camera, stamp_ns=0, noise_m=0.0, rng=None, depth=None):
     if noise_m:
         image = image + (rng or np.random.default_rng(stamp_ns % 1000)).normal(0, noise_m, image.shape)
     return DepthFrame(camera.name, stamp_ns, np.float32(image))
+
+
+NOISE_M = 0.005
+CAMERAS = (
+    camera_at("north", (-1.9, 0.2, 2.3), (0.6, -0.2, 0.6)),
+    camera_at("east", (0.3, 1.8, 2.4), (0.0, -0.6, 0.5), depth_kind="radial"),
+    camera_at("low", (2.1, -1.9, 0.4), (-0.5, 0.3, 1.2)),
+)
+
+
+def commissioned(cameras, noise_m=NOISE_M):
+    """References of cameras in the empty room of six walls."""
+    room = Commissioning(cameras, None, 10)
+    for number in range(10):
+        room.add([frame(camera, number, noise_m) for camera in cameras], None)
+    return room.references()
