@@ -215,6 +215,7 @@ def test_a_frame_of_another_size_is_an_error_and_no_silence():
         Watch(CAMERAS, REFERENCES).hear([DepthFrame("north", 0, np.ones((2, 2), np.float32))], None, 0)
 
 
+@settings(deadline=None)
 @given(st.lists(st.sampled_from([True, False, None]), max_size=80), st.integers(1, 20))
 def test_a_tally_never_falls_back_once_it_decided(says, limit):
     tally, score = Tally(limit), 0

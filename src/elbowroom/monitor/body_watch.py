@@ -21,6 +21,8 @@ ROUND = 12
 ROUNDS = 3
 """So many more rounds must say that a link is off than say, counted twice, that it is not."""
 TOLERANCE_M = 0.015
+SHOWN_M = 0.004
+"""Motions that are known no better than this are left out."""
 LEAST_SPOTS = 20
 """A camera sees a link with so many spots, at least."""
 FOR_OVER_AGAINST, LEAST_FOR, LEAST_FIT = 5.0, 20.0, 0.5
@@ -140,6 +142,7 @@ class BodyWatch:
             covariance,
             said,
         )
+        motion = _what_is_shown(motion, covariance, float(np.sqrt((arm**2).sum(axis=1).mean())))
         shifted = np.cross(motion[:3], arm) + motion[3:]
         off_m = float(np.sqrt((shifted**2).sum(axis=1).mean()))
         shown_m = float(np.sqrt(((jacobian @ motion) ** 2).mean()))
@@ -162,6 +165,23 @@ class BodyWatch:
         return LinkHealth(
             self.machine.links[number].name, off_m, agree if is_off else tuple(parts), bool(is_off)
         )
+
+
+def _what_is_shown(
+    motion: NDArray[np.float64], covariance: NDArray[np.float64], arm_m: float
+) -> NDArray[np.float64]:
+    """The motion without what the surfaces do not show: a cylinder's turn about its own axis, a slide along it.
+
+    Args:
+        motion: shape (6,) [rad, m].
+        covariance: of it, shape (6, 6).
+        arm_m: how far the link's spots are from their middle, by which turns are made lengths [m].
+    """
+    scale = np.array([arm_m] * 3 + [1.0] * 3)
+    variances, directions = np.linalg.eigh(covariance * np.outer(scale, scale))
+    shown = directions[:, variances < SHOWN_M**2]
+    projected: NDArray[np.float64] = (shown @ (shown.T @ (motion * scale))) / scale
+    return projected
 
 
 def _says_off(
