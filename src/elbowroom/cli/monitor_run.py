@@ -18,7 +18,7 @@ from elbowroom.cli.progress import Steps
 from elbowroom.cli.reconstruct_run import space_of
 from elbowroom.cli.room import Room, Scene
 from elbowroom.cli.rows import cycle_rows, health_rows
-from elbowroom.cli.watching import UNWATCHED, watch_of
+from elbowroom.cli.watching import watch_of
 from elbowroom.errors import InputError
 from elbowroom.geometry import bits
 from elbowroom.geometry.parallel import default_threads
@@ -61,9 +61,9 @@ def watch(room: Room, *, seconds: float | None, json_file: Path | None, out_dir:
     with json_rows(json_file) as add, TerminalView(room.watched, console) as view:
         for note in room.site.notes:
             console.print(f"note: {note}", highlight=False, soft_wrap=True)
-        _warm_up(room, cycle, console)
-        if cycle.watch is None:
-            console.print(f"note: {UNWATCHED}", highlight=False, soft_wrap=True)
+        unwatched = _warm_up(room, cycle, console)
+        if unwatched is not None:
+            console.print(f"note: {unwatched}", highlight=False, soft_wrap=True)
         add(_room_row(room))
         last: tuple[Scene, CycleResult] | None = None
         said: dict[str, str] = {}
@@ -91,19 +91,22 @@ def _judge(cycle: Cycle, scene: Scene) -> CycleResult:
     return cycle.run(scene.frames, scene.joints or {}, scene.now_ns, scene.joints_at_frames)
 
 
-def _warm_up(room: Room, cycle: Cycle, console: Console) -> None:
-    """Compiles all that the loop uses, by doing it once; also what it uses where something is in the way.
+def _warm_up(room: Room, cycle: Cycle, console: Console) -> str | None:
+    """Compiles all that the loop uses, by doing it once; also what it uses where something is in the way; sets the watch.
+
+    Returns:
+        Why there is no watch; None: there is one.
 
     Raises:
         InputError: the first cycle failed, so that all would.
     """
     compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
     with Steps(console, 4) as steps:
-        cycle.watch = watch_of(room, steps)
+        cycle.watch, unwatched = watch_of(room, steps)
         steps.begin("first frames")
         scene = next(room.scenes(), None)
         if scene is None:
-            return
+            return unwatched
         steps.begin("motions that are blocked")
         nothing = bits.empty(room.grid)
         all_blocked = FreeSpace(room.grid, nothing, nothing, nothing, nothing)
@@ -112,6 +115,7 @@ def _warm_up(room: Room, cycle: Cycle, console: Console) -> None:
         result = _judge(cycle, scene)
     if result.fault is not None:
         raise InputError(f"the first cycle failed: {result.fault}")
+    return unwatched
 
 
 @contextmanager
