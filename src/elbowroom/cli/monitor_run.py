@@ -92,7 +92,7 @@ def _judge(cycle: Cycle, scene: Scene) -> CycleResult:
 
 
 def _warm_up(room: Room, cycle: Cycle, console: Console) -> str | None:
-    """Compiles all that the loop uses, by doing it once; also what it uses where something is in the way; sets the watch.
+    """Sets the watch, and compiles all that the loop uses, by doing it once; also where something is in the way.
 
     Returns:
         Why there is no watch; None: there is one.
