@@ -12,8 +12,9 @@ from pathlib import Path
 
 from rich.console import Console
 
-from elbowroom.cli.json_output import meta, write_json
+from elbowroom.cli.json_output import meta
 from elbowroom.evaluate.bench_calibration_drift import PARTS, drift_rows
+from elbowroom.view.atomic import whole_file
 
 RESULT = Path(__file__).resolve().parent / "results" / "calibration_drift.json"
 
@@ -31,7 +32,12 @@ def main() -> None:
     # read again: another part may have been written meanwhile
     kept = json.loads(RESULT.read_text())["rows"] if RESULT.exists() else []
     together = rows + [row for row in kept if row["part"] not in parts]
-    write_json(RESULT, sorted(together, key=lambda row: PARTS.index(row["part"])))
+    content = {
+        "meta": {**meta(), "command": "python benchmarks/calibration_drift.py"},
+        "rows": sorted(together, key=lambda row: PARTS.index(row["part"])),
+    }
+    with whole_file(RESULT) as unfinished:
+        unfinished.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

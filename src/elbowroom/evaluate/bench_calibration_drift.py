@@ -29,8 +29,8 @@ KNOCKED_FRAMES = 60
 """2 s: by then a knock must have been named."""
 BEFORE = 6
 """Frames before the knock."""
-EACH = 3
-"""One camera in so many is knocked in each way, from another one on in each."""
+EVERY = 3
+"""One camera in so many is knocked where several are at once."""
 KNOCKS: dict[str, Knock] = {
     **{
         f"turn 1 degree about {a}": Knock("", tuple(np.radians(np.eye(3)[i])), (0, 0, 0))
@@ -125,7 +125,7 @@ def drift_rows(tell: Tell, parts: Sequence[str] = PARTS, *, moments: int = 1000)
 
 
 def knock_rows(scene: Commissioned, tell: Tell) -> Iterator[dict[str, Any]]:
-    """Each camera is knocked in two of the ways, alone, while all others stay; and several at once.
+    """Each camera is knocked in each way, alone, while all others stay; and several at once.
 
     Yields:
         Rows of `knock`, `runs`, `named` (that camera, within 60 frames), `others_named`, `frames_median`, `frames_max`,
@@ -137,13 +137,12 @@ def knock_rows(scene: Commissioned, tell: Tell) -> Iterator[dict[str, Any]]:
         _frames(scene.cameras, scene.room.at(start_s + k * PERIOD_S), k)
         for k in range(BEFORE + KNOCKED_FRAMES)
     ]
-    for way, (name, knock) in enumerate(KNOCKS.items()):
+    for name, knock in KNOCKS.items():
         tell(f"{name}, noise {scene.noise}")
         turns = any(knock.turn_rad)
         frames, said, sigmas, missed, others = [], [], [], [], 0
-        numbers = range(way % EACH, len(scene.cameras), EACH)
-        for number in numbers:
-            camera, watch = scene.cameras[number], scene.watch()
+        for number, camera in enumerate(scene.cameras):
+            watch = scene.watch()
             truly = knock.camera(camera)
             for k, joints in enumerate(_joints(scene, start_s, len(still))):
                 now = list(still[k])
@@ -168,7 +167,7 @@ def knock_rows(scene: Commissioned, tell: Tell) -> Iterator[dict[str, Any]]:
             "case": "knock",
             "knock": name,
             **scene.words,
-            "runs": len(numbers),
+            "runs": len(scene.cameras),
             "named": len(said),
             "others_named": others,
             "frames_median": float(np.median(frames)) if frames else None,
@@ -188,7 +187,7 @@ def _several_row(
 ) -> dict[str, Any]:
     """Every third camera turns by a degree about its y axis at once."""
     knock = KNOCKS["turn 1 degree about y"]
-    knocked = {camera.name for camera in scene.cameras[::3]}
+    knocked = {camera.name for camera in scene.cameras[::EVERY]}
     watch = scene.watch()
     for k, joints in enumerate(_joints(scene, start_s, len(still))):
         moment = scene.room.at(start_s + k * PERIOD_S)
