@@ -2,8 +2,9 @@
 
     python benchmarks/calibration_drift.py [part ...]
 
-Writes benchmarks/results/calibration_drift.json. Parts are knocks, joints, furniture, alarms, time; rows of parts that
-are not named stay as they are in the file. All of them take some twenty minutes on two cores.
+Writes benchmarks/results/calibration_drift.json. Parts are knocks, joints, furniture, alarms, real and time; rows of
+parts that are not named stay as they are in the file. `real` plays examples/piv_table_2cam.yaml. All of them take some
+fifteen minutes on two cores.
 """
 
 import json
@@ -14,8 +15,10 @@ from rich.console import Console
 
 from elbowroom.cli.json_output import meta
 from elbowroom.evaluate.bench_calibration_drift import PARTS, drift_rows
+from elbowroom.site import Site
 from elbowroom.view.atomic import whole_file
 
+RECORDED = Path(__file__).resolve().parents[1] / "examples" / "piv_table_2cam.yaml"
 RESULT = Path(__file__).resolve().parent / "results" / "calibration_drift.json"
 
 
@@ -26,7 +29,8 @@ def main() -> None:
         raise SystemExit(f"no part {unknown[0]}; parts are {', '.join(PARTS)}")
     console, rows = Console(stderr=True), []
     with console.status("") as status:
-        for row in drift_rows(status.update if console.is_terminal else console.print, parts):
+        tell = status.update if console.is_terminal else console.print
+        for row in drift_rows(tell, parts, recorded=Site.load(RECORDED) if "real" in parts else None):
             rows.append({**row, "commit": meta()["commit"]})
             console.print({k: v for k, v in row.items() if k not in ("cameras", "width", "height")})
     # read again: another part may have been written meanwhile

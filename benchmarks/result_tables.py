@@ -395,6 +395,19 @@ def drift_tables(rows: Sequence[Row]) -> list[str]:
         },
     )]  # fmt: skip
     lines += ["", *table(
+        parts.get("real", []),
+        {
+            "recording": of("site"),
+            "knock of one camera": of("knock"),
+            "named": of("named"),
+            "others": of("others_named", due=lambda _: ("≤", 0)),
+            "passes": of("passes"),
+            "said": lambda row: (
+                "" if row["said"] is None else f"{row['said']:.2f} ± {row['two_sigma']:.2f} {row['unit']}"
+            ),
+        },
+    )]  # fmt: skip
+    lines += ["", *table(
         parts.get("time", []),
         {
             "a pass": lambda row: f"{row['cameras']} cameras {row['width']}x{row['height']}, with body",

@@ -21,6 +21,7 @@ from elbowroom.simulate import InterventionRoom, Moment, Solid, render, wall_cam
 from elbowroom.simulate.knock import Knock
 from elbowroom.simulate.person import Person, Walk
 from elbowroom.simulate.room import STAFF
+from elbowroom.site import Site, moments
 
 PERIOD_S = 1 / 30
 HEIGHTS_M = (2.4, 0.4)
@@ -97,16 +98,19 @@ def commissioned(
     return Commissioned(room, cameras, commissioning.references(), noise)
 
 
-PARTS = ("knocks", "joints", "furniture", "alarms", "time")
+PARTS = ("knocks", "joints", "furniture", "alarms", "real", "time")
 
 
-def drift_rows(tell: Tell, parts: Sequence[str] = PARTS, *, moments: int = 1000) -> Iterator[dict[str, Any]]:
+def drift_rows(
+    tell: Tell, parts: Sequence[str] = PARTS, *, passes: int = 1000, recorded: Site | None = None
+) -> Iterator[dict[str, Any]]:
     """The rows of some parts; each row has keys `part` and `case`.
 
     Args:
         tell: called with what is done next, in words.
         parts: of `PARTS`.
-        moments: for false alarms; each brings ten or eleven frames that are listened to.
+        passes: for false alarms; each brings ten or eleven frames that are listened to.
+        recorded: site of a real recording for part `real`; None: it is left out.
     """
     for noise in ("tof", "kinect_v1"):
         if {"knocks", "joints", "furniture"} & set(parts):
@@ -119,7 +123,9 @@ def drift_rows(tell: Tell, parts: Sequence[str] = PARTS, *, moments: int = 1000)
         if "furniture" in parts:
             yield furniture_row(scene, tell)
         if "alarms" in parts:
-            yield false_alarm_row(commissioned(noise, staff=STAFF + VISITORS), moments, tell)
+            yield false_alarm_row(commissioned(noise, staff=STAFF + VISITORS), passes, tell)
+    if "real" in parts and recorded is not None:
+        yield from real_rows(recorded, tell)
     if "time" in parts:
         yield time_row(tell)
 
@@ -274,7 +280,7 @@ def _pushed(solid: Solid, shift: np.ndarray, moved: dict[str, Solid]) -> Solid:
     return moved[solid.name]
 
 
-def false_alarm_row(scene: Commissioned, moments: int, tell: Tell) -> dict[str, Any]:
+def false_alarm_row(scene: Commissioned, passes: int, tell: Tell) -> dict[str, Any]:
     """People walk and the machine moves; nothing is knocked.
 
     A watch listens to every other camera at each pass, in turn, so only those are rendered: each frame is new, is
@@ -283,9 +289,9 @@ def false_alarm_row(scene: Commissioned, moments: int, tell: Tell) -> dict[str, 
     alarms: list[str] = []
     watch, listened, said_moved, unsure = scene.watch(), 0, 0, 0
     frames = _frames(scene.cameras, scene.room.at(400.0), 0)
-    for k in range(moments):
+    for k in range(passes):
         if k % 50 == 0:
-            tell(f"false alarms, noise {scene.noise}, moment {k} of {moments}")
+            tell(f"false alarms, noise {scene.noise}, pass {k} of {passes}")
         moment = scene.room.at(400.0 + k * PERIOD_S)
         turn = slice(watch.turn, None, TURNS)
         frames[turn] = _frames(scene.cameras[turn], moment, k)
@@ -301,8 +307,8 @@ def false_alarm_row(scene: Commissioned, moments: int, tell: Tell) -> dict[str, 
         "part": "alarms",
         "case": "false alarms",
         **scene.words,
-        "passes": moments,
-        "seconds": moments * PERIOD_S,
+        "passes": passes,
+        "seconds": passes * PERIOD_S,
         "people": len(scene.room.staff),
         "camera_frames": listened,
         "false_alarms": len(alarms),
@@ -312,18 +318,85 @@ def false_alarm_row(scene: Commissioned, moments: int, tell: Tell) -> dict[str, 
     }
 
 
+def real_rows(site: Site, tell: Tell, passes: int = 90) -> Iterator[dict[str, Any]]:
+    """A recording of fixed cameras before which things are moved, played again and again.
+
+    Every other moment is commissioned, and all are heard. A knock cannot be made afterwards; instead the first camera's
+    reference is that of a camera that stood a degree or 2 cm elsewhere, exactly, since its surfaces are planes.
+
+    Args:
+        site: with a recording and no machine.
+        tell: called with what is done next, in words.
+        passes: how many moments are heard.
+
+    Yields:
+        Rows of `knock`, `named` and `others_named`, `said` and its two sigmas, as for simulated knocks.
+    """
+    tell(f"real: {site.name}")
+    cameras, seen = site.cameras(), [moment.frames for moment in moments(site)]
+    commissioning = Commissioning(cameras, None, len(seen[::2]))
+    for frames in seen[::2]:
+        commissioning.add(frames, None)
+    references = commissioning.references()
+    for name, knock in {"none": Knock(""), **KNOCKS}.items():
+        watch = Watch(cameras, [commissioned_elsewhere(references[0], knock), *references[1:]])
+        for k in range(passes):
+            health = watch.hear(seen[k % len(seen)], None, k)
+            if health.stops:
+                break
+        shift = watch.shift_of(cameras[0].name)
+        turns = any(knock.turn_rad)
+        yield {
+            "part": "real",
+            "case": "real",
+            "site": site.name,
+            "knock": name,
+            "named": cameras[0].name in health.stops,
+            "others_named": len(set(health.stops) - {cameras[0].name}),
+            "passes": k + 1,
+            "unit": None if shift is None else "deg" if turns else "mm",
+            "said": None if shift is None else shift.turn_deg if turns else shift.move_mm,
+            "two_sigma": None
+            if shift is None
+            else 2 * (shift.turn_sigma_deg if turns else shift.move_sigma_mm),
+        }
+
+
+def commissioned_elsewhere(reference: CameraReference, knock: Knock) -> CameraReference:
+    """What a reference would be, had its camera stood elsewhere: the same planes, met by the same rays from there.
+
+    Args:
+        reference: of the camera where it stands.
+        knock: that would bring it there, in its own axes.
+    """
+    rotation, move = knock.old_from_new[:3, :3], knock.old_from_new[:3, 3]
+    normal = reference.normal @ rotation
+    direction = reference.points_in_camera / reference.depth_m[:, None]
+    towards = np.sum(normal * direction, axis=1)
+    depth = np.sum(reference.normal * (reference.points_in_camera - move), axis=1) / towards
+    kept = (depth > 0) & (towards < -0.1)
+    return replace(
+        reference,
+        pixel=reference.pixel[kept],
+        depth_m=depth[kept],
+        sigma_m=reference.sigma_m[kept],
+        ray=reference.ray[kept],
+        normal=normal[kept],
+    )
+
+
 def time_row(tell: Tell, passes: int = 100) -> dict[str, Any]:
     """What the watch adds to a pass: 21 cameras of 640 x 480 pixels, body included."""
     tell("time of a pass")
     scene = commissioned("kinect_v1", 640, 480)
-    moments = [scene.room.at(20.0 + 0.5 * k) for k in range(4)]
-    frames = [_frames(scene.cameras, moment, k) for k, moment in enumerate(moments)]
+    shown = [scene.room.at(20.0 + 0.5 * k) for k in range(4)]
+    frames = [_frames(scene.cameras, moment, k) for k, moment in enumerate(shown)]
     watch, times, cpu = scene.watch(), [], []
     for k in range(passes + 12):
         stamp = int(k * PERIOD_S * 1e9)
         now = [DepthFrame(f.camera, stamp, f.depth_m) for f in frames[k % 4]]
         begun, worked = time.perf_counter(), time.process_time()
-        watch.hear(now, moments[k % 4].joints, stamp)
+        watch.hear(now, shown[k % 4].joints, stamp)
         times.append((time.perf_counter() - begun) * 1e3)
         cpu.append((time.process_time() - worked) * 1e3)
     p50, p99, worst = np.percentile(times[12:], (50, 99, 100))
