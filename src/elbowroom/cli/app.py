@@ -32,6 +32,7 @@ app.command(
     epilog=_example(
         "elbowroom monitor",
         "elbowroom monitor --voxel-size 0.02 --seconds 20 --json run.json --out pictures",
+        "elbowroom monitor --knock cam03:1deg@5",
         "elbowroom monitor my_room.yaml",
     )
 )(monitor)
