@@ -2,8 +2,11 @@
 
 import typer
 
+from elbowroom.cli.calibrate_commission import commission
 from elbowroom.cli.calibrate_extrinsics import extrinsics
 from elbowroom.cli.calibrate_intrinsics import intrinsics
+from elbowroom.cli.calibrate_machine import machine
+from elbowroom.cli.calibrate_refine import refine
 from elbowroom.cli.calibrate_simulate import simulate
 
 calibrate_app = typer.Typer(
@@ -19,3 +22,12 @@ calibrate_app.command(
 calibrate_app.command(epilog="Example: elbowroom calibrate intrinsics capture --out intrinsics.yaml")(
     intrinsics
 )
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate machine capture --out calibrated.yaml --report report"
+)(machine)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate refine calibrated.yaml --out refined.yaml --report report"
+)(refine)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate commission my_room.yaml --out my_room_watched.yaml"
+)(commission)

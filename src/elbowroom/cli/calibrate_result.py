@@ -5,6 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from rich.console import Console
 
 from elbowroom.calibrate.calibrated_camera import CalibratedCamera
@@ -65,6 +67,7 @@ def write_result(
     out: Path,
     command: str,
     add: AddRow,
+    world_from_base: NDArray[np.float64] | None = None,
 ) -> list[dict[str, Any]]:
     """Writes the new site file, adds a row for each camera, and prints the table of changes.
 
@@ -75,11 +78,14 @@ def write_result(
         out: the new site file.
         command: as typed after `elbowroom calibrate`.
         add: takes rows.
+        world_from_base: where the machine was found to stand, shape (4, 4); None: as the site says.
 
     Returns:
         The rows.
     """
-    update_site(site, cameras, {one.camera.name: one.covariance for one in found}, out, command)
+    update_site(
+        site, cameras, {one.camera.name: one.covariance for one in found}, out, command, world_from_base
+    )
     rows = change_rows(found, {camera.name: camera for camera in cameras})
     for row in rows:
         add(row)

@@ -29,6 +29,7 @@ def update_site(
     covariances: Mapping[str, NDArray[np.float64]],
     path: Path,
     command: str,
+    world_from_base: NDArray[np.float64] | None = None,
 ) -> Path:
     """Writes the site again with what was found of its cameras; all that it says otherwise stays.
 
@@ -41,6 +42,7 @@ def update_site(
         covariances: of their poses by name, shape (6, 6); see `CameraEntry`.
         path: the file to write; there must be none of that name but one that was written here.
         command: what found them, as typed after `elbowroom calibrate`.
+        world_from_base: where the machine was found to stand, shape (4, 4); None: it stays as it is.
 
     Returns:
         The path.
@@ -66,6 +68,8 @@ def update_site(
         content["cameras"] = [
             camera_entry(camera) | _found(site, camera, covariances, known=False) for camera in cameras
         ]
+    if world_from_base is not None:
+        content["machine"]["world_from_base"] = matrix_entry(world_from_base)
     text = f"# {site.name}: {SIGNATURE} {command}`\n"
     text += yaml.safe_dump(content, sort_keys=False, allow_unicode=True, default_flow_style=None, width=110)
     with whole_file(path) as unfinished:
