@@ -16,9 +16,9 @@ from elbowroom.calibrate.extrinsics import (
 from elbowroom.calibrate.lens import project
 from elbowroom.calibrate.rigid import exp, log
 from elbowroom.errors import CalibrationError
+from elbowroom.evaluate.board_views import BOARD, EXACT, Shaken, board_poses, floor, ring, views_of
 from elbowroom.geometry import invert_rigid
 from elbowroom.sensing import NOISE_PRESETS
-from reference.board_views import BOARD, EXACT, Shaken, board_poses, floor, ring, views_of
 
 ROUGH = Shaken()
 FLOOR = BoardAnchor(0, floor())

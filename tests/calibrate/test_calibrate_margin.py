@@ -11,8 +11,8 @@ from elbowroom.calibrate.lens import project
 from elbowroom.calibrate.margin import pose_margin
 from elbowroom.calibrate.rigid import exp
 from elbowroom.errors import CalibrationError
+from elbowroom.evaluate.board_views import ring
 from elbowroom.sensing import Margin
-from reference.board_views import ring
 
 CAMERA = ring(1)[0]
 

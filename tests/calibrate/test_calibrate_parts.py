@@ -12,9 +12,9 @@ from elbowroom.calibrate.pictures import camera_graph, coverage, histogram, repr
 from elbowroom.calibrate.rigid import cross_matrix, exp, log
 from elbowroom.calibrate.seen_plane import rays_of, seen_plane
 from elbowroom.errors import CalibrationError
+from elbowroom.evaluate.board_views import ring
 from elbowroom.geometry import Intrinsics, invert_rigid
 from elbowroom.sensing.distortion import distorted
-from reference.board_views import ring
 
 LENSES = [
     Intrinsics(500, 510, 320, 240),

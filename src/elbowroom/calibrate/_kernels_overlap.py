@@ -78,7 +78,19 @@ def fit_planes(depth, fx, fy, cx, cy, half, bend, planes):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def compare_points(
-    view, depth, planes, points, normals, sigmas, other_from_one, rule, normal, gradient, by_noise, counts, offs
+    view,
+    depth,
+    planes,
+    points,
+    normals,
+    sigmas,
+    other_from_one,
+    rule,
+    normal,
+    gradient,
+    by_noise,
+    counts,
+    offs,
 ):
     """Adds up normal equations of the twist of one camera relative to another from points of the one.
 

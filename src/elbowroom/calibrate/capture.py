@@ -13,7 +13,7 @@ from elbowroom.calibrate.board_view import BoardView
 from elbowroom.calibrate.colour import carried_to_depth
 from elbowroom.calibrate.cut_out import cut_out_view
 from elbowroom.calibrate.printed import printed_view
-from elbowroom.calibrate.trouble import Trouble
+from elbowroom.calibrate.trouble import Fault, Trouble
 from elbowroom.errors import CalibrationError, FrameError
 from elbowroom.geometry import DepthCamera, Intrinsics, nearest_rigid
 from elbowroom.geometry.parallel import spread
@@ -23,6 +23,8 @@ from elbowroom.site.images import Image, images_of_cameras
 from elbowroom.site.paths import existing_folder, inside
 from elbowroom.site.recording_entry import StampedFolder
 
+LOOKED_AT_AGAIN = 24
+"""Images in which a board of another size is looked for where none shows the right one."""
 Seen = BoardView | Trouble
 
 
@@ -120,6 +122,10 @@ def sightings(
     views = tuple(seen for seen in found if isinstance(seen, BoardView))
     troubles = tuple(seen for seen in found if isinstance(seen, Trouble))
     if not views:
+        few = [work[n] for n in np.linspace(0, len(work) - 1, min(len(work), LOOKED_AT_AGAIN)).astype(int)]
+        closer = spread(lambda item: seen_in(site, board, *item, other_sizes=True), few, threads)
+        sizes = [seen for seen in closer if isinstance(seen, Trouble) and seen.fault is Fault.WRONG_SIZE]
+        troubles = tuple(sizes) or troubles
         raise CalibrationError(
             f"{site.path}: {len(work)} images and none shows the board; {_commonest(troubles)}"
         )
@@ -134,7 +140,7 @@ def _commonest(troubles: tuple[Trouble, ...]) -> str:
     return f"most often: {fault.value}, such as {example}"
 
 
-def seen_in(site: Site, board: Board, image: Image, pose: int) -> Seen:
+def seen_in(site: Site, board: Board, image: Image, pose: int, *, other_sizes: bool = False) -> Seen:
     """What one image shows of the board.
 
     Args:
@@ -142,11 +148,12 @@ def seen_in(site: Site, board: Board, image: Image, pose: int) -> Seen:
         board: the board.
         image: the depth image, unread; infrared and colour images are named like it.
         pose: number of the board's pose.
+        other_sizes: as of `cut_out_view`.
     """
     entry = site.entry.calibration
     frame = image.read()
     if entry is None or entry.images.folder is None:
-        return cut_out_view(image.camera, board, frame.depth_m, pose, image.stamp_ns)
+        return cut_out_view(image.camera, board, frame.depth_m, pose, image.stamp_ns, other_sizes=other_sizes)
     path = picture_path(site, entry.images, image, pose)
     lens = entry.images.lenses.get(image.camera.name)
     if lens is None:

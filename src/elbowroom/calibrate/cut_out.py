@@ -39,6 +39,8 @@ def cut_out_view(
     depth_m: NDArray[np.floating],
     pose: int,
     stamp_ns: int | None = None,
+    *,
+    other_sizes: bool = False,
 ) -> BoardView | Trouble:
     """The view of a board that is cut out, or why there is none.
 
@@ -55,8 +57,9 @@ def cut_out_view(
         depth_m: its depth image as it was taken, shape (h, w) [m, the camera's kind of depth].
         pose: number of the board's pose.
         stamp_ns: time of exposure [ns].
+        other_sizes: where no board is seen, look for one whose squares are larger or smaller, to say so; takes long.
     """
-    rays = _rays(camera)
+    rays = pixel_rays_of(camera)
     view = View(camera, rays, _planar(camera, rays, depth_m))
     reach = float(np.linalg.norm(np.ptp(board.outline_in_board, axis=0)))
     worst: Trouble | None = None
@@ -66,19 +69,20 @@ def cut_out_view(
             continue
         laid = registered(picture, plate, camera, board)
         if laid.score < LEAST_SCORE:
-            worst = worst or _other_size(picture, plate, camera, board, laid, pose)
+            worst = worst or (_other_size(picture, plate, camera, board, pose) if other_sizes else None)
             continue
         if laid.known < LEAST_KNOWN or not _outline_inside(camera, board, laid.camera_from_board):
             return Trouble(camera.name, pose, Fault.HALF_SEEN)
         found = _read(view, board, picture, laid, depth_m, pose, stamp_ns)
         if isinstance(found, BoardView) or found.fault is not Fault.NOT_SEEN:
             return found
-        worst = worst or _other_size(picture, plate, camera, board, laid, pose) or found
+        worst = worst or (_other_size(picture, plate, camera, board, pose) if other_sizes else None) or found
     return worst or Trouble(camera.name, pose, Fault.NOT_SEEN)
 
 
 @lru_cache(maxsize=64)
-def _rays(camera: DepthCamera) -> PixelRays:
+def pixel_rays_of(camera: DepthCamera) -> PixelRays:
+    """The rays of a camera's pixels, kept for the cameras that were asked last."""
     return pixel_rays(camera)
 
 
@@ -100,7 +104,7 @@ def _outline_inside(camera: DepthCamera, board: Board, camera_from_board: Array)
 
 
 def _other_size(
-    picture: NearFar, plate: Plate, camera: DepthCamera, board: Board, laid: Registration, pose: int
+    picture: NearFar, plate: Plate, camera: DepthCamera, board: Board, pose: int
 ) -> Trouble | None:
     """Whether the same pattern with larger or smaller squares fits well."""
     scores = {
@@ -131,7 +135,7 @@ def _read(
 ) -> BoardView | Trouble:
     camera, picture = view.camera, cropped(picture, laid.camera_from_board, board.outline_in_board)
     pixel = (1 / camera.intrinsics.fx, 1 / camera.intrinsics.fy)
-    fit = edges_fitted(picture, board, laid.camera_from_board, pixel)
+    fit = edges_fitted(picture, board, laid.camera_from_board[:3, [0, 1, 3]], pixel)
     if fit is None or fit.agreement < LEAST_AGREEMENT:
         return Trouble(camera.name, pose, Fault.NOT_SEEN, "its edges fit no checkerboard")
     if fit.square_px < LEAST_SQUARE_PX:

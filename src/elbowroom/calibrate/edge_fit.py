@@ -58,21 +58,20 @@ class _Edges(NamedTuple):
 
 
 def edges_fitted(
-    picture: NearFar, board: Board, camera_from_board: Array, pixel: tuple[float, float]
+    picture: NearFar, board: Board, image_from_board: Array, pixel: tuple[float, float]
 ) -> Fit | None:
     """Fits the pattern's edges.
 
     Args:
         picture: near and far.
         board: the board.
-        camera_from_board: about, shape (4, 4).
+        image_from_board: homography from the board's plane [m] to (X/Z, Y/Z), about, shape (3, 3).
         pixel: size of a pixel in X/Z and Y/Z, about.
 
     Returns:
         None: too few pixels, or no fit.
     """
-    forward = camera_from_board[:3, [0, 1, 3]]
-    back = np.linalg.inv(forward / forward[2, 2])
+    back = np.linalg.inv(image_from_board / image_from_board[2, 2])
     back /= back[2, 2]
     rays = np.stack([picture.x, picture.y, np.ones_like(picture.x)], axis=-1)
     damping = 1e-3

@@ -1,11 +1,11 @@
 """Where in a plane a board of known size lies: its pattern laid over the near/far picture, all turns and places."""
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
+from scipy.ndimage import gaussian_filter
 
 from elbowroom.calibrate.board import Board
 from elbowroom.calibrate.near_far import NearFar
@@ -17,7 +17,8 @@ from elbowroom.sensing.distortion import distorted
 Array = NDArray[np.float64]
 CELLS = 6
 """Per square."""
-SMALL_TURNS_DEG = (-4.0, 0.0, 4.0)
+SMALL_TURNS_DEG = (0.0, -3.5, 3.5)
+BLUR_CELLS = 1.2
 RING_SQUARES = 0.5
 """Beyond the plate nothing may be near for so many squares."""
 MARK_SHARE = 0.5
@@ -53,7 +54,7 @@ def registered(
     reach = float(np.linalg.norm(np.ptp(board.outline_in_board, axis=0))) * scale
     size = next_fast_len(2 * int(reach / cell) + 2, real=True)
     near, known = _raster(picture, plate.camera_from_plane, camera, cell, size)
-    value, weight = rfft2((2 * near - 1) * known), rfft2(known)
+    value, weight = rfft2(((2 * near - 1) * known).astype(np.float32)), rfft2(known.astype(np.float32))
     best: tuple[float, float, float, int, int] | None = None
     usual = _grid_angle(near, known)
     for quarter in range(4):
@@ -120,33 +121,32 @@ def _raster(
 
 def _grid_angle(near: Array, known: Array) -> float:
     """Direction of the picture's edges up to quarter turns [rad]."""
-    down, right = np.gradient(near)
+    down, right = np.gradient(gaussian_filter(near, BLUR_CELLS))
     inside = (known > 0.99) & np.roll(known > 0.99, 1, 0) & np.roll(known > 0.99, 1, 1)
     fourfold = (((right + 1j * down) ** 4) * inside).sum()
     return float(np.angle(fourfold) / 4)
 
 
-def _pattern(board: Board, angle: float, size: int) -> Array:
+def _pattern(board: Board, angle: float, size: int) -> NDArray[np.float32]:
     """+1 on material, -1 on holes and about the plate, 0 elsewhere and on the mark; the board's middle is at (0, 0)."""
-    return _drawn(
-        board.columns, board.rows, board.border_m / board.square_m, board.marked, round(angle, 4), size
-    )
+    return _drawn(board.columns, board.rows, board.border_m / board.square_m, board.marked, angle, size)
 
 
-@lru_cache(maxsize=64)
-def _drawn(columns: int, rows: int, border: float, marked: bool, angle: float, size: int) -> Array:
-    steps = np.fft.fftfreq(size, 1 / size) / CELLS
+def _drawn(
+    columns: int, rows: int, border: float, marked: bool, angle: float, size: int
+) -> NDArray[np.float32]:
+    steps = (np.fft.fftfreq(size, 1 / size) / CELLS).astype(np.float32)
     x, y = np.meshgrid(steps, steps)
-    cos, sin = np.cos(angle), np.sin(angle)
+    cos, sin = np.float32(np.cos(angle)), np.float32(np.sin(angle))
     bx = cos * x + sin * y + (columns - 1) / 2
     by = -sin * x + cos * y + (rows - 1) / 2
     beyond = np.maximum(np.maximum(-1 - bx, bx - columns), np.maximum(-1 - by, by - rows))
-    pattern = np.where((np.floor(bx) + np.floor(by)) % 2 == 0, 1.0, -1.0)
+    even = (np.floor(bx) + np.floor(by)) % 2 == 0
+    pattern = np.where(even, np.float32(1), np.float32(-1))
     pattern[beyond > 0] = 1.0
     pattern[beyond > border] = -1.0
     pattern[beyond > border + RING_SQUARES] = 0.0
     if marked:
         half = MARK_SHARE / 2
         pattern[(np.abs(bx + 0.5) < half) & (np.abs(by + 0.5) < half)] = 0.0
-    pattern.setflags(write=False)
     return pattern

@@ -2,6 +2,7 @@
 
 import typer
 
+from elbowroom.cli.calibrate_commission import commission
 from elbowroom.cli.calibrate_extrinsics import extrinsics
 from elbowroom.cli.calibrate_machine import machine
 from elbowroom.cli.calibrate_refine import refine
@@ -23,3 +24,6 @@ calibrate_app.command(
 calibrate_app.command(
     epilog="Example: elbowroom calibrate refine calibrated.yaml --out refined.yaml --report report"
 )(refine)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate commission my_room.yaml --out my_room_watched.yaml"
+)(commission)

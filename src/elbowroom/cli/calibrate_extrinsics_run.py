@@ -46,7 +46,7 @@ def run_extrinsics(
             site,
             found.cameras,
             confidence,
-            {name: (found.depth_bias_m[name], found.depth_scale[name]) for name in found.depth_bias_m},
+            found.depth_errors(),
             near_m=near_m,
         )
         rows = write_result(site, found.cameras, cameras, out, "extrinsics", add)

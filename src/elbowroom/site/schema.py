@@ -14,6 +14,7 @@ from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.placement_entry import PlacementEntry
 from elbowroom.site.recording_entry import RecordingEntry, SevenScenes
 from elbowroom.site.room_entry import RoomEntry
+from elbowroom.site.watch_entry import WatchEntry
 
 Fov = Annotated[Number, Field(gt=10, lt=170)]
 
@@ -107,6 +108,7 @@ class SiteEntry(Entry):
     simulated: SimulatedEntry | None = None
     room: RoomEntry | None = None
     placement: PlacementEntry | None = None
+    watch: WatchEntry | None = None
     calibration: CalibrationEntry | None = None
 
     @model_validator(mode="after")
@@ -136,6 +138,8 @@ class SiteEntry(Entry):
                 raise ValueError(
                     f"camera_defaults of a simulated room: {', '.join(SIMULATED_SETTINGS)}; not {beyond[0]}"
                 )
+        if self.watch is not None and isinstance(self.recording, SevenScenes):
+            raise ValueError("no key watch where layout seven_scenes makes a camera of each frame")
         if self.joints and self.machine is None:
             raise ValueError("joints only with a machine")
         return self

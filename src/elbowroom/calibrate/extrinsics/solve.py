@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,7 @@ class Extrinsics:
         cameras: in the order in which they were given.
         world_from_board: of each pose, shape (4, 4).
         depth_bias_m, depth_scale: by camera: its depth reads so much too far, and per metre; only those with depth.
+        depth_covariance: of bias [m] and scale by camera, shape (2, 2).
         corner_factor, plane_factor: variance factors by camera: how many times the variance of what was seen is that
             which its sigmas promise.
         seen: all views, in which residuals are.
@@ -46,11 +47,23 @@ class Extrinsics:
     world_from_board: Mapping[int, Array]
     depth_bias_m: Mapping[str, float]
     depth_scale: Mapping[str, float]
+    depth_covariance: Mapping[str, Array] = field(repr=False)
     corner_factor: Mapping[str, float]
     plane_factor: Mapping[str, float]
     seen: tuple[SeenBoard, ...]
     shared: Mapping[tuple[str, str], int]
     view_weight: Array
+
+    def depth_errors(self) -> dict[str, tuple[float, float]]:
+        """Bias [m] and scale of those cameras whose depth reads wrong by more than chance at 1 m or at 4 m."""
+        wrong = {}
+        for name, bias in self.depth_bias_m.items():
+            error = np.array([bias, self.depth_scale[name]])
+            for depth in (1.0, 4.0):
+                at = np.array([1.0, depth])
+                if abs(at @ error) > 2 * np.sqrt(at @ self.depth_covariance[name] @ at):
+                    wrong[name] = (bias, self.depth_scale[name])
+        return wrong
 
 
 def solve_extrinsics(
@@ -160,6 +173,7 @@ def _found(
         world_from_board=solution.state.boards,
         depth_bias_m={name: float(error[0]) for name, error in errors.items()},
         depth_scale={name: float(error[1]) for name, error in errors.items()},
+        depth_covariance={name: solution.covariance[at, at] for name, at in solution.index.depths.items()},
         corner_factor=solution.variances.corner,
         plane_factor=solution.variances.plane,
         seen=tuple(seen),

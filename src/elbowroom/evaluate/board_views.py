@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ def ring(
     width: int = 640,
     hfov_deg: float = 70.0,
     noise: NoiseModel | None = NOISE_PRESETS["kinect_v1"],
-    **more,
+    **more: Any,
 ) -> tuple[DepthCamera, ...]:
     """Cameras about a room of 4 x 4 m that look at its middle."""
     f = width / 2 / np.tan(np.radians(hfov_deg / 2))
@@ -58,6 +59,7 @@ EXACT = Shaken(0.0, 0.0)
 
 
 def floor() -> Array:
+    """world_from_board of the board that lies on the floor, its face up, shape (4, 4)."""
     world_from_board = np.diag([1.0, -1.0, -1.0, 1.0])
     world_from_board[:3, 3] = (-0.3, 0.2, 0.02)
     return world_from_board
@@ -98,7 +100,15 @@ def views_of(
     return views
 
 
-def _view(camera, at, pose, rng, shaken, board, sigma_px):
+def _view(
+    camera: DepthCamera,
+    at: Array,
+    pose: int,
+    rng: np.random.Generator,
+    shaken: Shaken,
+    board: Board,
+    sigma_px: float | None,
+) -> BoardView | None:
     points = board.corners_in_board @ at[:3, :3].T + at[:3, 3]
     middle = points.mean(axis=0)
     if points[:, 2].min() < 0.3 or at[:3, 2] @ middle / np.linalg.norm(middle) < np.cos(np.radians(68)):
@@ -119,7 +129,7 @@ def _view(camera, at, pose, rng, shaken, board, sigma_px):
         distorted(camera.intrinsics, on_board[:, 0] / on_board[:, 2], on_board[:, 1] / on_board[:, 2]), axis=1
     )
     depth = on_board[:, 2] if camera.depth_kind == "planar" else np.linalg.norm(on_board, axis=1)
-    sigma = camera.noise.sigma(depth) if camera.noise is not None else 0.0
+    sigma = camera.noise.sigma(depth) if camera.noise is not None else np.zeros(len(depth))
     depth = (
         depth + shaken.depth * rng.normal(0, 1, len(depth)) * sigma + rng.normal(0, 1) * shaken.view_depth_m
     )
