@@ -3,7 +3,6 @@ import numpy as np
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.machine import body_words, ceiling_c_arm
 from elbowroom.motion import blocks_in_reach, joint_motions
-from elbowroom.motion.focus import any_box
 
 GRID = VoxelGrid((-2, -2, 0), (40, 40, 25), 0.1)
 SPEEDS = {"long": 0.15, "larm": 0.2094, "propeller": 0.4363, "carc": 0.4363}
@@ -24,17 +23,6 @@ def test_all_that_the_body_covers_on_its_motions_is_in_focus():
             covered = body_words(machine, moved, GRID, growth_m=0.025) != 0
             lower_part = bits.pack(_below(2.3), GRID) != 0
             assert not (covered & lower_part & ~focus).any(), (motion.name, share, checked)
-
-
-def test_cells_of_boxes_are_those_that_any_box_holds():
-    rng = np.random.default_rng(0)
-    counts = np.array([9, 7, 5])
-    first = rng.integers(0, counts, (12, 3))
-    last = np.minimum(first + rng.integers(0, 3, (12, 3)), counts - 1)
-    expected = np.zeros(tuple(counts), dtype=bool)
-    for low, high in zip(first, last, strict=True):
-        expected[tuple(slice(a, b + 1) for a, b in zip(low, high, strict=True))] = True
-    np.testing.assert_array_equal(any_box(first, last, counts), expected)
 
 
 def _below(height_m):

@@ -84,21 +84,6 @@ def test_levels_and_windows_are_minima_over_pixels(shape):
             assert (low[v >> k, u >> k], high[v >> k, u >> k]) == naive.window(least, greatest, k, u, v)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
-def test_tiles_of_doubt_are_minima_over_its_own_pixels(shape):
-    doubt = random_texels(shape, 3)
-    trust = doubt.copy()
-    explained = np.random.default_rng(4).random(shape) < 0.05
-    doubt[explained], trust[explained] = kernels.NEUTRAL, 0x12345678
-    tiles = tuple(-(-n // 4) for n in shape)
-    of_trust, of_doubt = np.zeros(tiles, dtype=np.uint32), np.zeros(tiles, dtype=np.uint32)
-    for texels, out in ((trust, of_trust), (doubt, of_doubt)):
-        out[:] = packed(*naive.level(*bounds_of(texels), 2))
-    got = np.zeros(tiles, dtype=np.uint32)
-    kernels.tiles_of(trust, doubt, of_trust, got)
-    np.testing.assert_array_equal(got, of_doubt)
-
-
 def test_a_window_reaches_far_enough_and_holds_the_window_of_the_level_below():
     ones = np.ones((40, 40), dtype=int)
     for k in range(4):

@@ -5,7 +5,6 @@ from numba import njit
 
 from elbowroom.machine._kernels_returns import (
     MOST_M,
-    MOST_STEPS,
     UNSAFE,
     has_support,
     is_return,
@@ -53,9 +52,8 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around)
             _compare(view, depth[v], inverse[v], across, start, stop, tolerance, sigmas, model[v])
     if view.flying:
         _settle_edges(view, depth, first, last, model)
-    done = np.full((MOST_STEPS + 1, 6), -1, dtype=np.int32)
     for row in range(around.near.shape[0]):
-        mark_row_of_tiles(view, depth, model, row, around, limits, found, done)
+        mark_row_of_tiles(view, depth, model, row, around, limits, found)
     for v in range(height):
         set_run(inverse[v], first[v], last[v] + 1, np.float32(0.0))
 

@@ -6,12 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry._kernels import Lattice, bit_of, uncounted, word_of
+from elbowroom.geometry._kernels import Lattice, bit_of, word_of
 from elbowroom.machine._kernels_draw import NEAR_M
 
 MOST_M = 1e6
-MOST_STEPS = 1000
-"""Along its ray a return is looked at in so many steps at most."""
 TILE = 16
 UNSAFE = np.float32(-1e-6)
 """In place of a depth where the model is about a pixel, but what is about it is not all explained or farther [m]."""
@@ -32,20 +30,20 @@ class Around(NamedTuple):
     words: np.ndarray
 
 
-@uncounted(error_model="numpy")
+@njit(nogil=True, error_model="numpy")
 def is_return(view, d):
     """Whether a depth was measured at all."""
     return d > 0.0 and d >= view.min_depth and d <= view.max_depth and d <= MOST_M
 
 
-@uncounted(error_model="numpy")
+@njit(nogil=True, error_model="numpy")
 def sigma(view, d):
     """Standard deviation at a measured depth (geometry.noise)."""
     beyond = max(d - view.offset, 0.0)
     return view.constant + view.linear * d + view.quadratic * beyond * beyond
 
 
-@uncounted(error_model="numpy")
+@njit(nogil=True, error_model="numpy")
 def has_support(view, depth, model, u, v):
     """Whether at least `SUPPORT` of eight neighbours are like an unexplained return: a surface, not a flying pixel.
 
@@ -104,13 +102,13 @@ def mark_tiles(balls, link, radius, camera_from_link, view, near, far):
                 far[row, column] = max(far[row, column], away + r)
 
 
-@uncounted(error_model="numpy")
-def mark_row_of_tiles(view, depth, model, row, around, limits, found, done):
+@njit(nogil=True, error_model="numpy")
+def mark_row_of_tiles(view, depth, model, row, around, limits, found):
     """Sets the voxels that the unexplained returns of one row of tiles may lie in.
 
     That is those that the cube about the measured point meets whose half side is half a pixel at its range,
     moved along the ray by up to `around.sigmas` * sigma. A return that stands alone is passed over: it may
-    fly, or have slipped between two links. `done`: see `_mark_return`.
+    fly, or have slipped between two links.
     """
     if row >= around.near.shape[0]:
         return
@@ -130,13 +128,13 @@ def mark_row_of_tiles(view, depth, model, row, around, limits, found, done):
                     # the voxels first: neighbours mostly lie in the same ones
                     if (
                         found[u] != 0
-                        and _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words, done, False)
+                        and _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words, False)
                         and has_support(view, depth, model, u, v)
                     ):
-                        _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words, done, True)
+                        _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words, True)
 
 
-@uncounted(error_model="numpy")
+@njit(nogil=True, error_model="numpy")
 def _find(depth, model, least, most, width, found):
     """Notes the pixels of a row that are not explained and whose depth lies within their limits."""
     for n in range(width):
@@ -151,13 +149,9 @@ def _find(depth, model, least, most, width, found):
         )
 
 
-@uncounted(error_model="numpy")
-def _mark_return(view, u, v, d, sigmas, pose, cells, words, done, sets):
-    """Sets the voxels that one return may lie in, or only says whether any of them is not set yet.
-
-    `done` (MOST_STEPS + 1, 6) keeps, for each step along the ray, the last box of voxels that were all set: a
-    neighbour's box is mostly the same one. It belongs to one image and plane; -1 before.
-    """
+@njit(nogil=True, error_model="numpy")
+def _mark_return(view, u, v, d, sigmas, pose, cells, words, sets):
+    """Sets the voxels that one return may lie in, or only says whether any of them is not set yet."""
     x, y = (u - view.cx) / view.fx, (v - view.cy) / view.fy
     z = d / math.sqrt(1.0 + x * x + y * y) if view.radial else float(d)
     half = 0.5 * z / min(view.fx, view.fy) / cells.edge
@@ -173,7 +167,7 @@ def _mark_return(view, u, v, d, sigmas, pose, cells, words, done, sets):
     rz = (pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]) * scale
     spread = sigmas * sigma(view, d) * z / d
     # steps of at most half a voxel
-    steps = int(min(math.ceil(4.0 * spread / cells.edge), MOST_STEPS))
+    steps = min(math.ceil(4.0 * spread / cells.edge), 1000)
     for n in range(steps + 1):
         away = z if steps == 0 else z + spread * (2.0 * n / steps - 1.0)
         px, py, pz = ox + rx * away, oy + ry * away, oz + rz * away
@@ -181,28 +175,18 @@ def _mark_return(view, u, v, d, sigmas, pose, cells, words, done, sets):
             -half <= px < cells.nx + half and -half <= py < cells.ny + half and -half <= pz < cells.nz + half
         ):
             continue
-        i0, i1 = max(0, math.floor(px - half)), min(cells.nx - 1, math.floor(px + half))
-        j0, j1 = max(0, math.floor(py - half)), min(cells.ny - 1, math.floor(py + half))
-        k0, k1 = max(0, math.floor(pz - half)), min(cells.nz - 1, math.floor(pz + half))
-        if (
-            done[n, 0] == i0 and done[n, 1] == i1 and done[n, 2] == j0
-            and done[n, 3] == j1 and done[n, 4] == k0 and done[n, 5] == k1
-        ):  # fmt: skip
-            continue
-        for i in range(i0, i1 + 1):
-            for j in range(j0, j1 + 1):
-                for k in range(k0, k1 + 1):
+        for i in range(max(0, math.floor(px - half)), min(cells.nx - 1, math.floor(px + half)) + 1):
+            for j in range(max(0, math.floor(py - half)), min(cells.ny - 1, math.floor(py + half)) + 1):
+                for k in range(max(0, math.floor(pz - half)), min(cells.nz - 1, math.floor(pz + half)) + 1):
                     word, bit = word_of(i, j, k, cells.cubes_y, cells.cubes_z), bit_of(i, j, k)
                     if sets:
                         words[word] |= bit
                     elif not words[word] & bit:
                         return True
-        done[n, 0], done[n, 1], done[n, 2] = i0, i1, j0
-        done[n, 3], done[n, 4], done[n, 5] = j1, k0, k1
     return False
 
 
-@uncounted(error_model="numpy")
+@njit(nogil=True, error_model="numpy")
 def set_run(array, start, stop, value):
     """Sets a run of an array. Unsigned indices, as below, or the compiler does one pixel at a time."""
     for n in range(start, stop):

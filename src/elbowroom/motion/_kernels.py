@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry._kernels import bit_of, uncounted, word_of
+from elbowroom.geometry._kernels import bit_of, word_of
 from elbowroom.machine._kernels import SLIDES, place_links
 from elbowroom.motion._kernels_triangles import triangle_meets_box
 from elbowroom.motion._kernels_volume import cell_of, counted, gap, leaves, meets_block, meets_voxel
@@ -114,7 +114,7 @@ def bound_speeds(tree, rates, lengths, world_from_link, skin):
     return speeds
 
 
-@uncounted()
+@njit
 def _distance_to_axis(world_from_joint, axis_in_joint, x, y, z):
     """Distance of a point from the axis through a joint's frame."""
     a, b, c = _carried(world_from_joint, axis_in_joint)
@@ -123,7 +123,7 @@ def _distance_to_axis(world_from_joint, axis_in_joint, x, y, z):
     return math.sqrt((y * c - z * b) ** 2 + (z * a - x * c) ** 2 + (x * b - y * a) ** 2)
 
 
-@uncounted()
+@njit
 def _near_clusters(placed, skin, speeds, half, volume, cells, asked, near):
     """The clusters among `asked` that may meet a block within half an interval either way; how many."""
     link, centre, radius, cover = skin.link, skin.centre, skin.radius, skin.cover
@@ -141,7 +141,7 @@ def _near_clusters(placed, skin, speeds, half, volume, cells, asked, near):
     return count
 
 
-@uncounted()
+@njit
 def _near_samples(placed, skin, speeds, half, volume, cells, asked, near):
     """The same for samples."""
     link, points, cluster_of, cover = skin.link, skin.points, skin.cluster_of, skin.cover
@@ -157,7 +157,7 @@ def _near_samples(placed, skin, speeds, half, volume, cells, asked, near):
     return count
 
 
-@uncounted()
+@njit
 def _members(skin, clusters, samples):
     """All samples of some clusters; how many."""
     count = 0
@@ -168,7 +168,7 @@ def _members(skin, clusters, samples):
     return count
 
 
-@uncounted()
+@njit
 def _leaves_patch(transform, skin, sample, grown, cells):
     """Whether a corner of a sample's patch comes within `grown` of leaving the grid."""
     for n in range(skin.patch_start[sample], skin.patch_start[sample + 1]):
@@ -179,7 +179,7 @@ def _leaves_patch(transform, skin, sample, grown, cells):
     return False
 
 
-@uncounted()
+@njit
 def _meets_patch(transform, skin, sample, x, y, z, half_edge, corners):
     """Whether a sample's patch meets a cube; `corners` (3, 3) is scratch."""
     for n in range(skin.patch_start[sample], skin.patch_start[sample + 1]):

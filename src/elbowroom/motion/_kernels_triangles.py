@@ -3,10 +3,8 @@
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry._kernels import uncounted
 
-
-@uncounted()
+@njit
 def triangle_meets_box(triangle, x, y, z, half):
     """Whether a triangle, shape (3, 3), meets the closed cube of half edge `half` about (x, y, z).
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry._kernels import bit_of, uncounted, word_of
+from elbowroom.geometry._kernels import bit_of, word_of
 
 
 class Volume(NamedTuple):
@@ -18,7 +18,7 @@ class Volume(NamedTuple):
     disputed: np.ndarray
 
 
-@uncounted(cache=True)
+@njit(cache=True, nogil=True)
 def block(free, cells, words, cubes):
     """Fills a plane and the marks of its cubes: blocked is every voxel of the grid that is not free."""
     for cube in range(cubes.size):
@@ -36,7 +36,7 @@ def block(free, cells, words, cubes):
         cubes[cube] = some != 0
 
 
-@uncounted()
+@njit
 def _inside(i, j, k, cells):
     """The bits of a word, whose least voxel is (i, j, k), that lie in the grid."""
     if i + 4 <= cells.nx and j + 4 <= cells.ny and k + 4 <= cells.nz:
@@ -81,16 +81,12 @@ def cell_of(coordinate, count):
     return int(min(max(coordinate, 0.0), count - 1.0))
 
 
-@uncounted()
+@njit
 def meets_block(words, cubes, cells, x, y, z, r):
     """Whether a ball meets a word with a blocked voxel, or leaves the grid: a test for large balls."""
     if leaves(x, y, z, r, cells):
         return True
     u, v, w, s = counted(x, y, z, r, cells)
-    # its own centre lies in a voxel of the grid: mostly that word decides
-    i, j, k = cell_of(u, cells.nx), cell_of(v, cells.ny), cell_of(w, cells.nz)
-    if words[word_of(i, j, k, cells.cubes_y, cells.cubes_z)] != 0:
-        return True
     i0, i1 = cell_of(u - s, cells.nx) >> 2, cell_of(u + s, cells.nx) >> 2
     j0, j1 = cell_of(v - s, cells.ny) >> 2, cell_of(v + s, cells.ny) >> 2
     k0, k1 = cell_of(w - s, cells.nz) >> 2, cell_of(w + s, cells.nz) >> 2
@@ -113,26 +109,20 @@ def meets_block(words, cubes, cells, x, y, z, r):
     return False
 
 
-@uncounted()
+@njit
 def meets_voxel(words, cells, x, y, z, r):
     """Whether a ball meets a blocked voxel, or leaves the grid: exact, a test for balls of about a voxel."""
     if leaves(x, y, z, r, cells):
         return True
     u, v, w, s = counted(x, y, z, r, cells)
-    i, j, k = cell_of(u, cells.nx), cell_of(v, cells.ny), cell_of(w, cells.nz)
-    if words[word_of(i, j, k, cells.cubes_y, cells.cubes_z)] & bit_of(i, j, k):
-        return True
     i0, i1 = cell_of(u - s, cells.nx), cell_of(u + s, cells.nx)
     j0, j1 = cell_of(v - s, cells.ny), cell_of(v + s, cells.ny)
     k0, k1 = cell_of(w - s, cells.nz), cell_of(w + s, cells.nz)
     for a in range(i0 >> 2, (i1 >> 2) + 1):
-        bu = gap(u, a * 4.0, a * 4.0 + 4.0)
         for b in range(j0 >> 2, (j1 >> 2) + 1):
-            bv = gap(v, b * 4.0, b * 4.0 + 4.0)
             for c in range(k0 >> 2, (k1 >> 2) + 1):
                 word = words[word_of(a * 4, b * 4, c * 4, cells.cubes_y, cells.cubes_z)]
-                bw = gap(w, c * 4.0, c * 4.0 + 4.0)
-                if word == 0 or bu * bu + bv * bv + bw * bw > s * s:
+                if word == 0:
                     continue
                 for i in range(max(i0, a * 4), min(i1, a * 4 + 3) + 1):
                     du = gap(u, i * 1.0, i + 1.0)

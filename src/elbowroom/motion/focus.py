@@ -1,6 +1,5 @@
 """Where the motions can go: the part of the grid that a cycle has to look at."""
 
-import itertools
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -61,25 +60,11 @@ def blocks_in_reach(
     last = (
         np.floor((centres + around - grid.lower_m) / edge).astype(np.int64).reshape(-1, 3).clip(0, counts - 1)
     )
-    near = any_box(first, last, counts)
+    near = np.zeros(tuple(counts), dtype=np.bool_)
+    for low, high in np.unique(np.hstack([first, last]), axis=0).reshape(-1, 2, 3).tolist():
+        near[low[0] : high[0] + 1, low[1] : high[1] + 1, low[2] : high[2] + 1] = True
     by_cube = near.reshape(cells.cubes_x, 4, cells.cubes_y, 4, cells.cubes_z, 4)
     return by_cube.transpose(0, 2, 4, 1, 3, 5).reshape(-1)
-
-
-def any_box(
-    first: NDArray[np.int64], last: NDArray[np.int64], counts: NDArray[np.int64]
-) -> NDArray[np.bool_]:
-    """The cells that lie in any of some boxes, from their `first` to their `last` cells, both (n, 3) and included.
-
-    Steps up where boxes begin and down where they end; the running sum counts the boxes about each cell.
-    """
-    steps = np.zeros(tuple(counts + 1), dtype=np.int32)
-    ends = np.stack([first, last + 1])
-    for x, y, z in itertools.product((0, 1), repeat=3):
-        corner = ends[x, :, 0], ends[y, :, 1], ends[z, :, 2]
-        np.add.at(steps, corner, (-1) ** (x + y + z))
-    boxes = steps.cumsum(axis=0).cumsum(axis=1).cumsum(axis=2)
-    return boxes[:-1, :-1, :-1] > 0
 
 
 def _place(way: Way, travel: float) -> NDArray[np.float64]:

@@ -204,37 +204,6 @@ def halve(fine, coarse):
 
 
 @njit(cache=True, nogil=True)
-def tiles_of(trust, doubt, trust_tiles, doubt_tiles):
-    """Tiles of 4 x 4 texels of `doubt`: those of trust, but where both differ.
-
-    Args:
-        trust, doubt: (rows, columns) of level 0.
-        trust_tiles: (tile rows, tile columns) of `trust`.
-        doubt_tiles: the same of `doubt`, written.
-    """
-    rows, columns = doubt.shape
-    differs = np.empty(columns, dtype=np.uint32)
-    for row in range(doubt_tiles.shape[0]):
-        differs[:] = 0
-        for v in range(4 * row, min(4 * row + 4, rows)):
-            a, b = trust[v], doubt[v]
-            for n in range(columns):
-                u = np.uint64(n)
-                differs[u] |= a[u] ^ b[u]
-        for column in range(doubt_tiles.shape[1]):
-            some = np.uint32(0)
-            for u in range(4 * column, min(4 * column + 4, columns)):
-                some |= differs[u]
-            both = trust_tiles[row, column]
-            if some != 0:
-                both = NEUTRAL
-                for v in range(4 * row, min(4 * row + 4, rows)):
-                    for u in range(4 * column, min(4 * column + 4, columns)):
-                        both = both_least(both, doubt[v, u])
-            doubt_tiles[row, column] = both
-
-
-@njit(cache=True, nogil=True)
 def windows_of(texels, across, windows):
     """The least of 5 x 5 texels around each, of fewer at the edge.
 

@@ -197,12 +197,7 @@ def fill(
             doubt[:] = 0
         _levels(layout, c, trust, buffers.trust_tiles, buffers.windows)
         if split:
-            tiles = slice(layout.tile_first[c], layout.tile_first[c + 1])
-            shape = layout.shapes[c][TILE_LEVEL]
-            here_trust, here_doubt = (
-                array[tiles].reshape(shape) for array in (buffers.trust_tiles, buffers.doubt_tiles)
-            )
-            pyramid.tiles_of(trust, doubt, here_trust, here_doubt)
+            _levels(layout, c, doubt, buffers.doubt_tiles, None)
 
     spread(build, range(len(layout.cameras)), threads)
     views = Views(
@@ -257,9 +252,9 @@ def _levels(
     c: int,
     texels: NDArray[np.uint32],
     tiles: NDArray[np.uint32],
-    windows: NDArray[np.uint32],
+    windows: NDArray[np.uint32] | None,
 ) -> None:
-    """Tiles of one camera from its level 0, and its windows of all levels."""
+    """Tiles of one camera from its level 0, and its windows of all levels; None: only the tiles."""
     fine = texels
     for level, shape in enumerate(layout.shapes[c]):
         if level:
@@ -268,7 +263,9 @@ def _levels(
             fine = coarse
         if level == TILE_LEVEL:
             tiles[layout.tile_first[c] : layout.tile_first[c + 1]] = fine.reshape(-1)
-        if level >= layout.numbers[c, box.LOWEST]:
+            if windows is None:
+                return
+        if windows is not None and level >= layout.numbers[c, box.LOWEST]:
             first = layout.levels[c, level, 0]
             out = windows[first : first + shape[0] * shape[1]].reshape(shape).view(np.uint16)
             pyramid.windows_of(fine.view(np.uint16), np.empty_like(out), out)
