@@ -9,8 +9,8 @@ from numba import njit
 def uncounted(**options: Any) -> Any:
     """As `njit(nogil=True, **options)`, for small kernels of inner loops that allocate nothing.
 
-    They count no references to the arrays that they are handed: it would be most of their time, and all threads would
-    do it on the same few words of memory (https://github.com/numba/numba/issues/2345).
+    They count no references to the arrays that they are handed, which all threads would do on the same few words of
+    memory (https://github.com/numba/numba/issues/2345). Whoever calls them holds the arrays.
     """
     return njit(nogil=True, _nrt=False, **options)  # type: ignore[call-overload]
 
