@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from elbowroom.cli.evaluate_thesis_run import PARTS
-from elbowroom.evaluate.blocks import Block, Picture, Table, Words
 from elbowroom.evaluate.due import due_table
+from elbowroom.view.blocks import Block, Picture, Table, Words
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results"

@@ -31,6 +31,7 @@ class Board:
         marked: the first square, beyond the first corner, has a mark in its middle that is half as wide as the square:
             a hole, or a bright spot. A checkerboard looks the same in a mirror; with the mark it does not, so that its
             back is told from its front.
+        thickness_m: of a plate that is cut out [m]: seen at a slant, the walls of its holes count as material, too.
 
     Raises:
         CalibrationError: a board that cannot be used.
@@ -42,6 +43,7 @@ class Board:
     kind: BoardKind = "printed"
     border_m: float = 0.0
     marked: bool = False
+    thickness_m: float = 0.0
 
     def __post_init__(self) -> None:
         for side in ("columns", "rows"):
@@ -58,6 +60,10 @@ class Board:
             raise CalibrationError(f"board: square_m is {self.square_m}, must be above 0")
         if not (np.isfinite(self.border_m) and self.border_m >= 0):
             raise CalibrationError(f"board: border_m is {self.border_m}, must be at least 0")
+        if not (np.isfinite(self.thickness_m) and 0 <= self.thickness_m < self.square_m / 4):
+            raise CalibrationError(
+                f"board: thickness_m is {self.thickness_m}, must be from 0 to below a quarter of a square"
+            )
         if self.kind not in ("printed", "cut_out"):
             raise CalibrationError(f"board: kind is {self.kind!r}, allowed are printed, cut_out")
 

@@ -49,7 +49,11 @@ app.command(
         "elbowroom simulate --room my.glb --out my_room --noise tof --joints long=0.1",
     )
 )(simulate)
-app.command(epilog=_example("elbowroom bench --json bench.json"))(bench)
+app.command(
+    epilog=_example(
+        "elbowroom bench --json bench.json", "elbowroom bench calibration --json calibration.json"
+    )
+)(bench)
 app.add_typer(calibrate_app, name="calibrate")
 app.add_typer(evaluate_app, name="evaluate")
 app.add_typer(placement_app, name="placement")

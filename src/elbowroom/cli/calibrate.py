@@ -3,6 +3,9 @@
 import typer
 
 from elbowroom.cli.calibrate_commission import commission
+from elbowroom.cli.calibrate_extrinsics import extrinsics
+from elbowroom.cli.calibrate_machine import machine
+from elbowroom.cli.calibrate_refine import refine
 from elbowroom.cli.calibrate_simulate import simulate
 
 calibrate_app = typer.Typer(
@@ -12,6 +15,15 @@ calibrate_app = typer.Typer(
 calibrate_app.command(
     epilog="Example: elbowroom calibrate simulate board --out capture --cameras 21 --noise kinect_v1"
 )(simulate)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate extrinsics capture --out calibrated.yaml --report report"
+)(extrinsics)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate machine capture --out calibrated.yaml --report report"
+)(machine)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate refine calibrated.yaml --out refined.yaml --report report"
+)(refine)
 calibrate_app.command(
     epilog="Example: elbowroom calibrate commission my_room.yaml --out my_room_watched.yaml"
 )(commission)

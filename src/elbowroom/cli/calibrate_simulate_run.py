@@ -29,6 +29,8 @@ from elbowroom.simulate import wall_cameras
 USUAL_POSES = {"board": 40, "machine": 12, "room": 30}
 USUAL_BOARD = {"vga": ((8, 5), 0.1), "qqvga": ((6, 5), 0.12), "thesis": ((5, 4), 0.18)}
 """Inner corners and edge of a square [m] by size of image."""
+PLATE_M = 0.003
+"""Thickness of the plate [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +127,7 @@ def _board(wanted: Wanted) -> Board:
         wanted.board,
         wanted.border_m,
         marked=wanted.board == "cut_out",
+        thickness_m=PLATE_M,
     )
 
 

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from elbowroom.evaluate.bands import compared, counted
-from elbowroom.evaluate.blocks import Block, Part, Table, Words, cm, pct
 from elbowroom.evaluate.exact import ExactTravel, load_coal
+from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.scene import Comparison, room_grid, room_motions
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.thesis import c_arm, sensor_cameras
@@ -27,6 +27,7 @@ from elbowroom.reconstruct.carve import Detail
 from elbowroom.sensing import DepthFrame, Margin
 from elbowroom.simulate import Moment, render, setup, true_occupancy
 from elbowroom.simulate.machine_solids import random_joints
+from elbowroom.view.blocks import Block, Table, Words, cm, pct
 
 SMALL = ("iv pole", "iv line", "gas hose", "cables", "monitor cables", "shield")
 """Solids that are thinner than 0.10 m, what the thesis' sensor can detect."""

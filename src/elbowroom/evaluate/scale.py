@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
-from elbowroom.evaluate.blocks import Block, Part, Picture, Table, Words
 from elbowroom.evaluate.cases import as_png
 from elbowroom.evaluate.exact import ExactTravel, load_coal
+from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.scene import SAME, room_motions
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.thesis import c_arm
@@ -31,6 +31,7 @@ from elbowroom.simulate.picture import View, cubes
 from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Mesh
 from elbowroom.simulate.truth import touched_by
+from elbowroom.view.blocks import Block, Picture, Table, Words
 
 FACTOR = 0.2
 VOXEL_M = 0.004

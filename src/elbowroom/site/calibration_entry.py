@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text, Whole
+from elbowroom.site.entry import Count, Entry, Flag, Matrix, NotNegative, Number, Point, Positive, Text, Whole
 
 Corners = Annotated[Whole, Field(ge=3, le=60)]
 Pixel = tuple[Number, Number]
@@ -25,6 +25,7 @@ class BoardEntry(Entry):
     kind: Literal["printed", "cut_out"] = "printed"
     border_m: NotNegative = 0.0
     marked: Flag | None = None
+    thickness_m: NotNegative = 0.0
 
     @model_validator(mode="after")
     def _has_two_ends(self) -> "BoardEntry":
@@ -38,19 +39,46 @@ class BoardEntry(Entry):
         return self.kind == "cut_out" if self.marked is None else self.marked
 
 
+class ColourLens(Entry):
+    """A sensor's colour camera: size, lens, and where its depth camera lies in its frame, as the maker says."""
+
+    width: Count
+    height: Count
+    fx: Positive
+    fy: Positive
+    cx: Number
+    cy: Number
+    distortion: tuple[Number, ...] = ()
+    colour_from_depth: Matrix
+
+    @model_validator(mode="after")
+    def _a_lens(self) -> "ColourLens":
+        if len(self.distortion) not in (0, 5, 8):
+            raise ValueError(
+                "distortion of no coefficient, 5 (k1 k2 p1 p2 k3) or 8 (k1 k2 p1 p2 k3 k4 k5 k6)"
+            )
+        return self
+
+
 class CaptureImagesEntry(Entry):
     """In which images the board is looked for; depth images are the recording's, others lie in a folder of their own.
 
-    `folder` holds `<camera>/<name>.png`, each named as the depth image of the same camera and moment.
+    `folder` holds `<camera>/<name>.png`, each named as the depth image of the same camera and moment, or `files` lists
+    them per camera, in the order of its depth images. `lenses` are those of colour cameras, where depth is not already
+    registered to colour: corners are carried over to the depth image.
     """
 
     kind: Literal["depth", "infrared", "colour"] = "depth"
     folder: Text | None = None
+    files: dict[Text, tuple[Text, ...]] = Field(default_factory=dict)
+    lenses: dict[Text, ColourLens] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _folder_of_pictures(self) -> "CaptureImagesEntry":
         if (self.kind == "depth") != (self.folder is None):
             raise ValueError("folder with kind infrared or colour, and none with depth")
+        if self.lenses and self.kind != "colour":
+            raise ValueError("lenses only with kind colour")
         return self
 
 

@@ -50,6 +50,24 @@ def image_groups(site: Site) -> list[list[Image]]:
     return _by_time(site, recording, folder)
 
 
+def images_of_cameras(site: Site) -> dict[str, list[Image]]:
+    """Each camera's images, unread, by time or by order; a camera without a folder has none.
+
+    Raises:
+        SiteError: no recording, one of layout `seven_scenes`, or not laid out as the site says.
+        FrameError: two images of a camera at one time, or a name that is no time.
+    """
+    recording, folder = site.entry.recording, site.recording_folder()
+    if isinstance(recording, SevenScenes):
+        raise SiteError(f"{site.path}: recording: layout seven_scenes has no cameras that stand still")
+    if isinstance(recording, StamplessFolder):
+        groups = _by_order(site, recording, folder)
+        return {images[0].camera.name: list(images) for images in zip(*groups, strict=True)}
+    assert isinstance(recording, StampedFolder)
+    _refuse_unknown(site, recording, folder, {camera.name for camera in site.cameras()})
+    return {camera.name: _stamped(site, camera, folder / camera.name) for camera in site.cameras()}
+
+
 def _image(site: Site, camera: DepthCamera, stamp_ns: int | None, path: Path) -> Image:
     return Image(camera, stamp_ns, path, site.depth_scale_m(camera.name))
 

@@ -153,6 +153,7 @@ def _said(board: Board, lying: WorldFromBoard) -> dict[str, object]:
             "kind": board.kind,
             "border_m": board.border_m,
             "marked": board.marked,
+            "thickness_m": board.thickness_m,
         },
         "images": images,
         "world": {

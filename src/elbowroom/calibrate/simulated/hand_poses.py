@@ -11,6 +11,7 @@ from elbowroom.calibrate.board import Board
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.sensing.distortion import distorted
+from elbowroom.simulate.board_plate import LEAST_THICKNESS_M
 from elbowroom.simulate.furniture import CEILING_M, HALF_SIDE_M
 
 TRIES = 25
@@ -70,7 +71,7 @@ def shown(camera: DepthCamera, board: Board, world_from_board: NDArray[np.float6
 
 def floor_pose(board: Board) -> tuple[tuple[float, float, float], float]:
     """Place of the first corner [m, world] and direction of the x axis [deg] of the board that lies on the floor."""
-    height = FEET_M if board.kind == "cut_out" else 0.003
+    height = FEET_M if board.kind == "cut_out" else max(board.thickness_m, LEAST_THICKNESS_M)
     return (*FLOOR_PLACE_M, height), 0.0
 
 
