@@ -9,6 +9,7 @@ from rich.console import Console
 
 from elbowroom.cli.json_output import json_rows
 from elbowroom.evaluate.bench_calibration import extrinsics_rows
+from elbowroom.evaluate.bench_calibration_boards import intrinsics_row
 from elbowroom.evaluate.bench_calibration_machine import machine_row, refine_rows
 from elbowroom.view.atomic import folder
 
@@ -19,6 +20,7 @@ SHOWN = (
     "median_mm",
     "median_deg",
     "inside_pct",
+    "worst_focal_pct",
     "seconds",
     "occupied_pct",
     "found_pct",
@@ -54,6 +56,9 @@ def run_bench_calibration(quick: bool, captures: Path | None, json_file: Path | 
             _say(row)
         if quick:
             return
+        row = intrinsics_row(kept, said=tell)
+        add(row)
+        _say(row)
         row = machine_row(said=tell)
         add(row)
         _say(row)

@@ -4,6 +4,7 @@ import typer
 
 from elbowroom.cli.calibrate_commission import commission
 from elbowroom.cli.calibrate_extrinsics import extrinsics
+from elbowroom.cli.calibrate_intrinsics import intrinsics
 from elbowroom.cli.calibrate_machine import machine
 from elbowroom.cli.calibrate_refine import refine
 from elbowroom.cli.calibrate_simulate import simulate
@@ -18,6 +19,9 @@ calibrate_app.command(
 calibrate_app.command(
     epilog="Example: elbowroom calibrate extrinsics capture --out calibrated.yaml --report report"
 )(extrinsics)
+calibrate_app.command(epilog="Example: elbowroom calibrate intrinsics capture --out intrinsics.yaml")(
+    intrinsics
+)
 calibrate_app.command(
     epilog="Example: elbowroom calibrate machine capture --out calibrated.yaml --report report"
 )(machine)
