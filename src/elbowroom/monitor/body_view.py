@@ -15,7 +15,7 @@ from elbowroom.sensing.distortion import distorted, usable_radius
 
 WIDTH_PX = 160
 """The image is looked at in steps, so that about so many columns are left."""
-MOST_SPOTS = 1500
+MOST_SPOTS = 1000
 GATE_M = 0.12
 
 

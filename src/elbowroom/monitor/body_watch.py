@@ -16,14 +16,14 @@ from elbowroom.monitor.reference import MOVE_PRIOR_M, TURN_PRIOR_RAD
 from elbowroom.monitor.sequential import Tally
 from elbowroom.sensing import DepthFrame
 
-ROUND = 12
+ROUND = 20
 """Passes in which every camera has looked at the machine once, and every link was judged."""
-ROUNDS = 3
+ROUNDS = 2
 """So many more rounds must say that a link is off than say, counted twice, that it is not."""
 TOLERANCE_M = 0.015
 SHOWN_M = 0.004
 """Motions that are known no better than this are left out."""
-LEAST_SPOTS = 20
+LEAST_SPOTS = 8
 """A camera sees a link with so many spots, at least."""
 FOR_OVER_AGAINST, LEAST_FOR, LEAST_FIT = 5.0, 20.0, 0.5
 AGREE = 0.6
