@@ -18,10 +18,10 @@ RUNNER = CliRunner()
 
 @pytest.fixture(scope="module")
 def capture(tmp_path_factory):
-    """Four cameras of 160x120 and ten poses of a cut-out board."""
+    """Four cameras of 640x480 and nine poses of a cut-out board."""
     out = tmp_path_factory.mktemp("capture")
-    arguments = ["calibrate", "simulate", "board", "--out", str(out), "--cameras", "4", "--poses", "10"]
-    done = RUNNER.invoke(app, [*arguments, "--size", "qqvga"], catch_exceptions=False)
+    arguments = ["calibrate", "simulate", "board", "--out", str(out), "--cameras", "4", "--poses", "9"]
+    done = RUNNER.invoke(app, arguments, catch_exceptions=False)
     assert done.exit_code == 0
     return out
 
