@@ -418,3 +418,56 @@ def drift_tables(rows: Sequence[Row]) -> list[str]:
         },
     )]  # fmt: skip
     return lines
+
+
+def calibration_tables(rows: Sequence[Row]) -> list[str]:
+    """Captures, the room, coverage, real recordings, each with its own columns."""
+    lines: list[str] = []
+    for kind, keys in CALIBRATION_COLUMNS.items():
+        mine = [row for row in rows if row["kind"] == kind]
+        if mine:
+            lines += ["", *table(mine, {key: of(key, due=_due_of(key)) for key in keys})]
+    return lines
+
+
+CALIBRATION_COLUMNS = {
+    "extrinsics": (
+        "case",
+        "noise",
+        "cameras",
+        "poses",
+        "views",
+        "worst_mm",
+        "worst_deg",
+        "median_mm",
+        "median_deg",
+        "inside_pct",
+        "seconds",
+    ),
+    "room": ("case", "noise", "occupied_pct", "found_pct", "median_lateral_px", "median_bias_mm"),
+    "coverage": ("case", "cameras", "poses", "draws", "inside_pct", "mean_square"),
+    "real": ("case", "agree_pct", "shares_pct", "note"),
+    "machine": (
+        "cameras",
+        "poses",
+        "worst_mm",
+        "worst_deg",
+        "median_mm",
+        "median_deg",
+        "inside_pct",
+        "seconds",
+    ),
+    "refine": ("start", "agree_pct", "note"),
+}
+
+
+def _due_of(key: str) -> Due:
+    """The row's own due figure; at least for shares, at most for errors and times."""
+
+    def due(row: Row) -> tuple[str, float] | None:
+        wanted = row.get("due", {}).get(key)
+        if not isinstance(wanted, int | float) or not isinstance(row.get(key), int | float):
+            return None
+        return ("≥" if key.endswith("_pct") else "≤", float(wanted))
+
+    return due

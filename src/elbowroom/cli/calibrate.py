@@ -4,6 +4,7 @@ import typer
 
 from elbowroom.cli.calibrate_commission import commission
 from elbowroom.cli.calibrate_extrinsics import extrinsics
+from elbowroom.cli.calibrate_intrinsics import intrinsics
 from elbowroom.cli.calibrate_machine import machine
 from elbowroom.cli.calibrate_refine import refine
 from elbowroom.cli.calibrate_simulate import simulate
@@ -27,3 +28,6 @@ calibrate_app.command(
 calibrate_app.command(
     epilog="Example: elbowroom calibrate commission my_room.yaml --out my_room_watched.yaml"
 )(commission)
+calibrate_app.command(epilog="Example: elbowroom calibrate intrinsics capture --out intrinsics.yaml")(
+    intrinsics
+)

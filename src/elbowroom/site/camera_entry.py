@@ -83,6 +83,7 @@ class CameraSettings(Entry):
     distortion: tuple[Number, ...] = ()
     depth_kind: Literal["planar", "radial"] = "planar"
     depth_scale_m: Positive = 0.001
+    depth_bias_m: Number = 0.0
     noise: Annotated[NoiseEntry | None, BeforeValidator(_noise)] = None
     margin: MarginEntry | None = None
     sensor_margin: MarginEntry | None = None

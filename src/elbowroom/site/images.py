@@ -20,6 +20,7 @@ class Image(NamedTuple):
     stamp_ns: int | None
     path: Path
     scale_m: float
+    bias_m: float = 0.0
 
     def read(self) -> DepthFrame:
         """The frame.
@@ -28,7 +29,9 @@ class Image(NamedTuple):
             FrameError: the file is not what its camera delivers.
         """
         raw = read_depth_png(self.path, self.camera.width, self.camera.height)
-        return DepthFrame.from_raw(self.camera.name, self.stamp_ns, raw, scale_m=self.scale_m)
+        return DepthFrame.from_raw(
+            self.camera.name, self.stamp_ns, raw, scale_m=self.scale_m, bias_m=self.bias_m
+        )
 
     def check(self) -> None:
         """Looks at the file's header alone; raises FrameError as `read` would."""
@@ -69,7 +72,8 @@ def images_of_cameras(site: Site) -> dict[str, list[Image]]:
 
 
 def _image(site: Site, camera: DepthCamera, stamp_ns: int | None, path: Path) -> Image:
-    return Image(camera, stamp_ns, path, site.depth_scale_m(camera.name))
+    name = camera.name
+    return Image(camera, stamp_ns, path, site.depth_scale_m(name), site.depth_bias_m(name))
 
 
 def views(site: Site, cameras: tuple[DepthCamera, ...]) -> list[Image]:

@@ -223,6 +223,10 @@ class Site:
         """Metres per unit of a camera's 16-bit images."""
         return float(self.settings_of(camera).get("depth_scale_m", CameraSettings().depth_scale_m))
 
+    def depth_bias_m(self, camera: str) -> float:
+        """What is added to a camera's depth after its scale [m]: the bias that calibration found, taken out."""
+        return float(self.settings_of(camera).get("depth_bias_m", CameraSettings().depth_bias_m))
+
     def pose_covariance(self, camera: str) -> NDArray[np.float64] | None:
         """What calibration left open of a camera's pose, shape (6, 6); None: the file does not say.
 

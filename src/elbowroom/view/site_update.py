@@ -78,6 +78,38 @@ def update_site(
     return path
 
 
+def update_lenses(site: Site, lenses: Mapping[str, Mapping[str, Any]], path: Path, command: str) -> Path:
+    """Writes the site again with other intrinsics, depth scales and biases; poses and all else stay.
+
+    Args:
+        site: the old one, which lists its cameras.
+        lenses: keys of `CameraSettings` that are replaced, by camera; `intrinsics_file` goes where they are given.
+        path: the file to write; there must be none of that name but one that was written here.
+        command: what found them, as typed after `elbowroom calibrate`.
+
+    Raises:
+        SiteError: there is another file of that name, or the site lists no cameras.
+        InputError: the folder cannot be written to.
+    """
+    refuse_other_files(site, path)
+    if not site.lists_cameras:
+        raise SiteError(f"{site.path}: cameras: the site lists none, so there is nothing to write")
+    content = site.entry.model_dump(mode="json", exclude_unset=True)
+    content = moved(content, site.path.parent, path.absolute().parent)
+    for entry in content["cameras"]:
+        found = lenses.get(entry["name"])
+        if found is not None:
+            for key in LENS_KEYS:
+                entry.pop(key, None)
+            entry.update(plain(dict(found)))
+    text = f"# {site.name}: {SIGNATURE} {command}`\n"
+    text += yaml.safe_dump(content, sort_keys=False, allow_unicode=True, default_flow_style=None, width=110)
+    with whole_file(path) as unfinished:
+        unfinished.write_text(text, encoding="utf-8")
+    Site.load(path).cameras()
+    return path
+
+
 def refuse_other_files(site: Site, path: Path) -> None:
     """Only a new file, or one that was written here, and never the site's own.
 

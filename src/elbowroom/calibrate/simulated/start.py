@@ -18,7 +18,8 @@ class Start:
     Args:
         turned_deg, moved_m: each camera's pose in the file is off by so much, in a random direction.
         focal_pct: true focal lengths and principal points differ by up to this share of the focal length [%].
-        lens: true lenses bend by five coefficients, of up to a tenth; the file says nothing of it.
+        lens: true lenses bend by five coefficients, such that no lens folds back within 90 degrees; the
+            file says nothing of it.
         depth_scale_pct, depth_bias_m: true depth is measured too long by up to this share [%] and length [m].
 
     Raises:
@@ -97,10 +98,10 @@ def _true_intrinsics(nominal: Intrinsics, start: Start, random: np.random.Genera
     bend: tuple[float, ...] = ()
     if start.lens:
         bend = (
-            random.uniform(-0.1, 0.05),
-            random.uniform(-0.02, 0.03),
+            random.uniform(-0.06, 0.04),
+            random.uniform(0.0, 0.02),
             *random.uniform(-0.002, 0.002, 2),
-            random.uniform(-0.005, 0.005),
+            random.uniform(-0.001, 0.001),
         )
     return Intrinsics(
         fx=nominal.fx * zoom,
