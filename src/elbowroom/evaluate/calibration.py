@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 from elbowroom.evaluate.blocks import Block, Part, Picture, Table, Words, cm, mean, pct
 from elbowroom.evaluate.charts import Line, chart
 from elbowroom.evaluate.room import Tally
-from elbowroom.evaluate.scene import room_grid
+from elbowroom.evaluate.scene import DECIMALS, room_grid
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.thesis import HEIGHTS_M, c_arm
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
@@ -36,6 +36,7 @@ SHARES = (0.25, 0.5, 1.0, 1.5)
 THIRD = 3
 CHUNK = 25
 """Draws of one share of the work."""
+MEASURES = ("occupied_pct", "found_pct", "free_pct")
 
 
 def tasks(settings: Settings) -> list[Task]:
@@ -123,7 +124,7 @@ def judge_draws(
     seen = reconstruct(grid, views, frames, rule="any", detail="point").free
     focus = None if whole else third_of(grid)
     looked_at = np.ones(grid.shape, dtype=np.bool_) if focus is None else _voxels_of(focus, grid)
-    rows = []
+    found: dict[float, list[dict[str, Any]]] = {share: [] for share in shares}
     for draw in range(first, first + draws):
         said = disturbed(views, rotation_deg, translation_m, np.random.default_rng([draw, 612]))
         for share in shares:
@@ -140,28 +141,27 @@ def judge_draws(
             )
             tally = Tally()
             tally.add(space.free, truth.occupied & looked_at, truth.machine | ~looked_at, seen & looked_at)
-            row = tally.row()
-            rows.append(
-                {
-                    "kind": "draw",
-                    "curve": curve,
-                    "setup": number,
-                    "sensor": f"{views[0].width}x{views[0].height}",
-                    "noise": False,
-                    "voxel_size_m": voxel_size_m,
-                    "rule": "three",
-                    "detail": detail,
-                    "rotation_deg": rotation_deg,
-                    "translation_m": translation_m,
-                    "margin_share": share,
-                    "draw": draw,
-                    **{
-                        key: row[key]
-                        for key in ("occupied_pct", "found_pct", "free_pct", "false_free_voxels")
-                    },
-                }
-            )
-    return Outcome(rows)
+            found[share].append(tally.row())
+    case = {
+        "kind": "draws",
+        "curve": curve,
+        "setup": number,
+        "sensor": f"{views[0].width}x{views[0].height}",
+        "noise": False,
+        "voxel_size_m": voxel_size_m,
+        "rule": "three",
+        "detail": detail,
+        "rotation_deg": rotation_deg,
+        "translation_m": translation_m,
+        "first": first,
+    }
+    return Outcome([{**case, "margin_share": share, **_of_draws(found[share])} for share in shares])
+
+
+def _of_draws(tallies: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Means over some draws, and each draw's own figures in their order."""
+    each = {key: [round(tally[key], DECIMALS) for tally in tallies] for key in MEASURES}
+    return {**{key: mean(values) for key, values in each.items()}, "each": each}
 
 
 def margin_for(rotation_deg: float, translation_m: float, share: float, focal_px: float) -> Margin:
@@ -209,18 +209,17 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     result = []
     for values in dict.fromkeys(tuple(row[key] for key in same) for row in rows):
         mine = [row for row in rows if tuple(row[key] for key in same) == values]
+        each = {key: [value for row in mine for value in row["each"][key]] for key in MEASURES}
         result.append(
             {
                 "kind": "summary",
                 **dict(zip(same, values, strict=True)),
                 "noise": False,
                 "rule": "three",
-                "draws": len(mine),
-                **{
-                    key: mean([row[key] for row in mine]) for key in ("occupied_pct", "found_pct", "free_pct")
-                },
-                "least_occupied_pct": min(row["occupied_pct"] for row in mine),
-                "least_found_pct": min(row["found_pct"] for row in mine),
+                "draws": len(each["occupied_pct"]),
+                **{key: mean(each[key]) for key in MEASURES},
+                "least_occupied_pct": min(each["occupied_pct"]),
+                "least_found_pct": min(each["found_pct"]),
             }
         )
     return result
