@@ -302,13 +302,15 @@ def placement_tables(rows: Sequence[Row]) -> list[str]:
         *table(
             kinds.get("prediction", []),
             {
+                "room": of("room"),
                 "images": of("size"),
                 "voxel": centimetres,
+                "scenes": of("scenes"),
                 "predicted [%]": lambda row: (
                     f"{row['predicted_free_pct']:.2f} ± {row['predicted_error_pct']:.2f}"
                 ),
                 "found [%]": of("found_free_pct", 2),
-                "apart [points]": lambda row: of("apart", 2, due=lambda _: ("≤", 1.0))(
+                "apart at most [points]": lambda row: of("apart", 2, due=lambda _: ("≤", 1.0))(
                     {"apart": abs(row["difference_pct"])}
                 ),
             },

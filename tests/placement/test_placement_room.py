@@ -112,6 +112,27 @@ def test_a_mesh_with_y_up_is_turned_and_a_closed_one_is_solid(load, tmp_path):
     assert occupied[2:6, 3:5, :3].all() and not occupied[:2].any()
 
 
+def test_objects_of_a_mesh_are_solids_one_by_one(load, tmp_path):
+    """An open object blocks sight and leaves the others closed."""
+    scene = trimesh.Scene()
+    scene.add_geometry(trimesh.creation.box(bounds=((-1, 0.0, -0.5), (0, 1.0, 0.5))), node_name="closed")
+    open_box = trimesh.creation.box(bounds=((0.5, 0.0, -0.5), (1, 1.0, 0.5)))
+    open_box.update_faces(np.arange(len(open_box.faces)) > 1)
+    scene.add_geometry(open_box, node_name="open")
+    scene.export(tmp_path / "two.glb")
+    text = SITE[: SITE.index("room:")] + "room: {mesh: two.glb}\nplacement: {}\n"
+    room = FixedRoom.of_site(load(text))
+    assert [solid.name for solid in room.solids] == ["closed"]
+    assert [solid.name for solid in room.surfaces] == ["open"]
+
+
+def test_rooms_of_the_package_go_by_name(load):
+    text = SITE[: SITE.index("room:")] + "room: {mesh: setup2}\nplacement: {}\n"
+    room = FixedRoom.of_site(load(text))
+    assert {"floor", "wall +x"} < {solid.name for solid in room.solids} and not room.surfaces
+    np.testing.assert_allclose(room.walls_m, [(-2.05, -2.05, 0), (2.05, 2.05, 2.9)])
+
+
 def test_a_clear_sight_ends_at_its_point():
     triangle = np.array([[(0, -1, -1), (0, 2, -1), (0, 0, 2)]], float)
     eye, points = np.array([-1.0, 0, 0]), np.array([(-0.1, 0, 0), (0.1, 0, 0), (1, 9, 0)], float)

@@ -14,6 +14,8 @@ from elbowroom.errors import CameraError, SiteError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.simulate import InterventionRoom, Moment, Solid, true_occupancy
 from elbowroom.simulate._kernels import touch_surface
+from elbowroom.simulate.glb import merged_mesh, open_edge_count
+from elbowroom.simulate.setups import SETUPS, setup
 from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Mesh
 from elbowroom.simulate.truth import SHRINK_M, touched_by
@@ -24,6 +26,10 @@ WALL_M = 0.2
 """Thickness of walls made from their inner faces [m]."""
 SPECK_M = 1e-4
 """A camera inside a solid by more than about this is refused [m]."""
+INNER_WALLS_M = np.array([[-2.05, -2.05, 0.0], [2.05, 2.05, 2.9]])
+"""Inner faces of the walls of the simulated room and of the setups, least and greatest corner [m]."""
+SETUP_NAMES = tuple(shipped.name for shipped in SETUPS)
+"""What a site file may write as `room.mesh` for a room of the package."""
 Z_FROM_Y_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 
 
@@ -50,7 +56,7 @@ class FixedRoom:
         """
         if site.simulated is not None:
             solids = tuple(s for s in InterventionRoom(people=False).at(0.0).static_solids)
-            return cls(solids, (), np.array([[-2.05, -2.05, 0.0], [2.05, 2.05, 2.9]]))
+            return cls(solids, (), INNER_WALLS_M)
         given = site.entry.room
         return None if given is None else cls.of_entry(given, site.path.parent)
 
@@ -72,12 +78,14 @@ class FixedRoom:
             walls = np.array([entry.walls.lower_m, entry.walls.upper_m])
             solids += _shell(walls)
         solids += [_static(item.name, join([box(item.lower_m, item.upper_m)])) for item in entry.furniture]
-        path = entry.mesh_path(beside)
-        if path is not None:
-            mesh, is_closed = _read(path, entry.is_y_up)
-            (solids if is_closed else surfaces).append(_static(path.stem, mesh))
-            if walls is None:
-                walls = np.array([mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)])
+        objects = _objects(entry, beside)
+        for name, mesh, is_closed in objects:
+            (solids if is_closed else surfaces).append(_static(name, mesh))
+        if entry.mesh in SETUP_NAMES:
+            walls = INNER_WALLS_M
+        elif walls is None and objects:
+            corners = np.concatenate([mesh.vertices for _, mesh, _ in objects])
+            walls = np.array([corners.min(axis=0), corners.max(axis=0)])
         return cls(tuple(solids), tuple(surfaces), walls)
 
     @property
@@ -179,17 +187,37 @@ def _shell(walls: NDArray[np.float64]) -> list[Solid]:
     return solids
 
 
-def _read(path: Path, is_y_up: bool) -> tuple[Mesh, bool]:
-    """The mesh of a file, z up, and whether it is closed with its faces outwards."""
+def _objects(entry: RoomEntry, beside: Path) -> list[tuple[str, Mesh, bool]]:
+    """Names and meshes of the room's file, z up, and whether each is closed with its faces outwards; none: no mesh."""
+    if entry.mesh in SETUP_NAMES:
+        return [(solid.name, solid.mesh, True) for solid in setup(entry.mesh).solids()]
+    path = entry.mesh_path(beside)
+    if path is None:
+        return []
     try:
-        loaded = trimesh.load(path, force="mesh")
+        scene = trimesh.load_scene(path)
+        parts = [(name, *scene.graph[name]) for name in sorted(scene.graph.nodes_geometry)]
     except Exception as error:
         raise SiteError(f"{path}: cannot be read as a mesh ({' '.join(str(error).split())})") from None
-    if not isinstance(loaded, trimesh.Trimesh) or not len(loaded.faces):
+    shapes = [(name, scene.geometry[shape], pose) for name, pose, shape in parts]
+    read = [
+        _turned(path, name if len(shapes) > 1 else path.stem, shape, pose, entry.is_y_up)
+        for name, shape, pose in shapes
+        if isinstance(shape, trimesh.Trimesh) and len(shape.faces)
+    ]
+    if not read:
         raise SiteError(f"{path}: holds no triangles; expected the room's surfaces as a mesh")
-    vertices = np.array(loaded.vertices, dtype=np.float64)
+    return read
+
+
+def _turned(
+    path: Path, name: str, shape: trimesh.Trimesh, pose: NDArray[np.float64], is_y_up: bool
+) -> tuple[str, Mesh, bool]:
+    """One object of a file in its place."""
+    vertices = np.asarray(shape.vertices, dtype=np.float64) @ pose[:3, :3].T + pose[:3, 3]
     if not np.isfinite(vertices).all():
-        raise SiteError(f"{path}: a vertex is not finite")
-    is_closed = bool(loaded.is_watertight and loaded.volume > 0)
-    turned = vertices @ Z_FROM_Y_UP.T if is_y_up else vertices
-    return Mesh(turned, np.array(loaded.faces, dtype=np.int32)), is_closed
+        raise SiteError(f"{path}: {name}: a vertex is not finite")
+    mesh = merged_mesh(vertices @ Z_FROM_Y_UP.T if is_y_up else vertices, np.asarray(shape.faces))
+    a, b, c = np.moveaxis(mesh.vertices[mesh.faces], 1, 0)
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum()
+    return name, mesh, open_edge_count(mesh) == 0 and bool(volume > 0)

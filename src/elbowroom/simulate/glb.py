@@ -42,7 +42,7 @@ def solids_of_glb(path: str | Path) -> tuple[Solid, ...]:
         if not hasattr(shape, "faces") or len(shape.faces) == 0:
             continue
         vertices = np.asarray(shape.vertices, dtype=np.float64) @ transform[:3, :3].T + transform[:3, 3]
-        mesh = _merged(vertices @ Z_UP_FROM_Y_UP.T, np.asarray(shape.faces))
+        mesh = merged_mesh(vertices @ Z_UP_FROM_Y_UP.T, np.asarray(shape.faces))
         _check(path, node, mesh)
         colour = _colour(shape)
         dark = float(np.dot(colour, (0.2126, 0.7152, 0.0722))) < DARK_LUMINANCE
@@ -71,8 +71,13 @@ def _scene(path: Path) -> Any:
         raise InputError(f"{path}: damaged GLB ({type(error).__name__}: {error}); export it again") from error
 
 
-def _merged(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Mesh:
-    """Vertices at one place made one; triangles that thereby lose a corner left out."""
+def merged_mesh(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Mesh:
+    """Vertices at one place made one; triangles that thereby lose a corner left out.
+
+    Args:
+        vertices: shape (n, 3).
+        faces: shape (m, 3), indices of vertices.
+    """
     places, index = np.unique(vertices, axis=0, return_inverse=True)
     joined = index.reshape(-1)[faces]
     whole = (joined != np.roll(joined, 1, axis=1)).all(axis=1)

@@ -30,6 +30,7 @@ class BoxEntry(Entry):
 class RoomEntry(Entry):
     """Inner faces of floor, walls and ceiling; fixed furniture as boxes; a mesh of the room, in metres.
 
+    `mesh` is a file, or `setup1` to `setup6`: a room of the package, walls and all.
     `mesh_up` is the mesh's axis that points up; left out, y for .glb and .gltf, as glTF has it, else z.
     """
 
