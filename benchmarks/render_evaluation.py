@@ -79,8 +79,8 @@ pixels and missing returns; margins are three sigmas and half a pixel unless a t
 What misses, what is measured in part, and why:
 
 - **Time.** `evaluate all` is due in 12 minutes on two cores. It was not timed from end to end; by its shares it takes
-  about 15 on the two hyperthreads of one core that these figures come from. So the lines below `Measured by` also say
-  how many random motions (500 are due) and draws of calibration error (50 are due) stand in each table.
+  about 15 on the two hyperthreads of one core that these figures come from. The tables say
+  how many random motions (500 are due) and draws of calibration error (50 are due) stand behind them.
 - **Calibration error and "what else"** were measured before the pixel test's rule on edges, as the commit beneath their
   tables says, and calibration with 10 draws; they are to be measured again.
 - **Scale model.** Four cameras leave pockets beside the machine that none of them sees, and free travel ends there, with

@@ -67,7 +67,7 @@ def test_motions_of_one_setup_are_never_unsafe(tmp_path):
 
 def test_random_motions_are_those_whose_truth_is_within_l():
     pytest.importorskip("coal", reason="coal is not installed; exact mesh distance is left out")
-    rows = judge_random(number=6, seed=0, count=2, cameras=3, voxel_size_m=0.1).rows
+    rows = judge_random(number=6, seed=0, count=2, cameras=3, voxel_size_m=0.1, careful=True).rows
     within = [row for row in rows if row["kind"] == "random" and row["lateral_px"] == 0]
     assert len(within) == 2 and all(row["truth_band"] in "SML" and row["true_solid"] for row in within)
     for bare, careful in zip(

@@ -7,6 +7,7 @@ are widened by f a + f b / 2.5 m, and depth is trusted to b + a z. The curves lo
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -21,8 +22,8 @@ from elbowroom.evaluate.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.thesis import HEIGHTS_M, c_arm
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.reconstruct import reconstruct
-from elbowroom.sensing import Margin
-from elbowroom.simulate import render, setup, true_occupancy, wall_cameras
+from elbowroom.sensing import DepthFrame, Margin
+from elbowroom.simulate import Truth, render, setup, true_occupancy, wall_cameras
 
 MARGIN = 0.75
 """The declared margin, as a share of the greatest error about each axis."""
@@ -116,12 +117,8 @@ def judge_draws(
     cameras: int,
 ) -> Outcome:
     """Some draws of one size of error, with each margin."""
-    machine, scene, grid = c_arm(), setup(number), room_grid(voxel_size_m)
-    moment = scene.at(machine)
-    truth = true_occupancy(grid, moment)
-    views = wall_cameras(cameras, HEIGHTS_M, size=size)
-    frames = render(views, moment, noise=False)
-    seen = reconstruct(grid, views, frames, rule="any", detail="point").free
+    machine, moment = c_arm(), setup(number).at(c_arm())
+    grid, truth, views, frames, seen = _exact_scene(number, voxel_size_m, size, cameras)
     focus = None if whole else third_of(grid)
     looked_at = np.ones(grid.shape, dtype=np.bool_) if focus is None else _voxels_of(focus, grid)
     found: dict[float, list[dict[str, Any]]] = {share: [] for share in shares}
@@ -156,6 +153,18 @@ def judge_draws(
         "first": first,
     }
     return Outcome([{**case, "margin_share": share, **_of_draws(found[share])} for share in shares])
+
+
+@lru_cache(maxsize=2)
+def _exact_scene(
+    number: int, voxel_size_m: float, size: str, cameras: int
+) -> tuple[VoxelGrid, Truth, tuple[DepthCamera, ...], list[DepthFrame], NDArray[np.bool_]]:
+    """What all draws of a sensor share: grid, truth, cameras where they really are, images, voxels seen by them."""
+    grid, moment = room_grid(voxel_size_m), setup(number).at(c_arm())
+    views = wall_cameras(cameras, HEIGHTS_M, size=size)
+    frames = render(views, moment, noise=False)
+    seen = reconstruct(grid, views, frames, rule="any", detail="point").free
+    return grid, true_occupancy(grid, moment), views, frames, seen
 
 
 def _of_draws(tallies: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

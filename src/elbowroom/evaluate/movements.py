@@ -71,7 +71,8 @@ def judge_movements(
         contact = truth.until_contact(joints, motion)
         images: dict[tuple[str, bool], list[DepthFrame]] = {}
         edges = {variant.voxel_size_m for variant in _variants(sensors, voxel_sizes_m)}
-        volumes = {edge: _volume_band(machine, moment, motion, edge) for edge in edges}
+        bare = Moment(moment.time_s, scene.solids(), joints)
+        volumes = {edge: _volume_band(machine, bare, motion, edge) for edge in edges}
         for variant in _variants(sensors, voxel_sizes_m):
             views = cameras_of(variant.sensor, variant.noise, cameras)
             key = (variant.sensor, variant.noise)
@@ -109,7 +110,7 @@ def _variants(sensors: Sequence[str], voxel_sizes_m: Sequence[float] | None) -> 
 
 
 def _volume_band(machine: Machine, moment: Moment, motion: Motion, voxel_size_m: float) -> str:
-    """The band of the same check in the volume of true voxels."""
+    """The band of the same check in the volume of true voxels; the moment has no machine in it."""
     grid = room_grid(voxel_size_m)
     volume = FreeSpace.from_occupied(grid, true_occupancy(grid, moment).occupied).without(
         machine, moment.joints

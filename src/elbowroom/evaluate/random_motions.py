@@ -29,6 +29,8 @@ CHUNK = 21
 """Random motions of one share of the work."""
 CLEAR_M = 0.02
 """Random poses keep this distance of everything [m]."""
+CAREFUL = 2
+"""One of so many rounds of the setups is judged with an allowance for lateral error as well."""
 EDGE_M = 0.02
 """Of a voxel, unless the settings say otherwise."""
 
@@ -47,27 +49,31 @@ def random_tasks(settings: Settings) -> list[Task]:
                 "count": min(CHUNK, settings.random_motions - n * CHUNK),
                 "cameras": settings.cameras,
                 "voxel_size_m": min(settings.voxel_sizes_m or (EDGE_M,)),
+                "careful": n // len(settings.setups) % CAREFUL == 0,
             },
         )
         for n in range(chunks)
     ]
 
 
-def judge_random(number: int, seed: int, count: int, cameras: int, voxel_size_m: float) -> Outcome:
+def judge_random(
+    number: int, seed: int, count: int, cameras: int, voxel_size_m: float, careful: bool
+) -> Outcome:
     """Random poses in one setup until so many motions of theirs have a truth within L.
 
-    Each pose is judged from the same images without an allowance for lateral error and with it. Rows of kind "random"
-    are the motions within L; all other motions of the poses are counted by joint.
+    Each pose is judged without an allowance for lateral error; with `careful` from the same images with it, too.
+    Rows of kind "random" are the motions within L; all other motions of the poses are counted by joint.
     """
     scene, machine = setup(number), c_arm()
     truth = ExactTravel(machine, scene.solids())
-    variants = [Variant("640x480", voxel_size_m, "pixel", lateral_px=px) for px in (0.0, LATERAL_PX)]
+    allowances = (0.0, LATERAL_PX) if careful else (0.0,)
+    variants = [Variant("640x480", voxel_size_m, "pixel", lateral_px=px) for px in allowances]
     views = cameras_of("640x480", False, cameras)
     motions = list(motions_of(machine).values())
     rng = np.random.default_rng([number, seed])
     rows: list[dict[str, Any]] = []
     others: list[dict[str, Any]] = []
-    left = count
+    left, pose = count, 0
     while left:
         joints = random_joints(machine, rng)
         if truth.gap(joints, CLEAR_M) < CLEAR_M:
@@ -76,7 +82,7 @@ def judge_random(number: int, seed: int, count: int, cameras: int, voxel_size_m:
         within = [n for n, contact in enumerate(contacts) if contact.touches][:left]
         if not within:
             continue
-        left -= len(within)
+        left, pose = left - len(within), pose + 1
         moment = scene.at(machine, joints)
         frames = render(views, moment, noise=False)
         for variant in variants:
@@ -86,7 +92,7 @@ def judge_random(number: int, seed: int, count: int, cameras: int, voxel_size_m:
                 row = {
                     "kind": "random" if n in within else "other",
                     "setup": number,
-                    "motion": f"{seed}-{len(rows)}",
+                    "motion": f"{seed}-{pose}",
                     **variant.said(cameras),
                     **judged(Comparison(motion, verdict, contacts[n]), voxel_size_m),
                 }

@@ -86,7 +86,7 @@ def judge_pose(pose: int, voxel_size_m: float, picture: bool) -> Outcome:
             focus=focus,
         )
         if not noise:
-            in_view = _in_view(space, moment, motions)
+            in_view = _in_view(space, Moment(moment.time_s, solids, joints), motions)
         strict = check_motions(space, machine, joints, motions)
         passed = check_motions(without_unseen(space), machine, joints, motions)
         for motion, verdict, beyond, seen in zip(motions, strict, passed, in_view, strict=True):
@@ -129,7 +129,10 @@ def _compared(contact: Contact, verdict: Verdict, passed: Verdict) -> dict[str, 
 
 
 def _in_view(space: FreeSpace, moment: Moment, motions: Sequence[Motion]) -> list[bool]:
-    """Of each motion, whether a surface is seen where it truly touches first, by the volume of true voxels."""
+    """Of each motion, whether a surface is seen where it truly touches first, by the volume of true voxels.
+
+    The moment is without the machine, which is taken out of the volume.
+    """
     machine, grid = model_machine(), space.grid
     volume = FreeSpace.from_occupied(grid, true_occupancy(grid, moment).occupied)
     surface = space.surface
