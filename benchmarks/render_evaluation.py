@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from elbowroom.cli.evaluate_thesis_run import PARTS
-from elbowroom.evaluate.blocks import Block, Picture, Table, Words
 from elbowroom.evaluate.due import due_table
+from elbowroom.view.blocks import Block, Picture, Table, Words
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results"
@@ -81,12 +81,12 @@ What misses, what is measured in part, and why:
 - **Time.** `evaluate all` is due in 12 minutes on two cores. It was not timed from end to end; by its shares it takes
   about 15 on the two hyperthreads of one core that these figures come from. The tables say
   how many random motions (500 are due) and draws of calibration error (50 are due) stand behind them.
-- **Calibration error and "what else"** were measured before the pixel test's rule on edges, as the commit beneath their
-  tables says, and calibration with 10 draws; they are to be measured again.
-- **Scale model.** Four cameras leave pockets beside the machine that none of them sees, and free travel ends there, with
-  noise and without. With unseen space passed over, as an operator may, exact images come within millimetres of an object
-  in view, but what is passed over may hide one: that travel is no promise. With noise, lost returns and mixed pixels
-  stop the motion where one camera alone looks. So the due figures are missed.
+- **Calibration error and "what else"** were measured before the pixel test's rule on edges, as the commit beneath
+  their tables says, and calibration with 10 draws; they are to be measured again.
+- **Scale model.** Four cameras leave pockets beside the machine that none of them sees, and free travel ends there,
+  with noise and without. With unseen space passed over, as an operator may, exact images come within millimetres of
+  an object in view, but what is passed over may hide one: that travel is no promise. With noise, lost returns and
+  mixed pixels stop the motion where one camera alone looks. So the due figures are missed.
 """
 
 

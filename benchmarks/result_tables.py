@@ -344,3 +344,130 @@ def sweep_tables(rows: Sequence[Row]) -> list[str]:
             "seconds": of("seconds", 1, due=lambda _: ("≤", 60.0)),
         },
     )
+
+
+def drift_tables(rows: Sequence[Row]) -> list[str]:
+    """Knocks, wrong joints, pushed furniture, false alarms, time."""
+    parts = {part: [row for row in rows if row["part"] == part] for part in {row["part"] for row in rows}}
+    noise: dict[str, Cell] = {"noise": of("noise")}
+    lines = table(
+        parts.get("knocks", []),
+        {
+            "knock": of("knock"),
+            **noise,
+            "runs": of("runs"),
+            "named": of("named", due=lambda row: ("≥", row["runs"])),
+            "others": of("others_named", due=lambda _: ("≤", 0)),
+            "frames, median": of("frames_median", 0),
+            "frames, most": of("frames_max", due=lambda _: ("≤", 60)),
+            "said, median": lambda row: f"{row['said_median']:.2f} {row['unit']}" if "unit" in row else "",
+            "error, 95 %": lambda row: f"{row['error_p95']:.2f} {row['unit']}" if "unit" in row else "",
+            "within 2 σ %": of("inside_2_sigma_pct", 0),
+        },
+    )
+    lines += ["", *table(
+        parts.get("joints", []),
+        {
+            "joint": of("joint"),
+            "says too much by": lambda row: (
+                f"{row['wrong_by'] * 1e3:.0f} mm" if row["joint"] == "long" else f"{row['wrong_by'] * 57.29578:.0f}°"
+            ),
+            **noise,
+            "found": of("found"),
+            "frames": of("frames"),
+            "cameras named": of("cameras_named", due=lambda _: ("≤", 0)),
+            "said": of("reason"),
+        },
+    )]  # fmt: skip
+    lines += ["", *table(
+        parts.get("furniture", []),
+        {"pushed": of("what"), **noise, "cameras named": of("cameras_named", due=lambda _: ("≤", 0))},
+    )]  # fmt: skip
+    lines += ["", *table(
+        parts.get("alarms", []),
+        {
+            **noise,
+            "passes": of("passes"),
+            "camera frames": of("camera_frames", due=lambda _: ("≥", 10_000)),
+            "false alarms": of("false_alarms", due=lambda _: ("≤", 0)),
+            "frames that said moved %": of("frames_that_said_moved_pct", 3),
+            "frames that could not tell %": of("frames_that_could_not_tell_pct", 2),
+        },
+    )]  # fmt: skip
+    lines += ["", *table(
+        parts.get("real", []),
+        {
+            "recording": of("site"),
+            "knock of one camera": of("knock"),
+            "named": of("named"),
+            "others": of("others_named", due=lambda _: ("≤", 0)),
+            "passes": of("passes"),
+            "said": lambda row: (
+                "" if row["said"] is None else f"{row['said']:.2f} ± {row['two_sigma']:.2f} {row['unit']}"
+            ),
+        },
+    )]  # fmt: skip
+    lines += ["", *table(
+        parts.get("time", []),
+        {
+            "a pass": lambda row: f"{row['cameras']} cameras {row['width']}x{row['height']}, with body",
+            "median ms": of("median_ms", 1, due=lambda _: ("≤", 3.0)),
+            "99 % ms": of("p99_ms", 1),
+            "worst ms": of("max_ms", 1),
+            "processor time, median ms": of("cpu_median_ms", 1),
+        },
+    )]  # fmt: skip
+    return lines
+
+
+def calibration_tables(rows: Sequence[Row]) -> list[str]:
+    """Captures, the room, coverage, real recordings, each with its own columns."""
+    lines: list[str] = []
+    for kind, keys in CALIBRATION_COLUMNS.items():
+        mine = [row for row in rows if row["kind"] == kind]
+        if mine:
+            lines += ["", *table(mine, {key: of(key, due=_due_of(key)) for key in keys})]
+    return lines
+
+
+CALIBRATION_COLUMNS = {
+    "extrinsics": (
+        "case",
+        "noise",
+        "cameras",
+        "poses",
+        "views",
+        "worst_mm",
+        "worst_deg",
+        "median_mm",
+        "median_deg",
+        "inside_pct",
+        "seconds",
+    ),
+    "room": ("case", "noise", "occupied_pct", "found_pct", "median_lateral_px", "median_bias_mm"),
+    "coverage": ("case", "cameras", "poses", "draws", "inside_pct", "mean_square"),
+    "real": ("case", "agree_pct", "shares_pct", "note"),
+    "machine": (
+        "cameras",
+        "poses",
+        "worst_mm",
+        "worst_deg",
+        "median_mm",
+        "median_deg",
+        "inside_pct",
+        "seconds",
+    ),
+    "refine": ("start", "agree_pct", "note"),
+}
+
+
+def _due_of(key: str) -> Due:
+    """The row's own due figure; at least for shares, at most for errors and times."""
+
+    def due(row: Row) -> tuple[str, float] | None:
+        wanted = row.get("due", {}).get(key)
+        if not isinstance(wanted, int | float) or not isinstance(row.get(key), int | float):
+            return None
+        return ("≥" if key.endswith("_pct") else "≤", float(wanted))
+
+    return due

@@ -4,8 +4,8 @@ import pytest
 
 from elbowroom.cli import evaluate_thesis_run as thesis_run
 from elbowroom.errors import ElbowroomError, InputError
-from elbowroom.evaluate.blocks import Part
 from elbowroom.evaluate.kept import Kept
+from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.task import Outcome, Settings, Task
 from elbowroom.evaluate.work_force import do_tasks
 from reference.evaluate_tasks import dies_once, square

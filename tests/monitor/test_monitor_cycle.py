@@ -5,7 +5,7 @@ import pytest
 
 from elbowroom.errors import FrameError, InputError
 from elbowroom.geometry import VoxelGrid
-from elbowroom.monitor import Cycle, cycle
+from elbowroom.monitor import Cycle, Health, cycle
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.sensing import DepthFrame
@@ -115,3 +115,46 @@ def test_verdicts_in_another_order_stay_with_their_motions(a_cycle, monkeypatch)
 def test_a_cycle_that_asks_nothing_is_refused():
     with pytest.raises(InputError, match="at least one"):
         Cycle(GRID, (), OneJoint(), ())
+
+
+class AWatch:
+    """Says what it is told to say."""
+
+    def __init__(self, *reasons: str | Exception) -> None:
+        self.reasons = list(reasons)
+        self.heard: list[list[str]] = []
+
+    def hear(self, frames, joints, now_ns):
+        self.heard.append([frame.camera for frame in frames])
+        reason = self.reasons.pop(0)
+        if isinstance(reason, Exception):
+            raise reason
+        return Health((), (), {"c0": reason} if reason else {})
+
+
+def test_what_the_watch_found_stops_every_motion_and_is_no_fault(a_cycle):
+    a_cycle.watch = AWatch("", "camera c0 has turned by 0.9 degrees")
+    assert a_cycle.run(frames(1), {"slide": 0.0}, 1).level is Level.CLEAR
+    result = a_cycle.run(frames(1), {"slide": 0.0}, 1)
+    assert [v.level for v in result.verdicts] == [Level.STOP] * 2
+    assert all(v.free_travel == 0 and not v.overridable for v in result.verdicts)
+    assert result.fault is None and result.stopped_by == "camera c0 has turned by 0.9 degrees"
+    assert result.space is SPACE and list(result.stage_ms) == ["watch", "carve", "motion"]
+
+
+def test_a_watch_that_fails_is_a_stop(a_cycle):
+    a_cycle.watch = AWatch(InputError("no such image"))
+    result = a_cycle.run(frames(1), {"slide": 0.0}, 1)
+    assert_all_stop(result, "no such image")
+    assert result.stopped_by == result.fault
+
+
+def test_the_watch_hears_no_frame_past_its_age(a_cycle):
+    a_cycle.watch, a_cycle.max_age_ns = AWatch(""), 5
+    a_cycle.run(frames(0, 8, None), {"slide": 0.0}, 10)
+    assert a_cycle.watch.heard == [["c1"]]
+
+
+def test_nobody_watches_and_it_says_so(a_cycle):
+    result = a_cycle.run(frames(1), {"slide": 0.0}, 1)
+    assert result.health is None and result.stopped_by is None

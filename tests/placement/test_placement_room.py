@@ -12,10 +12,10 @@ from elbowroom.placement.cameras import cameras_of, requirement_of
 from elbowroom.placement.candidates import candidates_of, default_aims
 from elbowroom.placement.fixed_room import FixedRoom, clear_sight
 from elbowroom.placement.sensor import sensors_of
-from elbowroom.placement.site_file import write_site
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
+from elbowroom.view.site_file import write_site
 from reference.placement_rooms import camera_at, room_of
 
 SITE = """

@@ -11,12 +11,20 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from elbowroom.geometry import VoxelGrid
-from elbowroom.monitor import CycleResult
+from elbowroom.monitor import CameraHealth, Condition, CycleResult, Health, LinkHealth, Shift
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.view.run_log import RunLog
 from elbowroom.view.terminal import TerminalView
 from elbowroom.view.watched import Watched
-from elbowroom.view.words import LEVEL_WORDS, MARKS, NOT_CERTIFIED, plain_line, travel_bar, travel_text
+from elbowroom.view.words import (
+    LEVEL_WORDS,
+    MARKS,
+    NOT_CERTIFIED,
+    health_text,
+    plain_line,
+    travel_bar,
+    travel_text,
+)
 
 GRID = VoxelGrid(origin_m=(-2, -2, 0), shape=(80, 80, 50), voxel_size_m=0.05)
 WATCHED = Watched("a room", GRID, "21 cameras 64x48", "three", "pixel", "simulator", ("rail", "carriage"))
@@ -146,3 +154,35 @@ def test_an_empty_log_says_that_there_was_no_verdict():
     assert "no verdict" in console.file.getvalue()
     assert RunLog().rate_hz == 0
     assert np.isnan(RunLog().recent([]))
+
+
+def of_health(stops: dict[str, str], condition: Condition = Condition.STILL) -> CycleResult:
+    shift = Shift(np.radians([0.0, 0.9, 0.0]), np.zeros(3), np.diag([1e-8] * 3 + [1e-6] * 3))
+    cameras = (
+        CameraHealth("cam03", condition, shift, 0.9),
+        CameraHealth("cam04", Condition.SILENT, None, 0.0),
+    )
+    health = Health(cameras, (LinkHealth("l_arm", 0.031, ("a", "b", "c"), True),), stops)
+    return CycleResult(7, 3_200_000_000, None, VERDICTS, {"watch": 3.0}, 12.0, None, health)
+
+
+def test_the_health_line_says_how_cameras_and_machine_are():
+    text = health_text(of_health({}).health)
+    assert "1 of 2 cameras stand still" in text and "1 silent" in text
+    assert "cam03 by 0.90°" in text and "l_arm" in text and "31 mm" in text
+    assert "unnoticed" in health_text(None)
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_stop_of_the_watch_is_shown_with_its_reason_and_stays_in_the_summary(terminal):
+    console = Console(file=io.StringIO(), width=140, force_terminal=terminal, color_system=None)
+    with TerminalView(WATCHED, console) as view:
+        view.start()
+        view.show(of_health({"cam03": "camera cam03 has turned by 0.9 degrees"}), 33.0)
+    assert "camera cam03 has turned by 0.9 degrees" in console.file.getvalue()
+    view.print_summary()
+    assert "Every motion was stopped: camera cam03 has turned" in console.file.getvalue()
+
+
+def test_a_run_without_a_watch_says_so():
+    assert "were not watched" in shown(120)

@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from elbowroom.cli.bench import bench
+from elbowroom.cli.calibrate import calibrate_app
 from elbowroom.cli.check import check
 from elbowroom.cli.evaluate_thesis import evaluate_app
 from elbowroom.cli.monitor import monitor
@@ -31,6 +32,7 @@ app.command(
     epilog=_example(
         "elbowroom monitor",
         "elbowroom monitor --voxel-size 0.02 --seconds 20 --json run.json --out pictures",
+        "elbowroom monitor --knock cam03:1deg@5",
         "elbowroom monitor my_room.yaml",
     )
 )(monitor)
@@ -47,7 +49,12 @@ app.command(
         "elbowroom simulate --room my.glb --out my_room --noise tof --joints long=0.1",
     )
 )(simulate)
-app.command(epilog=_example("elbowroom bench --json bench.json"))(bench)
+app.command(
+    epilog=_example(
+        "elbowroom bench --json bench.json", "elbowroom bench calibration --json calibration.json"
+    )
+)(bench)
+app.add_typer(calibrate_app, name="calibrate")
 app.add_typer(evaluate_app, name="evaluate")
 app.add_typer(placement_app, name="placement")
 app.add_typer(site_app, name="site")

@@ -1,6 +1,7 @@
 """`elbowroom bench`: how fast, on this computer."""
 
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Literal
 
 import typer
 
@@ -8,14 +9,35 @@ from elbowroom.cli.options import JsonFile
 
 
 def bench(
+    what: Annotated[
+        Literal["cycle", "calibration"],
+        typer.Argument(help="cycle: carve and whole cycles; calibration: how well cameras are found."),
+    ] = "cycle",
     quick: Annotated[bool, typer.Option(help="Few rounds: a first impression in under a minute.")] = False,
     cameras: Annotated[int, typer.Option(min=1, max=255, help="How many cameras.")] = 21,
     size: Annotated[str, typer.Option(help="Of their images: vga, qqvga or thesis.")] = "vga",
     threads: Annotated[int | None, typer.Option(min=1, help="Default: all cores.")] = None,
     octomap: Annotated[bool, typer.Option(help="Also run OctoMap, where pyoctomap is installed.")] = True,
+    captures: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR", help="calibration: keep simulated captures here, and take those that are there."
+        ),
+    ] = None,
+    part: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="calibration: only real, coverage, captures, intrinsics, machine or refine; may be repeated."
+        ),
+    ] = None,
     json: JsonFile = None,
 ) -> None:
-    """Measure carve and whole cycles in the simulated room, each case in a process of its own."""
+    """Measure carve and whole cycles in the simulated room, each case in a process of its own; or calibration."""
+    if what == "calibration":
+        from elbowroom.cli.bench_calibration_run import run_bench_calibration
+
+        run_bench_calibration(quick, captures, tuple(part or ()), json)
+        return
     from dataclasses import replace
 
     from rich.console import Console

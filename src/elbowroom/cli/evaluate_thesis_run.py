@@ -7,23 +7,29 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.table import Table as RichTable
 
 from elbowroom.cli.evaluate_run import watched
 from elbowroom.cli.json_output import json_rows, meta
+from elbowroom.cli.tables import rich_table
 from elbowroom.errors import InputError
-from elbowroom.evaluate.blocks import Block, Part, Table
 from elbowroom.evaluate.due import due_table
 from elbowroom.evaluate.kept import Kept, source_state
-from elbowroom.evaluate.page import page
+from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.task import Outcome, Settings, Task
 from elbowroom.evaluate.thesis import SENSORS
 from elbowroom.evaluate.work_force import do_tasks
 from elbowroom.geometry.parallel import default_threads
 from elbowroom.view.atomic import folder, whole_file
+from elbowroom.view.blocks import Block, Table
+from elbowroom.view.page import page
 
 PARTS = ("reconstruction", "motions", "calibration", "scale", "more")
 """Names of the parts, which are those of their modules in `elbowroom.evaluate`, in the order of the page."""
+TITLE = "The thesis' experiments"
+ABOUT = (
+    "I. Hamersma, *Collision avoidance using multiple correlated 3D depth measurements*, Eindhoven 2011, "
+    "run again with elbowroom: its figures stand beside ours."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,10 +92,10 @@ def run_parts(
         console.print(f"\n{title}", style="bold")
         for block in blocks:
             if isinstance(block, Table):
-                console.print(_rich(block))
+                console.print(rich_table(block))
     if out is not None:
         with whole_file(out / "report.html") as unfinished:
-            unfinished.write_text(page(sections, meta()), encoding="utf-8")
+            unfinished.write_text(page(TITLE, ABOUT, sections, meta()), encoding="utf-8")
         console.print(f"\nPage: {out / 'report.html'}")
 
 
@@ -127,12 +133,3 @@ def _of_part(
     rows = [row for outcome in mine for row in outcome.rows]
     pictures = {name: png for outcome in mine for name, png in outcome.pictures.items()}
     return rows + part.summary(rows), pictures
-
-
-def _rich(table: Table) -> RichTable:
-    shown = RichTable(title=table.title, title_justify="left", box=None, pad_edge=False)
-    for index, column in enumerate(table.columns):
-        shown.add_column(column, justify="left" if index in table.left else "right")
-    for line in table.lines:
-        shown.add_row(*line)
-    return shown

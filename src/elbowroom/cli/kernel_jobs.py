@@ -86,6 +86,12 @@ def _motion() -> None:
     check_motion(space, probe(), {"slide": 0.0}, Motion("slide", 1, 0.01))
 
 
+def _watch() -> None:
+    from elbowroom.monitor.warm_up import warm_up_watch
+
+    warm_up_watch()
+
+
 def _simulated_cameras() -> None:
     from elbowroom.simulate import InterventionRoom, render, wall_cameras
 
@@ -108,6 +114,13 @@ JOBS = (
         ("elbowroom.motion._kernels", "first_block"),
         "motion",
         "the machine's body",
+    ),
+    Job(
+        "the watch",
+        _watch,
+        ("elbowroom.monitor._kernels_body", "surface_spots"),
+        "motion",
+        "the machine in images",
     ),
     Job(
         "carving",

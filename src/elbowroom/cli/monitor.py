@@ -36,6 +36,14 @@ def monitor(
     detail: Detail = None,
     joints: JointsText = None,
     threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
+    knock: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="WHAT:SIZE@SECONDS",
+            help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
+            "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
+        ),
+    ] = None,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
@@ -45,6 +53,11 @@ def monitor(
 
     Without SITE: a simulated intervention room, where people walk and a C-arm
     moves. A site with a recording plays it once. Ctrl-C ends with a summary.
+
+    Cameras that were commissioned (`elbowroom calibrate commission`) are watched:
+    one that moved, or a machine that is not where its joints say, stops every
+    motion until the monitor is started again. A simulated room that was not
+    commissioned does that itself at the start.
 
     Not a certified safety function.
     """
@@ -65,5 +78,6 @@ def monitor(
         cameras=cameras,
         resolution=size_px,
         in_real_time=True,
+        knocks=knock or (),
     )
     watch(room, seconds=seconds, json_file=json, out_dir=out)

@@ -17,7 +17,8 @@ from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.reconstruct_run import space_of
 from elbowroom.cli.room import Room, Scene
-from elbowroom.cli.rows import cycle_rows
+from elbowroom.cli.rows import cycle_rows, health_rows
+from elbowroom.cli.watching import watch_of
 from elbowroom.errors import InputError
 from elbowroom.geometry import bits
 from elbowroom.geometry.parallel import default_threads
@@ -60,9 +61,12 @@ def watch(room: Room, *, seconds: float | None, json_file: Path | None, out_dir:
     with json_rows(json_file) as add, TerminalView(room.watched, console) as view:
         for note in room.site.notes:
             console.print(f"note: {note}", highlight=False, soft_wrap=True)
-        _warm_up(room, cycle, console)
+        unwatched = _warm_up(room, cycle, console)
+        if unwatched is not None:
+            console.print(f"note: {unwatched}", highlight=False, soft_wrap=True)
         add(_room_row(room))
         last: tuple[Scene, CycleResult] | None = None
+        said: dict[str, str] = {}
         view.start()
         with _ended_by_interrupt():
             until = time.perf_counter() + (float("inf") if seconds is None else seconds)
@@ -71,6 +75,8 @@ def watch(room: Room, *, seconds: float | None, json_file: Path | None, out_dir:
                 view.show(result, scene.source_ms)
                 last = scene, result
                 for row in cycle_rows(result, scene.source_ms):
+                    add(row)
+                for row in health_rows(result, said):
                     add(row)
                 if time.perf_counter() >= until:
                     break
@@ -85,18 +91,22 @@ def _judge(cycle: Cycle, scene: Scene) -> CycleResult:
     return cycle.run(scene.frames, scene.joints or {}, scene.now_ns, scene.joints_at_frames)
 
 
-def _warm_up(room: Room, cycle: Cycle, console: Console) -> None:
-    """Compiles all that the loop uses, by doing it once; also what it uses where something is in the way.
+def _warm_up(room: Room, cycle: Cycle, console: Console) -> str | None:
+    """Sets the watch, and compiles all that the loop uses, by doing it once; also where something is in the way.
+
+    Returns:
+        Why there is no watch; None: there is one.
 
     Raises:
         InputError: the first cycle failed, so that all would.
     """
     compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
-    with Steps(console, 3) as steps:
+    with Steps(console, 4) as steps:
+        cycle.watch, unwatched = watch_of(room, steps)
         steps.begin("first frames")
         scene = next(room.scenes(), None)
         if scene is None:
-            return
+            return unwatched
         steps.begin("motions that are blocked")
         nothing = bits.empty(room.grid)
         all_blocked = FreeSpace(room.grid, nothing, nothing, nothing, nothing)
@@ -105,6 +115,7 @@ def _warm_up(room: Room, cycle: Cycle, console: Console) -> None:
         result = _judge(cycle, scene)
     if result.fault is not None:
         raise InputError(f"the first cycle failed: {result.fault}")
+    return unwatched
 
 
 @contextmanager
@@ -154,6 +165,8 @@ def _summary_row(log: RunLog) -> dict[str, Any]:
         "cycles": log.cycles,
         "rate_hz": log.whole_rate_hz,
         "faults": log.faults.total(),
+        "watched": log.is_watched,
+        "stop_reasons": list(log.stops.values()),
     }
     for name, values in (("cycle", log.cycle_ms), ("source", log.source_ms)):
         for statistic, share in (("median", 50), ("p99", 99), ("max", 100)):

@@ -16,8 +16,8 @@ from elbowroom.placement.in_use import optimise_in_use
 from elbowroom.placement.optimisation import Goal
 from elbowroom.placement.rehearsal import rehearse
 from elbowroom.placement.scenes import random_scenes
-from elbowroom.placement.site_file import write_site
 from elbowroom.site import Site
+from elbowroom.view.site_file import write_site
 
 OTHER_SEED = 1000
 

@@ -17,9 +17,9 @@ from elbowroom.placement.candidates import Candidate, candidates_of
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.optimisation import Goal, Optimised, optimise
 from elbowroom.placement.pictures import save_pictures
-from elbowroom.placement.site_file import write_site
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
+from elbowroom.view.site_file import write_site
 
 
 def run_optimise(

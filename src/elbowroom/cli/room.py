@@ -2,9 +2,9 @@
 
 import itertools
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from elbowroom.reconstruct import Detail, Rule
 from elbowroom.sensing import DepthFrame, JointRecord, Margin
 from elbowroom.site import RecordedMoment, Site, moments
 from elbowroom.view.watched import Watched
+
+if TYPE_CHECKING:
+    from elbowroom.simulate.knock import Knock
 
 REAL_TIME_SLACK_S = 0.001
 
@@ -100,6 +103,7 @@ def open_room(
     cameras: int | None = None,
     resolution: tuple[int, int] | None = None,
     in_real_time: bool = False,
+    knocks: Sequence[str] = (),
 ) -> Room:
     """Opens a site; what is None is as the site says.
 
@@ -111,9 +115,11 @@ def open_room(
         cameras: number of cameras of a simulated room.
         resolution: width and height of their images [px].
         in_real_time: recorded moments with times come no faster than they were recorded.
+        knocks: what is knocked in a simulated room, as `Knock.parse` reads it.
 
     Raises:
-        InputError: cameras or resolution where the room is not simulated, joints that no machine has.
+        InputError: cameras, resolution or knocks where the room is not simulated, joints that no machine has, a knock
+            of nothing that is there.
     """
     grid, machine = site.grid(voxel_size_m), site.machine()
     if joints is not None:
@@ -136,13 +142,19 @@ def open_room(
             )
         else:
             made = site.cameras()
+        from elbowroom.simulate.knock import Knock, require_known
+
         seed = site.simulated.seed
-        scenes: Callable[[], Iterator[Scene]] = lambda: _simulated(made, machine, joints, seed)  # noqa: E731
+        given = tuple(Knock.parse(text) for text in knocks)
+        require_known(given, made, machine.joint_names if machine else ())
+        scenes: Callable[[], Iterator[Scene]] = lambda: _simulated(made, machine, joints, seed, given)  # noqa: E731
     else:
         if cameras is not None or resolution is not None:
             raise InputError(
                 f"{site.path}: --cameras and --resolution are for simulated rooms; leave them out"
             )
+        if knocks:
+            raise InputError(f"{site.path}: --knock is for simulated rooms; leave it out")
         made = site.cameras()
         scenes = lambda: _recorded(site, joints, in_real_time)  # noqa: E731
     # the file's words are among those that are allowed: its schema says so
@@ -152,18 +164,26 @@ def open_room(
 
 
 def _simulated(
-    cameras: tuple[DepthCamera, ...], machine: Machine | None, joints: Mapping[str, float] | None, seed: int
+    cameras: tuple[DepthCamera, ...],
+    machine: Machine | None,
+    joints: Mapping[str, float] | None,
+    seed: int,
+    knocks: "Sequence[Knock]" = (),
 ) -> Iterator[Scene]:
     """Moments of the simulated room as time goes on. Frames are new when they come, however long it took."""
     from elbowroom.simulate import InterventionRoom, render
+    from elbowroom.simulate.knock import PlacedKnocks, reported_joints
 
     room = InterventionRoom(machine=machine)
+    moved = PlacedKnocks(knocks, cameras)
     start = time.perf_counter()
     for number in itertools.count():
         begun = time.perf_counter()
         moment = room.at(begun - start, joints=joints)
-        frames = tuple(render(cameras, moment, seed=seed + number))
-        yield Scene(frames, moment.joints, None, moment.stamp_ns, (time.perf_counter() - begun) * 1e3)
+        where = moved.cameras(moment.time_s)
+        frames = tuple(render(where, moment, seed=seed + number))
+        said = reported_joints(knocks, moment.joints, moment.time_s)
+        yield Scene(frames, said, None, moment.stamp_ns, (time.perf_counter() - begun) * 1e3)
 
 
 def _recorded(site: Site, joints: Mapping[str, float] | None, in_real_time: bool) -> Iterator[Scene]:

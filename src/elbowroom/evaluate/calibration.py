@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from elbowroom.evaluate.blocks import Block, Part, Picture, Table, Words, cm, mean, pct
-from elbowroom.evaluate.charts import Line, chart
+from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.room import Tally
 from elbowroom.evaluate.scene import DECIMALS, room_grid
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
@@ -24,6 +23,8 @@ from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.reconstruct import reconstruct
 from elbowroom.sensing import DepthFrame, Margin
 from elbowroom.simulate import Truth, render, setup, true_occupancy, wall_cameras
+from elbowroom.view.blocks import Block, Picture, Table, Words, cm, mean, pct
+from elbowroom.view.charts import Line, chart
 
 MARGIN = 0.75
 """The declared margin, as a share of the greatest error about each axis."""

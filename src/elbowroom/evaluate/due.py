@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from elbowroom.evaluate.blocks import Table, pct
 from elbowroom.evaluate.task import Row
+from elbowroom.view.blocks import Table, pct
 
 Pick = Callable[[Row], bool]
 

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.evaluate.blocks import Block, Part, Picture, Table, Words, cm, mean, pct
-from elbowroom.evaluate.charts import Line, chart
 from elbowroom.evaluate.exact import ExactTravel, load_coal
 from elbowroom.evaluate.fig3 import fig3_picture
+from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.room import Tally
 from elbowroom.evaluate.scene import room_grid, room_motions
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
@@ -25,6 +24,8 @@ from elbowroom.simulate.furniture import shell
 from elbowroom.simulate.inside import hung_clear
 from elbowroom.simulate.shapes import ellipsoid, join
 from elbowroom.simulate.truth import touched_by
+from elbowroom.view.blocks import Block, Picture, Table, Words, cm, mean, pct
+from elbowroom.view.charts import Line, chart
 
 COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 21)
 SIZES_M = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2)

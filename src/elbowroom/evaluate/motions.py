@@ -10,11 +10,12 @@ that nobody chose them; a *false stop* is a stop where the truth is none.
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from elbowroom.evaluate.blocks import Block, Part, Words
 from elbowroom.evaluate.exact import load_coal
 from elbowroom.evaluate.movements import movement_blocks, movement_summary, movement_tasks
+from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.random_motions import random_blocks, random_summary, random_tasks
 from elbowroom.evaluate.task import Row, Settings, Task
+from elbowroom.view.blocks import Block, Words
 
 
 def tasks(settings: Settings) -> list[Task]:

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import Any
 
 from elbowroom.evaluate.bands import compared, counted
-from elbowroom.evaluate.blocks import Block, Table, cm
 from elbowroom.evaluate.exact import ExactTravel
 from elbowroom.evaluate.judged import (
     LATERAL_PX,
@@ -24,6 +23,7 @@ from elbowroom.motion import Motion, check_motions
 from elbowroom.reconstruct import FreeSpace
 from elbowroom.sensing import DepthFrame
 from elbowroom.simulate import Moment, render, setup, true_occupancy
+from elbowroom.view.blocks import Block, Table, cm
 
 VARIANTS = (
     Variant("640x480", 0.02, "pixel"),

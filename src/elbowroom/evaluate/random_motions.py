@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from elbowroom.evaluate.bands import counted
-from elbowroom.evaluate.blocks import Block, Table, cm, pct
 from elbowroom.evaluate.exact import ExactTravel
 from elbowroom.evaluate.judged import (
     LATERAL_PX,
@@ -24,6 +23,7 @@ from elbowroom.evaluate.thesis import c_arm
 from elbowroom.motion import check_motions
 from elbowroom.simulate import render, setup
 from elbowroom.simulate.machine_solids import random_joints
+from elbowroom.view.blocks import Block, Table, cm, pct
 
 CHUNK = 21
 """Random motions of one share of the work."""

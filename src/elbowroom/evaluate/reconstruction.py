@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.evaluate.blocks import Block, Part, Picture, Table, Words, cm, mean, pct
 from elbowroom.evaluate.cases import cases_of, counts_of, section_picture, voxel_picture
+from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.room import Tally
 from elbowroom.evaluate.scene import room_grid
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
@@ -24,6 +24,7 @@ from elbowroom.reconstruct.carve import Detail
 from elbowroom.sensing import DepthFrame, Margin
 from elbowroom.simulate import Moment, Truth, render, setup, true_occupancy
 from elbowroom.simulate.truth import true_centres
+from elbowroom.view.blocks import Block, Picture, Table, Words, cm, mean, pct
 
 DETAILS: tuple[Detail, ...] = ("point", "footprint", "pixel")
 VOXEL_SIZES_M = (0.10, 0.05, 0.02)

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.evaluate.blocks import Block, Part, Picture, Table, Words
 from elbowroom.evaluate.exact import Contact, ExactTravel, load_coal
+from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.scale_model import (
     FACTOR,
     coloured_picture,
@@ -34,6 +34,7 @@ from elbowroom.motion import Motion, Verdict, blocks_in_reach, check_motions
 from elbowroom.reconstruct import FreeSpace, reconstruct
 from elbowroom.simulate import Moment, render, true_occupancy
 from elbowroom.simulate.machine_solids import link_solids, random_joints
+from elbowroom.view.blocks import Block, Picture, Table, Words
 
 VOXEL_M = 0.002
 POSES = 12

@@ -12,14 +12,16 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
+from elbowroom.monitor.watch import Watch
 from elbowroom.motion import Cause, Level, Motion, Verdict, blocks_in_reach, check_motions
 from elbowroom.reconstruct import Detail, Rule, reconstruct
+from elbowroom.reconstruct.reconstruct import young_enough
 from elbowroom.sensing import DepthFrame, JointRecord
 
 
 @dataclass(slots=True, eq=False)
 class Cycle:
-    """The pass and all that stays the same from one to the next. It remembers nothing but its own number.
+    """The pass and all that stays the same from one to the next. It remembers nothing but its number; its watch does.
 
     Args:
         grid: the watched box.
@@ -31,6 +33,8 @@ class Cycle:
         explain_tolerance_m: as of `reconstruct` [m].
         threads: None: all cores.
         focused: only the space where the motions can go is looked at, all other space stays unseen.
+        watch: hears the frames of each pass, and stops every motion once it found a camera or the machine where it
+            should not be; None: nobody watches.
 
     Raises:
         InputError: no motions, since then nothing would ever say stop.
@@ -47,6 +51,7 @@ class Cycle:
     explain_tolerance_m: float = 0.01
     threads: int | None = None
     focused: bool = True
+    watch: Watch | None = None
     sequence: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -74,9 +79,13 @@ class Cycle:
         sequence, self.sequence = self.sequence, self.sequence + 1
         stage_ms: dict[str, float] = {}
         given: dict[Motion, Verdict] = {}
-        space, oldest, fault = None, None, None
+        space, oldest, fault, health = None, None, None, None
         try:
             oldest = _oldest_age_ms(frames, now_ns)
+            if self.watch is not None:
+                with _timed("watch", stage_ms):
+                    known = joints if joints_at_frames is None else joints_at_frames
+                    health = self.watch.hear(young_enough(frames, now_ns, self.max_age_ns), known, now_ns)
             space = reconstruct(
                 self.grid,
                 self.cameras,
@@ -98,13 +107,16 @@ class Cycle:
             with _timed("motion", stage_ms):
                 given = _usable(check_motions(space, self.machine, joints, self.motions, self.threads))
         except Exception as error:  # at this border a fault becomes a decision: stop
-            space, given = None, {}
+            space, given, health = None, {}, None
             fault = f"{type(error).__name__}: {error}"
         missing = [motion.name for motion in self.motions if motion not in given]
         if missing and fault is None:
             fault = f"no usable verdict for {', '.join(missing)}"
+        if health is not None and health.reason is not None:
+            # free space that comes from a camera that is elsewhere is no free space
+            given = {}
         verdicts = tuple(given.get(motion) or self._stop(motion) for motion in self.motions)
-        return CycleResult(sequence, now_ns, space, verdicts, stage_ms, oldest, fault)
+        return CycleResult(sequence, now_ns, space, verdicts, stage_ms, oldest, fault, health)
 
     def _stop(self, motion: Motion) -> Verdict:
         units = {joint.name: joint.unit for joint in self.machine.joints}

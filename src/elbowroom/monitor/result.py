@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from elbowroom.monitor.health import Health
 from elbowroom.motion import Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
 
@@ -19,6 +20,8 @@ class CycleResult:
         stage_ms: time that each stage took [ms], in the order of the stages.
         oldest_age_ms: age of the oldest frame that was used [ms]; None: no frame, or none with a stamp.
         fault: why verdicts are missing, one sentence; None: the pass is whole.
+        health: whether cameras and machine are where they are said to be; None: nobody watches, or the pass failed.
+            While it names a reason, every verdict is stop.
     """
 
     sequence: int
@@ -28,6 +31,12 @@ class CycleResult:
     stage_ms: Mapping[str, float]
     oldest_age_ms: float | None
     fault: str | None = None
+    health: Health | None = None
+
+    @property
+    def stopped_by(self) -> str | None:
+        """Why every verdict is stop, whatever the space is: the fault, else what the watch found; None: neither."""
+        return self.fault or (self.health.reason if self.health is not None else None)
 
     @property
     def cycle_ms(self) -> float:

@@ -39,7 +39,13 @@ class DepthFrame:
 
     @classmethod
     def from_raw(
-        cls, camera: str, stamp_ns: int | None, raw: NDArray[np.uint16], *, scale_m: float
+        cls,
+        camera: str,
+        stamp_ns: int | None,
+        raw: NDArray[np.uint16],
+        *,
+        scale_m: float,
+        bias_m: float = 0.0,
     ) -> "DepthFrame":
         """From a sensor's whole numbers; 0 and 65535 are no return.
 
@@ -48,6 +54,7 @@ class DepthFrame:
             stamp_ns: time of exposure [ns]; None: unknown.
             raw: shape (height, width), uint16.
             scale_m: metres per unit, 0.001 for millimetres.
+            bias_m: is added to each depth [m]; what falls to zero or below by it is no return.
 
         Raises:
             FrameError: another type, or a scale that is not above zero.
@@ -56,6 +63,10 @@ class DepthFrame:
             raise FrameError(f"frame of {camera}: expected uint16, got {raw.dtype}; 16-bit depth images only")
         if not (np.isfinite(scale_m) and scale_m > 0):
             raise FrameError(f"frame of {camera}: scale_m is {scale_m}, must be above 0 [m per unit]")
+        if not np.isfinite(bias_m):
+            raise FrameError(f"frame of {camera}: bias_m is {bias_m}, must be a finite number [m]")
         depth = raw.astype(np.float32) * np.float32(scale_m)
-        depth[raw == 65535] = 0
+        if bias_m:
+            depth = np.maximum(depth + np.float32(bias_m), 0)
+        depth[(raw == 0) | (raw == 65535)] = 0
         return cls(camera=camera, stamp_ns=stamp_ns, depth_m=depth)

@@ -11,7 +11,18 @@ from pydantic import BeforeValidator, Field, model_validator
 from elbowroom.errors import SiteError
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.sensing import NOISE_PRESETS, Margin, NoiseModel
-from elbowroom.site.entry import Count, Entry, Flag, Matrix, NotNegative, Number, Point, Positive, Text
+from elbowroom.site.entry import (
+    Count,
+    Covariance,
+    Entry,
+    Flag,
+    Matrix,
+    NotNegative,
+    Number,
+    Point,
+    Positive,
+    Text,
+)
 from elbowroom.site.matrix_file import read_matrix
 from elbowroom.site.paths import expand
 
@@ -72,8 +83,10 @@ class CameraSettings(Entry):
     distortion: tuple[Number, ...] = ()
     depth_kind: Literal["planar", "radial"] = "planar"
     depth_scale_m: Positive = 0.001
+    depth_bias_m: Number = 0.0
     noise: Annotated[NoiseEntry | None, BeforeValidator(_noise)] = None
     margin: MarginEntry | None = None
+    sensor_margin: MarginEntry | None = None
     min_depth_m: NotNegative = 0.0
     max_depth_m: Positive | None = None
     flying_pixels: Flag | None = None
@@ -99,7 +112,12 @@ class CameraSettings(Entry):
 
 
 class CameraEntry(CameraSettings):
-    """One camera: its name, its place, and whatever is not shared."""
+    """One camera: its name, its place, and whatever is not shared.
+
+    `pose_covariance` is what a calibration leaves open: of the rotation vector [rad], then the translation [m], in the
+    camera's frame, true world_from_camera = world_from_camera @ exp(error). `sensor_margin` is that part of `margin`
+    which is the sensor's own; a calibration adds its part to it, so that calibrating twice does not widen twice.
+    """
 
     name: Annotated[Text, Field(pattern=r"^[^/\\]+$", max_length=100)]
     world_from_camera: Matrix | None = None
@@ -107,6 +125,18 @@ class CameraEntry(CameraSettings):
     position_m: Point | None = None
     look_at_m: Point | None = None
     up: Point = (0.0, 0.0, 1.0)
+    pose_covariance: Covariance | None = None
+
+    @model_validator(mode="after")
+    def _is_a_covariance(self) -> "CameraEntry":
+        if self.pose_covariance is not None:
+            given = np.array(self.pose_covariance)
+            scale = np.sqrt(np.outer(np.abs(given.diagonal()), np.abs(given.diagonal()))) + 1e-30
+            if not np.allclose(given / scale, given.T / scale, atol=1e-6):
+                raise ValueError("pose_covariance that is symmetric")
+            if np.linalg.eigvalsh(given / scale).min() < -1e-6 or given.diagonal().min() < 0:
+                raise ValueError("pose_covariance without a negative variance")
+        return self
 
     @model_validator(mode="after")
     def _one_pose(self) -> "CameraEntry":

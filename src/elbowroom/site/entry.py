@@ -17,6 +17,10 @@ Row = tuple[Number, Number, Number, Number]
 Matrix = tuple[Row, Row, Row, Row]
 """A 4x4 transform, row by row."""
 
+Six = tuple[Number, Number, Number, Number, Number, Number]
+Covariance = tuple[Six, Six, Six, Six, Six, Six]
+"""Of a pose, row by row: rotation vector [rad], then translation [m]."""
+
 
 class Entry(BaseModel):
     """A mapping of a site file."""

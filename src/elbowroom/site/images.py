@@ -20,6 +20,7 @@ class Image(NamedTuple):
     stamp_ns: int | None
     path: Path
     scale_m: float
+    bias_m: float = 0.0
 
     def read(self) -> DepthFrame:
         """The frame.
@@ -28,7 +29,9 @@ class Image(NamedTuple):
             FrameError: the file is not what its camera delivers.
         """
         raw = read_depth_png(self.path, self.camera.width, self.camera.height)
-        return DepthFrame.from_raw(self.camera.name, self.stamp_ns, raw, scale_m=self.scale_m)
+        return DepthFrame.from_raw(
+            self.camera.name, self.stamp_ns, raw, scale_m=self.scale_m, bias_m=self.bias_m
+        )
 
     def check(self) -> None:
         """Looks at the file's header alone; raises FrameError as `read` would."""
@@ -50,8 +53,27 @@ def image_groups(site: Site) -> list[list[Image]]:
     return _by_time(site, recording, folder)
 
 
+def images_of_cameras(site: Site) -> dict[str, list[Image]]:
+    """Each camera's images, unread, by time or by order; a camera without a folder has none.
+
+    Raises:
+        SiteError: no recording, one of layout `seven_scenes`, or not laid out as the site says.
+        FrameError: two images of a camera at one time, or a name that is no time.
+    """
+    recording, folder = site.entry.recording, site.recording_folder()
+    if isinstance(recording, SevenScenes):
+        raise SiteError(f"{site.path}: recording: layout seven_scenes has no cameras that stand still")
+    if isinstance(recording, StamplessFolder):
+        groups = _by_order(site, recording, folder)
+        return {images[0].camera.name: list(images) for images in zip(*groups, strict=True)}
+    assert isinstance(recording, StampedFolder)
+    _refuse_unknown(site, recording, folder, {camera.name for camera in site.cameras()})
+    return {camera.name: _stamped(site, camera, folder / camera.name) for camera in site.cameras()}
+
+
 def _image(site: Site, camera: DepthCamera, stamp_ns: int | None, path: Path) -> Image:
-    return Image(camera, stamp_ns, path, site.depth_scale_m(camera.name))
+    name = camera.name
+    return Image(camera, stamp_ns, path, site.depth_scale_m(name), site.depth_bias_m(name))
 
 
 def views(site: Site, cameras: tuple[DepthCamera, ...]) -> list[Image]:

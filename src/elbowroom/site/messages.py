@@ -21,12 +21,16 @@ def one_line(path: Path, model: type[BaseModel], error: ValidationError) -> Site
     location = list(first["loc"])
     if location[0:1] == ["recording"] and location[1:2] and location[1] in LAYOUTS:
         del location[1]  # the tag that pydantic puts there is no key of the file
+    if location[0:2] == ["calibration", "world"] and location[2:3] and location[2] in WORLDS:
+        del location[2]
     where = key_path(location)
     return SiteError(f"{path}: {f'{where}: ' if where else ''}{_said(first, model, location)}{more}")
 
 
 LAYOUTS = ("folder", "stampless", "seven_scenes")
 """Kinds of recording."""
+WORLDS = ("board", "points", "machine", "camera")
+"""What may fix the world's frame."""
 
 
 def key_path(location: Sequence[Any]) -> str:
@@ -50,7 +54,8 @@ def _said(first: ErrorDetails, model: type[BaseModel], location: Sequence[Any]) 
     if first["type"] == "value_error":
         return f"found {found}, allowed: {context['error']}"
     if first["type"] in ("union_tag_invalid", "union_tag_not_found"):
-        return f"found {found}, allowed: a key layout with {', '.join(LAYOUTS)}"
+        key, words = ("by", WORLDS) if location[:1] == ["calibration"] else ("layout", LAYOUTS)
+        return f"found {found}, allowed: a key {key} with {', '.join(words)}"
     if "expected" in context:
         return f"found {found}, allowed: {context['expected']}"
     wanted = first["msg"].removeprefix("Input should be ")

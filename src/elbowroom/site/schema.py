@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from elbowroom.geometry import VoxelGrid
+from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Number, Point, Positive, Text, Whole
 from elbowroom.site.machine_entry import JointEntry, MachineEntry
@@ -13,6 +14,7 @@ from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.placement_entry import PlacementEntry
 from elbowroom.site.recording_entry import RecordingEntry, SevenScenes
 from elbowroom.site.room_entry import RoomEntry
+from elbowroom.site.watch_entry import WatchEntry
 
 Fov = Annotated[Number, Field(gt=10, lt=170)]
 
@@ -106,6 +108,8 @@ class SiteEntry(Entry):
     simulated: SimulatedEntry | None = None
     room: RoomEntry | None = None
     placement: PlacementEntry | None = None
+    watch: WatchEntry | None = None
+    calibration: CalibrationEntry | None = None
 
     @model_validator(mode="after")
     def _fits_together(self) -> "SiteEntry":
@@ -134,6 +138,8 @@ class SiteEntry(Entry):
                 raise ValueError(
                     f"camera_defaults of a simulated room: {', '.join(SIMULATED_SETTINGS)}; not {beyond[0]}"
                 )
+        if self.watch is not None and isinstance(self.recording, SevenScenes):
+            raise ValueError("no key watch where layout seven_scenes makes a camera of each frame")
         if self.joints and self.machine is None:
             raise ValueError("joints only with a machine")
         return self

@@ -7,6 +7,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from elbowroom.errors import CameraError, GridError, InputError, PoseWarning, SiteError
@@ -220,6 +222,31 @@ class Site:
     def depth_scale_m(self, camera: str) -> float:
         """Metres per unit of a camera's 16-bit images."""
         return float(self.settings_of(camera).get("depth_scale_m", CameraSettings().depth_scale_m))
+
+    def depth_bias_m(self, camera: str) -> float:
+        """What is added to a camera's depth after its scale [m]: the bias that calibration found, taken out."""
+        return float(self.settings_of(camera).get("depth_bias_m", CameraSettings().depth_bias_m))
+
+    def pose_covariance(self, camera: str) -> NDArray[np.float64] | None:
+        """What calibration left open of a camera's pose, shape (6, 6); None: the file does not say.
+
+        Rotation vector [rad], then translation [m], camera's frame; the true pose is world_from_camera @ exp(error).
+
+        Raises:
+            SiteError: there is no camera of this name.
+        """
+        given = self.settings_of(camera).get("pose_covariance")
+        return None if given is None else np.array(given)
+
+    def sensor_margin(self, camera: str) -> Margin:
+        """The part of a camera's margin that is its sensor's own: `sensor_margin`, or else all of its margin.
+
+        Raises:
+            SiteError: there is no camera of this name.
+        """
+        settings = self.settings_of(camera)
+        given = settings.get("sensor_margin") or settings.get("margin")
+        return self.margin() if given is None else given.build()
 
     def simulated_cameras(self) -> dict[str, Any]:
         """Arguments for the simulator's `wall_cameras` that make this room's cameras.

@@ -38,6 +38,8 @@ class RunLog:
     ends_s: deque[float] = field(default_factory=lambda: deque(maxlen=RECENT + 1), init=False)
     levels: dict[str, Counter[Level]] = field(default_factory=dict, init=False)
     faults: Counter[str] = field(default_factory=Counter, init=False)
+    stops: dict[str, str] = field(default_factory=dict, init=False)
+    is_watched: bool = field(default=False, init=False)
     cycles: int = field(default=0, init=False)
     start_s: float = field(default_factory=time.perf_counter, init=False)
 
@@ -59,6 +61,9 @@ class RunLog:
             self.levels.setdefault(verdict.motion.name, Counter())[verdict.level] += 1
         if result.fault is not None:
             self.faults[result.fault] += 1
+        if result.health is not None:
+            self.is_watched = True
+            self.stops = dict(result.health.stops)
 
     @property
     def rate_hz(self) -> float:
@@ -113,6 +118,17 @@ class RunLog:
             lines.append(
                 Text(f"{count} cycles failed and said stop; most often ({times_seen}): {fault}", "bold red")
             )
+        lines += [Text(f"Every motion was stopped: {reason}", "bold red") for reason in self.stops.values()]
+        if self.stops:
+            lines.append(
+                Text("Look at it; commission again if it stays where it is. Starting again clears the stop.")
+            )
+        if not self.is_watched:
+            lines.append(
+                Text("Cameras were not watched: one that is knocked would not have been noticed.", "dim")
+            )
+        elif not self.stops:
+            lines.append(Text("No camera moved, and the machine was where its joints said."))
         if self.unchecked_links:
             lines.append(Text(f"Not checked, by the site's word: {', '.join(self.unchecked_links)}"))
         lines.append(Text(NOT_CERTIFIED, "dim"))

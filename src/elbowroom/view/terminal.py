@@ -21,6 +21,7 @@ from elbowroom.view.words import (
     MARKS,
     NOT_CERTIFIED,
     counts_text,
+    health_text,
     place_text,
     plain_line,
     travel_bar,
@@ -121,7 +122,13 @@ class TerminalView:
             Text(),
             self._table(result.verdicts, wide),
             Text(),
+            Text(health_text(result.health), "dim"),
         ]
+        if result.health is not None:
+            lines += [
+                Text(f" Stop: {reason}. Stays until the monitor is started again. ", STYLES[Level.STOP])
+                for reason in result.health.stops.values()
+            ]
         if result.fault is not None:
             lines.append(Text(f" Stop, since the cycle failed: {result.fault} ", STYLES[Level.STOP]))
         if self.watched.unchecked_links:
@@ -139,6 +146,8 @@ class TerminalView:
         )
         if result.fault is not None:
             return f"{head} | STOP, the cycle failed: {result.fault}"
+        if result.stopped_by is not None:
+            return f"{head} | STOP: {result.stopped_by}"
         return " | ".join([head, *map(plain_line, result.verdicts)])
 
     def _speed(self, result: CycleResult) -> Text:

@@ -2,6 +2,7 @@
 
 import math
 
+from elbowroom.monitor import Condition, Health
 from elbowroom.motion import Cause, Level, Verdict
 from elbowroom.motion.motion import REACH_IN_BRAKING_DISTANCES
 
@@ -78,3 +79,24 @@ def plain_line(verdict: Verdict) -> str:
 def counts_text(levels: list[Level]) -> str:
     """How many motions are at which level: "1 STOP, 7 CLEAR"."""
     return ", ".join(f"{levels.count(level)} {LEVEL_WORDS[level]}" for level in Level if level in levels)
+
+
+def health_text(health: Health | None) -> str:
+    """How cameras and machine are, in one line.
+
+    "watch: 20 of 21 cameras stand still, 1 unsure; most off: cam07 by 0.02°, 1 mm; machine off by 2 mm (c_arc)"
+    """
+    if health is None:
+        return "watch: none, a camera that is knocked goes unnoticed"
+    others = [(c, health.count(c)) for c in Condition if c is not Condition.STILL and health.count(c)]
+    parts = [f"{health.count(Condition.STILL)} of {len(health.cameras)} cameras stand still"]
+    parts += [f"{count} {condition.name.lower()}" for condition, count in others]
+    text = "watch: " + ", ".join(parts)
+    worst = health.worst
+    if worst is not None and worst.shift is not None:
+        text += f"; most off: {worst.camera} by {worst.shift.turn_deg:.2f}°, {worst.shift.move_mm:.0f} mm"
+    told = [link for link in health.links if link.is_off is not None and len(link.cameras) > 2]
+    if told:
+        link = max(told, key=lambda link: link.off_m)
+        text += f"; machine off by {link.off_m * 1e3:.0f} mm ({link.link})"
+    return text

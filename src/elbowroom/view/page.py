@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
-from elbowroom.evaluate.blocks import Block, Picture, Table, Words
+from elbowroom.view.blocks import Block, Picture, Table, Words
 
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #18202c; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; }
@@ -21,30 +21,33 @@ code { background: #eef1f4; padding: .1rem .3rem; } .note { color: #5a6470; }
 """
 
 
-def page(sections: Sequence[tuple[str, Sequence[Block]]], meta: Mapping[str, Any]) -> str:
+def page(
+    title: str, about: str, sections: Sequence[tuple[str, Sequence[Block]]], meta: Mapping[str, Any]
+) -> str:
     """The whole page.
 
     Args:
+        title: of the page.
+        about: a paragraph below it.
         sections: title and blocks of each.
         meta: as `--json` writes it: command, commit, processor, versions.
     """
     versions = ", ".join(f"{name} {version}" for name, version in meta["versions"].items())
     body = [
-        "<h1>The thesis' experiments</h1>",
-        "<p>I. Hamersma, <i>Collision avoidance using multiple correlated 3D depth measurements</i>, Eindhoven 2011, "
-        "run again with elbowroom: its figures stand beside ours.</p>",
+        f"<h1>{escape(title)}</h1>",
+        _block(Words(about)),
         f'<p class="note">Made by <code>{escape(str(meta["command"]))}</code>; commit '
         f"<code>{escape(str(meta['commit']))}</code>; {escape(str(meta['processor']))}; {escape(versions)}. "
         "Not a certified safety function.</p>",
         "<p>"
-        + " · ".join(f'<a href="#s{n}">{escape(title)}</a>' for n, (title, _) in enumerate(sections))
+        + " · ".join(f'<a href="#s{n}">{escape(name)}</a>' for n, (name, _) in enumerate(sections))
         + "</p>",
     ]
-    for number, (title, blocks) in enumerate(sections):
-        body.append(f'<h2 id="s{number}">{escape(title)}</h2>')
+    for number, (name, blocks) in enumerate(sections):
+        body.append(f'<h2 id="s{number}">{escape(name)}</h2>')
         body += [_block(block) for block in blocks]
     return (
-        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>elbowroom: the thesis\' experiments'
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>elbowroom: {escape(title)}'
         f"</title><style>{STYLE}</style></head>\n<body>\n" + "\n".join(body) + "\n</body></html>\n"
     )
 

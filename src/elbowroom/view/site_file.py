@@ -1,5 +1,6 @@
 """A site file with the cameras of a layout, which `elbowroom monitor` runs."""
 
+import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,9 +8,11 @@ from typing import Any
 
 import numpy as np
 import yaml
+from numpy.typing import NDArray
 
 from elbowroom.errors import SiteError
 from elbowroom.geometry import DepthCamera
+from elbowroom.sensing import Margin
 from elbowroom.site import Site
 from elbowroom.site.paths import expand
 from elbowroom.site.schema import EVEN_SETTINGS
@@ -43,7 +46,7 @@ def write_site(site: Site, cameras: Sequence[DepthCamera], path: Path) -> Path:
     content = site.entry.model_dump(mode="json", exclude_unset=True, exclude={"cameras"})
     if site.simulated is not None:
         content["simulated"] = {k: v for k, v in content["simulated"].items() if k not in EVEN_SETTINGS}
-    content = _moved(content, site.path.parent, path.absolute().parent)
+    content = moved(content, site.path.parent, path.absolute().parent)
     content["cameras"] = [camera_entry(camera) for camera in cameras]
     if site.simulated is not None:
         content.pop("camera_defaults", None)
@@ -66,9 +69,7 @@ def camera_entry(camera: DepthCamera) -> dict[str, Any]:
         "fy": k.fy,
         "cx": k.cx,
         "cy": k.cy,
-        "world_from_camera": [
-            [round(float(v), DIGITS) + 0.0 for v in row] for row in camera.world_from_camera
-        ],
+        "world_from_camera": matrix_entry(camera.world_from_camera),
         "depth_kind": camera.depth_kind,
         "min_depth_m": camera.min_depth_m,
     }
@@ -83,32 +84,39 @@ def camera_entry(camera: DepthCamera) -> dict[str, Any]:
             name: getattr(camera.noise, name) for name in ("constant_m", "linear", "quadratic", "offset_m")
         }
     if camera.margin is not None:
-        entry["margin"] = {
-            name: getattr(camera.margin, name)
-            for name in ("sigmas", "bias_m", "lateral_px", "range_linear", "range_quadratic")
-        }
+        entry["margin"] = margin_entry(camera.margin)
     if camera.flying_pixels != (camera.noise is not None):
         entry["flying_pixels"] = camera.flying_pixels
-    plain: dict[str, Any] = _plain(entry)
-    return plain
+    return dict(plain(entry))
 
 
-def _plain(value: Any) -> Any:
-    """The same value in what YAML knows."""
+def matrix_entry(matrix: NDArray[np.float64]) -> list[list[float]]:
+    """A transform as a site file says it, row by row."""
+    return [[round(float(v), DIGITS) + 0.0 for v in row] for row in matrix]
+
+
+def margin_entry(margin: Margin) -> dict[str, float]:
+    """A margin as a site file says it; to 7 digits after the point, rounded up."""
+    names = ("sigmas", "bias_m", "lateral_px", "range_linear", "range_quadratic")
+    return {name: math.ceil(getattr(margin, name) * 1e7 - 1e-6) / 1e7 for name in names}
+
+
+def plain(value: Any) -> Any:
+    """The same value in what YAML knows: NumPy's numbers as Python's."""
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
+        return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _moved(value: Any, old: Path, new: Path) -> Any:
+def moved(value: Any, old: Path, new: Path) -> Any:
     """The same content with paths that lead from another folder to the same files."""
     if isinstance(value, dict):
         return {
             key: os.path.relpath(expand(item, old.absolute()), new)
             if key in PATH_KEYS and isinstance(item, str)
-            else _moved(item, old, new)
+            else moved(item, old, new)
             for key, item in value.items()
         }
-    return [_moved(item, old, new) for item in value] if isinstance(value, list) else value
+    return [moved(item, old, new) for item in value] if isinstance(value, list) else value

@@ -1,9 +1,7 @@
-"""What a part of the evaluation shows: words, tables and pictures, for the terminal and for the page alike."""
+"""What a report shows: words, tables and pictures, for the terminal and for the page alike."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-
-from elbowroom.evaluate.task import Row, Settings, Task
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,25 +44,6 @@ class Picture:
 
 
 Block = Words | Table | Picture
-
-
-@dataclass(frozen=True, slots=True)
-class Part:
-    """One of the thesis' experiments.
-
-    Args:
-        name: as the command is called.
-        title: of its section.
-        tasks: what to do.
-        summary: rows of kind "summary" from the tasks' rows.
-        show: the section, from all rows of the part, summaries included, and the tasks' pictures by name.
-    """
-
-    name: str
-    title: str
-    tasks: Callable[[Settings], list[Task]]
-    summary: Callable[[Sequence[Row]], list[dict[str, object]]]
-    show: Callable[[Sequence[Row], Mapping[str, bytes]], list[Block]] = field(repr=False)
 
 
 def pct(value: float | None, digits: int = 2) -> str:

@@ -1,0 +1,23 @@
+"""Where cameras stand, from a board that two or more of them see at a time.
+
+views -> each by itself -> graph of cameras and poses -> joint least squares -> poses, covariances
+"""
+
+from elbowroom.calibrate.extrinsics.anchor import (
+    Anchor,
+    BoardAnchor,
+    CameraAnchor,
+    PointsAnchor,
+    Sighting,
+)
+from elbowroom.calibrate.extrinsics.solve import Extrinsics, solve_extrinsics
+
+__all__ = [
+    "Anchor",
+    "BoardAnchor",
+    "CameraAnchor",
+    "Extrinsics",
+    "PointsAnchor",
+    "Sighting",
+    "solve_extrinsics",
+]

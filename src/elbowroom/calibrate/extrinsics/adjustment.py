@@ -1,0 +1,285 @@
+"""The joint least squares over all poses of cameras and board.
+
+Unknown are a motion of each camera and of each pose of the board on the right of its pose, and of each camera with
+depth a bias and a scale error of its depth, which a prior keeps small. What the anchor fixes does not move.
+
+Each view comes down to nine numbers: of its corners the six that depend on poses (by a QR decomposition), and the
+three of its plane. What they scatter by is estimated with the poses (`variances.py`), and views that fit badly all the
+same are weighted down: so the covariance says what is true, not what the sigmas of corners promise.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.calibrate.extrinsics.anchor import Anchor, BoardAnchor, CameraAnchor, PointsAnchor
+from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, corner_rows, plane_rows
+from elbowroom.calibrate.extrinsics.variances import Variances, ViewRows
+from elbowroom.calibrate.lens import project
+from elbowroom.calibrate.rigid import cross_matrix, exp
+from elbowroom.geometry import DepthCamera, invert_rigid
+
+Array = NDArray[np.float64]
+BIAS_SIGMA_M = 0.005
+SCALE_SIGMA = 0.005
+"""Prior of a camera's depth: constant error [m] and error per metre; what makers promise is of this size."""
+ROUNDS, STEPS = 4, 15
+"""Of linearisations with variances estimated anew; of Levenberg-Marquardt before."""
+RENEWALS = 12
+"""Of variances at one linearisation, at most."""
+
+
+@dataclass(eq=False)
+class State:
+    """Where everything is thought to be.
+
+    Args:
+        cameras: world_from_camera by name.
+        boards: world_from_board by pose.
+        depth_errors: bias [m] and scale by name of the camera, shape (2,); only of those with depth.
+    """
+
+    cameras: dict[str, Array]
+    boards: dict[int, Array]
+    depth_errors: dict[str, Array]
+
+    def moved(self, step: Array, index: "Index") -> "State":
+        """The state after a step, shape (n,)."""
+        return State(
+            {
+                name: pose @ exp(step[index.cameras[name]]) if name in index.cameras else pose
+                for name, pose in self.cameras.items()
+            },
+            {
+                pose: at @ exp(step[index.boards[pose]]) if pose in index.boards else at
+                for pose, at in self.boards.items()
+            },
+            {name: error + step[index.depths[name]] for name, error in self.depth_errors.items()},
+        )
+
+
+class Index:
+    """Where in a step each unknown stands; what the anchor holds has no place.
+
+    Args:
+        state: all of them.
+        anchor: what is held.
+    """
+
+    def __init__(self, state: State, anchor: Anchor) -> None:
+        at = 0
+        self.cameras: dict[str, slice] = {}
+        self.boards: dict[int, slice] = {}
+        self.depths: dict[str, slice] = {}
+        for name in state.cameras:
+            if not (isinstance(anchor, CameraAnchor) and anchor.camera == name):
+                self.cameras[name], at = slice(at, at + 6), at + 6
+        for pose in state.boards:
+            if not (isinstance(anchor, BoardAnchor) and anchor.pose == pose):
+                self.boards[pose], at = slice(at, at + 6), at + 6
+        for name in state.depth_errors:
+            self.depths[name], at = slice(at, at + 2), at + 2
+        self.size = at
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solution:
+    """What the least squares found.
+
+    Args:
+        state: poses and depth errors.
+        covariance: of all unknowns, shape (n, n).
+        index: where they stand in it.
+        variances: what views scatter by.
+    """
+
+    state: State
+    covariance: Array
+    index: Index
+    variances: Variances
+
+    def of_camera(self, name: str) -> Array:
+        """Covariance of a camera's pose in its own frame, shape (6, 6); zero for the one that is held."""
+        if name not in self.index.cameras:
+            return np.zeros((6, 6))
+        at = self.index.cameras[name]
+        return self.covariance[at, at]
+
+
+def adjust(
+    cameras: Mapping[str, DepthCamera], seen: Sequence[SeenBoard], state: State, anchor: Anchor
+) -> Solution:
+    """Solves for all poses at once.
+
+    Args:
+        cameras: by name.
+        seen: all views.
+        state: where to begin, in the world's frame.
+        anchor: what fixes the world.
+    """
+    index = Index(state, anchor)
+    variances = Variances.before(list(state.cameras), len(seen), _within(seen))
+    state = _solved(cameras, seen, state, anchor, index, variances)
+    for number in range(ROUNDS):
+        views = [_rows(one, state, index) for one in seen]
+        prior, pull, _ = _prior(cameras, state, anchor, index)
+        for renewal in range(RENEWALS):
+            normal, slope, _ = _summed(views, variances, prior, pull)
+            covariance = _inverse(normal)
+            step = -covariance @ slope
+            off = [view.y + view.rows @ step[view.among] for view in views]
+            # only when variances are near their values is it known which views fit badly
+            renewed = variances.renewed(views, off, covariance, robust=number > 0 or renewal > 3)
+            change, variances = renewed.change(variances), renewed
+            if change < 0.02 and renewal > 4:
+                break
+        state = _solved(cameras, seen, state, anchor, index, variances)
+        if number and float(np.abs(step).max()) < 1e-6:
+            break
+    views = [_rows(one, state, index) for one in seen]
+    prior, pull, _ = _prior(cameras, state, anchor, index)
+    normal, _, _ = _summed(views, variances, prior, pull)
+    return Solution(state, _inverse(normal), index, variances)
+
+
+def _within(seen: Sequence[SeenBoard]) -> float:
+    """Variance of corners about the best pose of each view alone, over what their sigmas promise; the median view's."""
+    ratios = []
+    for one in seen:
+        residual = corner_rows(one.camera, one.lone[0].camera_from_board, one.corners, one.view)[0]
+        ratios.append(float(np.repeat(one.weight, 2) @ residual**2) / max(len(residual) - 6, 1))
+    return float(np.median(ratios))
+
+
+def _solved(
+    cameras: Mapping[str, DepthCamera],
+    seen: Sequence[SeenBoard],
+    state: State,
+    anchor: Anchor,
+    index: Index,
+    variances: Variances,
+) -> State:
+    """Levenberg-Marquardt with the variances as they are."""
+
+    def equations(state: State) -> tuple[Array, Array, float]:
+        prior, pull, cost = _prior(cameras, state, anchor, index)
+        normal, slope, more = _summed([_rows(one, state, index) for one in seen], variances, prior, pull)
+        return normal, slope, cost + more
+
+    damping = 1e-6
+    normal, slope, cost = equations(state)
+    for _ in range(STEPS):
+        damped = normal + damping * np.diag(np.diag(normal))
+        step = np.asarray(-np.linalg.solve(damped, slope), dtype=np.float64)
+        tried = state.moved(step, index)
+        new = equations(tried) if _all_in_front(seen, tried) else None
+        if new is None or not new[2] <= cost * (1 + 1e-9) + 1e-18:
+            damping = max(damping * 100, 1e-3)
+            if damping > 1e6:
+                break
+            continue
+        done = abs(cost - new[2]) < 1e-7 * cost + 1e-15
+        state, (normal, slope, cost) = tried, new
+        damping = max(damping / 100, 1e-9)
+        if done:
+            break
+    return state
+
+
+def _all_in_front(seen: Sequence[SeenBoard], state: State) -> bool:
+    return all(
+        (one.corners @ pose[2, :3] + pose[2, 3]).min() > 0.01
+        for one in seen
+        for pose in [camera_from_board(one, state)]
+    )
+
+
+def camera_from_board(one: SeenBoard, state: State) -> Array:
+    """Where the board stands before the camera of a view, shape (4, 4)."""
+    return np.asarray(invert_rigid(state.cameras[one.view.camera]) @ state.boards[one.view.pose])
+
+
+def _rows(one: SeenBoard, state: State, index: Index) -> ViewRows:
+    """A view's nine numbers, or six without depth, and their derivatives."""
+    pose = camera_from_board(one, state)
+    residual, by_camera, by_board = corner_rows(one.camera, pose, one.corners, one.view)
+    root = np.repeat(np.sqrt(one.weight), 2)
+    across, of_board = np.linalg.qr(by_board * root[:, None])
+    size = 6 if one.plane is None else 9
+    rows, y, by_depth = np.zeros((size, 14)), np.zeros(size), np.zeros(size)
+    y[:6] = across.T @ (residual * root)
+    rows[:6, :6], rows[:6, 6:12] = across.T @ (by_camera * root[:, None]), of_board
+    if one.plane is not None:
+        of_plane, by_camera, by_board, by_errors = plane_rows(one.plane, pose)
+        # predicted less measured, of which the depth's errors are taken out
+        y[6:] = of_plane + by_errors @ state.depth_errors[one.view.camera]
+        rows[6:, :6], rows[6:, 6:12], rows[6:, 12:] = by_camera, by_board, by_errors
+        by_depth[6:] = by_errors[:, 0]
+    own, among = _places(one, index)
+    return ViewRows(one.view.camera, among, rows[:, own], y, rows[:, 6:12], by_depth)
+
+
+def _places(one: SeenBoard, index: Index) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Columns of a view's 14 that move, and where they stand among the unknowns."""
+    own: list[int] = []
+    among: list[int] = []
+    for first, place in (
+        (0, index.cameras.get(one.view.camera)),
+        (6, index.boards.get(one.view.pose)),
+        (12, index.depths.get(one.view.camera)),
+    ):
+        if place is not None:
+            own += range(first, first + place.stop - place.start)
+            among += range(place.start, place.stop)
+    return np.array(own, dtype=np.int64), np.array(among, dtype=np.int64)
+
+
+def _summed(
+    views: Sequence[ViewRows], variances: Variances, prior: Array, pull: Array
+) -> tuple[Array, Array, float]:
+    """Normal matrix and gradient of views and prior, and the views' sum of squares."""
+    normal, slope, cost = prior.copy(), pull.copy(), 0.0
+    for view, weight in zip(views, variances.view, strict=True):
+        inverse = variances.inverse(view, float(weight))
+        weighted = inverse @ view.rows
+        normal[np.ix_(view.among, view.among)] += view.rows.T @ weighted
+        slope[view.among] += weighted.T @ view.y
+        cost += float(view.y @ inverse @ view.y)
+    return normal, slope, cost
+
+
+def _prior(
+    cameras: Mapping[str, DepthCamera], state: State, anchor: Anchor, index: Index
+) -> tuple[Array, Array, float]:
+    """Normal matrix, gradient and sum of squares of depth errors and of named points."""
+    normal, slope, cost = np.zeros((index.size, index.size)), np.zeros(index.size), 0.0
+    for name, error in state.depth_errors.items():
+        at, inverse = index.depths[name], np.array([BIAS_SIGMA_M, SCALE_SIGMA]) ** -2.0
+        normal[at, at] += np.diag(inverse)
+        slope[at] += inverse * error
+        cost += float(inverse @ error**2)
+    if isinstance(anchor, PointsAnchor):
+        for sighting in anchor.sightings:
+            pose = invert_rigid(state.cameras[sighting.camera])
+            in_camera = pose[:3, :3] @ sighting.world_m + pose[:3, 3]
+            if in_camera[2] <= 0:
+                return normal, slope, float("inf")
+            at_px, by_point = project(cameras[sighting.camera].intrinsics, in_camera[None])
+            residual = (at_px[0] - sighting.pixel) / anchor.sigma_px
+            rows = (
+                by_point[0] @ np.concatenate([cross_matrix(in_camera), -np.eye(3)], axis=1) / anchor.sigma_px
+            )
+            place = index.cameras[sighting.camera]
+            normal[place, place] += rows.T @ rows
+            slope[place] += rows.T @ residual
+            cost += float(residual @ residual)
+    return normal, slope, cost
+
+
+def _inverse(normal: Array) -> Array:
+    """The inverse of a normal matrix, scaled before, so that metres and radians go together."""
+    scale = 1 / np.sqrt(np.diag(normal))
+    inverse = np.linalg.inv(normal * np.outer(scale, scale))
+    return np.asarray((inverse + inverse.T) / 2 * np.outer(scale, scale))

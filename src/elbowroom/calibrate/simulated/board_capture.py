@@ -1,0 +1,165 @@
+"""A capture of a board that is held up all over the room, and laid on the floor once."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.calibrate.board import Board
+from elbowroom.calibrate.simulated.hand_poses import Shown, floor_pose, hand_poses, shown
+from elbowroom.calibrate.simulated.start import TrueCamera, moved
+from elbowroom.calibrate.simulated.writer import INFRARED_FOLDER, CaptureWriter
+from elbowroom.errors import CalibrationError
+from elbowroom.geometry import VoxelGrid
+from elbowroom.geometry.parallel import spread
+from elbowroom.simulate import Moment, Solid, render
+from elbowroom.simulate.board_plate import plate_mesh
+from elbowroom.simulate.furniture import shell
+from elbowroom.simulate.infrared import infrared_image
+from elbowroom.site.calibration_entry import WorldFromBoard
+
+PERIOD_NS = 2_000_000_000
+"""From one pose to the next [ns]."""
+GRID = VoxelGrid((-2.0, -2.0, 0.0), (80, 80, 50), 0.05)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BoardCapture:
+    """What is to be captured.
+
+    Args:
+        cameras: true and said.
+        board: the board.
+        poses: how often it is shown, the pose on the floor among them.
+        noise: name of the sensors' noise, for the site file; the cameras themselves have the model.
+        seed: of all random numbers.
+        hand_moved_m, hand_turned_deg: how far a hand moves the board between the exposures of different cameras.
+        moved_pose: in this pose the board is moved on by `MOVED_M` while half of the cameras have yet to see it; None:
+            in none.
+        all_views: also images that show a part of the board or its back, as a real capture has.
+
+    Raises:
+        CalibrationError: fewer than two poses.
+    """
+
+    cameras: tuple[TrueCamera, ...]
+    board: Board
+    poses: int = 40
+    noise: str = "kinect_v1"
+    seed: int = 1
+    hand_moved_m: float = 0.0002
+    hand_turned_deg: float = 0.01
+    moved_pose: int | None = None
+    all_views: bool = True
+
+    def __post_init__(self) -> None:
+        if self.poses < 2:
+            raise CalibrationError(f"capture: {self.poses} poses, must be at least 2")
+
+
+MOVED_M = 0.03
+
+
+def record_board(
+    capture: BoardCapture, out: Path, on_pose: Callable[[int, int], None] = lambda done, views: None
+) -> Path:
+    """Renders and writes a capture.
+
+    Args:
+        capture: what is to be captured.
+        out: folder.
+        on_pose: is told how many poses are done, and how many images the last one gave.
+
+    Returns:
+        The site file.
+
+    Raises:
+        CalibrationError: no place for the board, or a folder that holds images.
+        InputError: a folder that cannot be written to.
+    """
+    writer = CaptureWriter(out, capture.cameras)
+    random = np.random.default_rng([capture.seed, 17])
+    first_corner_m, x_axis_deg = floor_pose(capture.board)
+    lying = WorldFromBoard(by="board", pose=0, first_corner_m=first_corner_m, x_axis_deg=x_axis_deg)
+    true_cameras = [camera.true for camera in capture.cameras]
+    poses = [lying.world_from_board]
+    poses += hand_poses(true_cameras, capture.board, capture.poses - 1, random, taken=poses)
+    rows = []
+    for number, pose in enumerate(poses):
+        seen = _show(capture, writer, number, pose, random)
+        rows.append(
+            {
+                "stamp_ns": _stamp(number),
+                "world_from_board": pose.tolist(),
+                "whole": [name for name, view in seen.items() if view.whole and view.front],
+                "part": [name for name, view in seen.items() if view.front and not view.whole],
+                "back": [name for name, view in seen.items() if not view.front],
+            }
+        )
+        on_pose(number + 1, len(seen))
+    writer.truth({"poses": rows})
+    return writer.site(capture.noise, {"calibration": _said(capture.board, lying)}, GRID)
+
+
+def _stamp(number: int) -> int:
+    return (number + 1) * PERIOD_NS
+
+
+def _show(
+    capture: BoardCapture,
+    writer: CaptureWriter,
+    number: int,
+    pose: NDArray[np.float64],
+    random: np.random.Generator,
+) -> dict[str, Shown]:
+    """Renders the board at one pose for each camera that has it in view."""
+    seen: dict[str, Shown] = {}
+    work: list[tuple[TrueCamera, NDArray[np.float64]]] = []
+    for index, camera in enumerate(capture.cameras):
+        by_hand = pose @ moved(capture.hand_turned_deg, capture.hand_moved_m, random) if number else pose
+        if number == capture.moved_pose and index % 2:
+            by_hand = by_hand @ moved(0.0, MOVED_M, random)
+        view = shown(camera.true, capture.board, by_hand)
+        if (view.whole and view.front) or (capture.all_views and view.any_part):
+            seen[camera.true.name] = view
+            work.append((camera, by_hand))
+
+    def one(item: tuple[TrueCamera, NDArray[np.float64]]) -> None:
+        camera, held = item
+        plate = Solid("board", plate_mesh(capture.board), held)
+        moment = Moment(_stamp(number) / 1e9, (*shell(), plate), {})
+        frame = render([camera.true], moment, seed=capture.seed, threads=1)[0]
+        writer.depth(camera, _stamp(number), frame.depth_m)
+        if capture.board.kind == "printed":
+            grey = infrared_image(camera.true, moment, capture.board, plate, seed=capture.seed)
+            writer.infrared(camera, _stamp(number), grey)
+
+    spread(one, work)
+    return seen
+
+
+def _said(board: Board, lying: WorldFromBoard) -> dict[str, object]:
+    """The key `calibration` of the site file."""
+    images: dict[str, object] = {"kind": "depth"}
+    if board.kind == "printed":
+        images = {"kind": "infrared", "folder": INFRARED_FOLDER}
+    return {
+        "board": {
+            "columns": board.columns,
+            "rows": board.rows,
+            "square_m": board.square_m,
+            "kind": board.kind,
+            "border_m": board.border_m,
+            "marked": board.marked,
+            "thickness_m": board.thickness_m,
+        },
+        "images": images,
+        "world": {
+            "by": "board",
+            "pose": lying.pose,
+            "first_corner_m": list(lying.first_corner_m),
+            "x_axis_deg": lying.x_axis_deg,
+        },
+    }

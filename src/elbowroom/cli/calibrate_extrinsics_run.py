@@ -1,0 +1,140 @@
+"""The run of `elbowroom calibrate extrinsics`."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+
+from elbowroom.calibrate.capture import Sightings, images_by_pose, sightings
+from elbowroom.calibrate.extrinsics.report import report_sections
+from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
+from elbowroom.calibrate.extrinsics.solve import Extrinsics, solve_extrinsics
+from elbowroom.calibrate.pictures import grey_depth
+from elbowroom.cli.calibrate_options import site_path
+from elbowroom.cli.calibrate_result import with_margins, write_page, write_result
+from elbowroom.cli.json_output import json_rows
+from elbowroom.cli.progress import Steps
+from elbowroom.errors import CalibrationError
+from elbowroom.site import Site
+from elbowroom.view.site_update import refuse_other_files
+
+SHOWN_TROUBLES = 5
+
+
+def run_extrinsics(
+    given: Path,
+    out: Path,
+    report: Path | None,
+    without_poses: tuple[int, ...],
+    confidence: float,
+    near_m: float | None,
+    json_file: Path | None,
+) -> None:
+    """Detects, solves, writes the new site file and the page, prints what changed."""
+    site = Site.load(site_path(given))
+    refuse_other_files(site, out)
+    anchor = anchor_of(site)
+    with json_rows(json_file) as add:
+        console = Console(stderr=True)
+        with Steps(console, 4) as steps:
+            steps.begin("looking for the board in all images")
+            seen = sightings(site)
+            found = solve(site, seen, anchor, without_poses, steps)
+        cameras = with_margins(
+            site,
+            found.cameras,
+            confidence,
+            found.depth_errors(),
+            near_m=near_m,
+        )
+        rows = write_result(site, found.cameras, cameras, out, "extrinsics", add)
+        add(summary_row(site, found, seen, steps.seconds))
+    troubles = [str(trouble) for trouble in seen.troubles]
+    print(
+        f"views     {len(found.seen)} of {len(found.seen) + len(troubles)} images, "
+        f"{len(found.world_from_board)} poses of the board"
+    )
+    if report is not None:
+        images = _Images(site)
+        sections = report_sections(found, rows, troubles, images.grey)
+        write_page(
+            report,
+            f"Extrinsics of {site.name}",
+            "Where the cameras are, from a board that they saw.",
+            sections,
+        )
+
+
+def solve(
+    site: Site, seen: Sightings, anchor: Any, without_poses: tuple[int, ...], steps: Steps | None = None
+) -> Extrinsics:
+    """Extrinsics from what the capture shows.
+
+    Raises:
+        CalibrationError: a pose to be left out that is not there, or as `solve_extrinsics`.
+    """
+    unknown = [pose for pose in without_poses if not 0 <= pose < seen.poses]
+    if unknown:
+        raise CalibrationError(f"--without-pose {unknown[0]}: poses are 0 to {seen.poses - 1}")
+    entry = site.entry.calibration
+    try:
+        return solve_extrinsics(
+            site.cameras(),
+            seen.board,
+            [view for view in seen.views if view.pose not in without_poses],
+            anchor,
+            least_views=1 if entry is None else entry.least_views,
+            progress=steps.begin if steps else lambda text: None,
+        )
+    except CalibrationError as error:
+        why = [
+            str(t)
+            for t in seen.troubles
+            if any(name in str(error) for name in (f" {t.camera} ", f" {t.camera};"))
+        ]
+        if not why:
+            raise
+        raise CalibrationError(f"{error} (its images: {why[0]}, and {len(why) - 1} more)") from None
+
+
+def summary_row(site: Site, found: Extrinsics, seen: Sightings, seconds: dict[str, float]) -> dict[str, Any]:
+    """The row of kind "capture"."""
+    return {
+        "kind": "capture",
+        "site": str(site.path),
+        "cameras": len(found.cameras),
+        "poses": len(found.world_from_board),
+        "views": len(found.seen),
+        "images_without_view": len(seen.troubles),
+        "troubles": [str(trouble) for trouble in seen.troubles],
+        "seconds": seconds,
+    }
+
+
+class _Images:
+    """Pictures to draw on: depth as grey.
+
+    Args:
+        site: whose recording they are.
+    """
+
+    def __init__(self, site: Site) -> None:
+        self.by_view = {
+            (image.camera.name, pose): image
+            for pose, images in enumerate(images_by_pose(site))
+            for image in images
+        }
+
+    def grey(self, camera: str, pose: int) -> NDArray[np.uint8] | None:
+        """The depth image of a camera at a pose as grey."""
+        image = self.by_view.get((camera, pose))
+        if image is None:
+            return None
+        depth = image.read().depth_m
+        known = depth[depth > 0]
+        if not len(known):
+            return None
+        near, far = (float(v) for v in np.percentile(known, (2, 98)))
+        return grey_depth(depth, near, far)

@@ -1,0 +1,31 @@
+"""`elbowroom calibrate intrinsics`: how each camera sees, from a board."""
+
+from typing import Annotated, Literal
+
+import typer
+
+from elbowroom.cli.calibrate_options import OutSite, SiteOrFolder
+from elbowroom.cli.options import JsonFile
+
+
+def intrinsics(
+    site: SiteOrFolder,
+    out: OutSite,
+    camera: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Only this camera; may be given more than once. Default: all."),
+    ] = None,
+    distortion: Annotated[
+        Literal["auto", "0", "5", "8"],
+        typer.Option(help="Coefficients; auto: 5 where corners ask for them, else none."),
+    ] = "auto",
+    json: JsonFile = None,
+) -> None:
+    """Find focal length, principal point, distortion, depth scale and bias of each camera, and how sure they are.
+
+    The site's key calibration names the board and its images. Poses stay as they are: go on with extrinsics.
+    """
+    from elbowroom.cli.calibrate_intrinsics_run import run_intrinsics
+
+    count = None if distortion == "auto" else int(distortion)
+    run_intrinsics(site, out, tuple(camera or ()), count, json)
