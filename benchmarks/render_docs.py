@@ -148,7 +148,8 @@ are declared free.
         "calibration.json",
         "Calibration",
         """
-Simulated captures beside their truth ([calibration](calibration.md)): *inside*: share of cameras whose true pose lies in the stated 95 % region.
+Simulated captures beside their truth ([calibration](calibration.md)). *inside*: share of cameras whose true pose lies
+in the stated 95 % region.
 *room*: the simulated room at 5 cm, carved with the poses that were found and their margins, from images of the true
 cameras. *coverage*: the same share over many draws. *real*: share of co-visible depth pixels of a recording that agree
 within 5 cm, its two cameras' poses found from its board.

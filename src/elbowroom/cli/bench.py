@@ -24,13 +24,19 @@ def bench(
             metavar="DIR", help="calibration: keep simulated captures here, and take those that are there."
         ),
     ] = None,
+    part: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="calibration: only real, coverage, captures, intrinsics, machine or refine; may be repeated."
+        ),
+    ] = None,
     json: JsonFile = None,
 ) -> None:
     """Measure carve and whole cycles in the simulated room, each case in a process of its own; or calibration."""
     if what == "calibration":
         from elbowroom.cli.bench_calibration_run import run_bench_calibration
 
-        run_bench_calibration(quick, captures, json)
+        run_bench_calibration(quick, captures, tuple(part or ()), json)
         return
     from dataclasses import replace
 

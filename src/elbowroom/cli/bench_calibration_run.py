@@ -1,18 +1,20 @@
 """The run of `elbowroom bench calibration`."""
 
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
 from elbowroom.cli.json_output import json_rows
-from elbowroom.evaluate.bench_calibration import extrinsics_rows
+from elbowroom.errors import InputError
+from elbowroom.evaluate.bench_calibration import PARTS, extrinsics_rows
 from elbowroom.evaluate.bench_calibration_boards import intrinsics_row
 from elbowroom.evaluate.bench_calibration_machine import machine_row, refine_rows
 from elbowroom.view.atomic import folder
 
+MORE = ("intrinsics", "machine", "refine")
 SHOWN = (
     "case",
     "worst_mm",
@@ -29,14 +31,23 @@ SHOWN = (
 )
 
 
-def run_bench_calibration(quick: bool, captures: Path | None, json_file: Path | None) -> None:
+def run_bench_calibration(
+    quick: bool, captures: Path | None, parts: Sequence[str], json_file: Path | None
+) -> None:
     """Measures board, machine and refinement, and prints a line for each row.
 
     Args:
         quick: five cameras, twelve poses and ten draws, and neither machine nor refinement.
+        parts: which to measure, of `PARTS`; none: all.
         captures: folder where simulated captures are kept; None: a temporary one.
         json_file: for the rows.
+
+    Raises:
+        InputError: a part that is none.
     """
+    unknown = [part for part in parts if part not in (*PARTS, *MORE)]
+    if unknown:
+        raise InputError(f"--part: {unknown[0]!r} is unknown; parts are {', '.join((*PARTS, *MORE))}")
     console = Console(stderr=True)
     with (
         tempfile.TemporaryDirectory() as temporary,
@@ -51,18 +62,19 @@ def run_bench_calibration(quick: bool, captures: Path | None, json_file: Path | 
                 console.print(text, highlight=False)
 
         size = {"cameras": 5, "poses": 12, "draws": 10} if quick else {}
-        for row in extrinsics_rows(tell, kept, **size):
+        for row in extrinsics_rows(tell, kept, parts or PARTS, **size):
             add(row)
             _say(row)
-        if quick:
-            return
-        row = intrinsics_row(kept, said=tell)
-        add(row)
-        _say(row)
-        row = machine_row(said=tell)
-        add(row)
-        _say(row)
-        for row in refine_rows(said=tell):
+        more = () if quick else parts or MORE
+        if "intrinsics" in more:
+            row = intrinsics_row(kept, said=tell)
+            add(row)
+            _say(row)
+        if "machine" in more:
+            row = machine_row(said=tell)
+            add(row)
+            _say(row)
+        for row in refine_rows(said=tell) if "refine" in more else ():
             add(row)
             _say(row)
 

@@ -19,9 +19,6 @@ calibrate_app.command(
 calibrate_app.command(
     epilog="Example: elbowroom calibrate extrinsics capture --out calibrated.yaml --report report"
 )(extrinsics)
-calibrate_app.command(epilog="Example: elbowroom calibrate intrinsics capture --out intrinsics.yaml")(
-    intrinsics
-)
 calibrate_app.command(
     epilog="Example: elbowroom calibrate machine capture --out calibrated.yaml --report report"
 )(machine)
@@ -31,3 +28,6 @@ calibrate_app.command(
 calibrate_app.command(
     epilog="Example: elbowroom calibrate commission my_room.yaml --out my_room_watched.yaml"
 )(commission)
+calibrate_app.command(epilog="Example: elbowroom calibrate intrinsics capture --out intrinsics.yaml")(
+    intrinsics
+)

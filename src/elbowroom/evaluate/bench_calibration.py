@@ -30,6 +30,7 @@ from elbowroom.simulate import InterventionRoom, render, true_occupancy, wall_ca
 from elbowroom.site import Site, moments
 
 Tell = Callable[[str], None]
+PARTS = ("real", "coverage", "captures")
 REAL_SITE = Path(__file__).parents[3] / "examples" / "kinect_board_2cam_calibration.yaml"
 """Two real cameras; only a checkout has it."""
 INSIDE = float(chi2.ppf(0.95, 6))
@@ -72,20 +73,31 @@ CASES = (
 
 
 def extrinsics_rows(
-    tell: Tell, captures: Path, *, cameras: int = 21, poses: int = 40, draws: int = 100
+    tell: Tell,
+    captures: Path,
+    parts: Sequence[str] = PARTS,
+    *,
+    cameras: int = 21,
+    poses: int = 40,
+    draws: int = 100,
 ) -> Iterator[dict[str, Any]]:
     """All rows: captures, the room with the cameras that were found, coverage, the real recording.
 
     Args:
         tell: told what is being done.
         captures: a folder for simulated captures; one that is there already is taken as it is.
+        parts: of `PARTS`.
         cameras, poses: of the captures.
         draws: for the coverage of the covariance.
 
     Yields:
         Rows of kind "extrinsics", "room", "coverage", "real".
     """
-    for case in CASES:
+    if "real" in parts:
+        yield real_row(tell)
+    if "coverage" in parts:
+        yield coverage_row(draws, tell)
+    for case in CASES if "captures" in parts else ():
         site = capture(case, captures / case.name, cameras, poses, tell)
         tell(f"{case.name}: looking for the board, solving")
         begun = time.perf_counter()
@@ -111,8 +123,6 @@ def extrinsics_rows(
         }
         tell(f"{case.name}: the room as these cameras see it")
         yield room_row(case, found, truth)
-    yield coverage_row(draws, tell)
-    yield real_row(tell)
 
 
 def capture(case: Case, folder: Path, cameras: int, poses: int, tell: Tell) -> Site:
