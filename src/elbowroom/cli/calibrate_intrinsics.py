@@ -17,7 +17,9 @@ def intrinsics(
     ] = None,
     distortion: Annotated[
         Literal["auto", "0", "5", "8"],
-        typer.Option(help="Coefficients; auto: 5 where corners ask for them, else none."),
+        typer.Option(
+            help="Coefficients; auto: as many as the site has, 5 if none; 0: the lens is known to be a pinhole."
+        ),
     ] = "auto",
     json: JsonFile = None,
 ) -> None:

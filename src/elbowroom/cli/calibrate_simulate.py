@@ -22,6 +22,14 @@ def simulate(
         int | None,
         typer.Option(min=2, help="Of board or machine, or moments of the room. Default: 40, 12, 30."),
     ] = None,
+    near: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=200,
+            help="Board: after --poses also so many near before each camera, for its intrinsics; 20 are good.",
+        ),
+    ] = 0,
     noise: Annotated[str, typer.Option(help="exact, or a sensor such as tof, kinect_v1.")] = "kinect_v1",
     board: Annotated[
         Literal["cut_out", "printed"],
@@ -67,7 +75,7 @@ def simulate(
 ) -> None:
     """Simulate a capture for calibration: depth images, infrared where the board is printed, a site file, the truth.
 
-    Go on with elbowroom calibrate intrinsics DIR/site.yaml, or extrinsics.
+    Go on with elbowroom calibrate intrinsics DIR (with --near), extrinsics, machine or refine.
     """
     from elbowroom.calibrate.simulated.start import Start
     from elbowroom.cli.calibrate_simulate_run import Wanted, simulate_capture
@@ -79,6 +87,7 @@ def simulate(
         cameras,
         size,
         poses,
+        near,
         noise,
         board,
         corners,

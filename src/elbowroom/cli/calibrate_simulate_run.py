@@ -42,6 +42,7 @@ class Wanted:
     cameras: int
     size: str
     poses: int | None
+    near: int
     noise: str
     board: Literal["cut_out", "printed"]
     corners: str | None
@@ -63,18 +64,21 @@ def simulate_capture(wanted: Wanted, json: Path | None) -> None:
         InputError: a noise that is none, a board that does not fit, a folder that cannot be written to.
     """
     begun = time.perf_counter()
+    if wanted.near and wanted.kind != "board":
+        raise InputError(f"--near: {wanted.near} with {wanted.kind}; near poses are those of a board")
     cameras, poses = _cameras(wanted), wanted.poses or USUAL_POSES[wanted.kind]
+    shown = poses + wanted.near * len(cameras)
     console = Console(stderr=True)
     images: list[int] = []
 
     with json_rows(json) as add:
-        bar = iter(track(range(poses), "rendering", console=console, disable=not console.is_terminal))
+        bar = iter(track(range(shown), "rendering", console=console, disable=not console.is_terminal))
 
         def on_pose(done: int, views: int) -> None:
             images.append(views)
             next(bar, None)
-            if not console.is_terminal and (done % 10 == 0 or done == poses):
-                console.print(f"rendering: {done} of {poses}, {sum(images)} images", highlight=False)
+            if not console.is_terminal and (done % 10 == 0 or done == shown):
+                console.print(f"rendering: {done} of {shown}, {sum(images)} images", highlight=False)
 
         site = _record(wanted, cameras, poses, on_pose)
         next(bar, None)
@@ -84,18 +88,24 @@ def simulate_capture(wanted: Wanted, json: Path | None) -> None:
                 "kind": "calibrate simulate",
                 "capture": wanted.kind,
                 "cameras": len(cameras),
-                "poses": poses,
+                "poses": shown,
                 "images": sum(images),
                 "seconds": seconds,
                 "site": str(site),
             }
         )
-    on = "calibrate machine" if wanted.kind == "machine" else "calibrate extrinsics"
     Console(highlight=False).print(
         f"{sum(images)} images of {len(cameras)} cameras in {seconds:.0f} s; "
-        f"now: elbowroom {on} {site} --out calibrated.yaml",
+        f"now: elbowroom calibrate {_next(wanted)} {site} --out calibrated.yaml",
         soft_wrap=True,
     )
+
+
+def _next(wanted: Wanted) -> str:
+    """The command that the capture is for."""
+    if wanted.kind == "board":
+        return "intrinsics" if wanted.near else "extrinsics"
+    return "machine" if wanted.kind == "machine" else "refine"
 
 
 def _record(wanted: Wanted, cameras: tuple[TrueCamera, ...], poses: int, on_pose) -> Path:  # type: ignore[no-untyped-def]
@@ -112,6 +122,7 @@ def _record(wanted: Wanted, cameras: tuple[TrueCamera, ...], poses: int, on_pose
         hand_moved_m=wanted.hand_m,
         hand_turned_deg=np.degrees(wanted.hand_m),
         moved_pose=wanted.moved_pose,
+        near=wanted.near,
     )
     return record_board(capture, wanted.out, on_pose)
 

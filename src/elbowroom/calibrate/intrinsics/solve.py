@@ -16,6 +16,7 @@ from elbowroom.geometry import DepthCamera
 
 Array = NDArray[np.float64]
 LEAST_VIEWS = 3
+USUAL_COEFFICIENTS = 5
 LEAST_TILT_DEG = 4.0
 MOST_SCALE_OFF = 0.08
 """Depth that differs by more from what the board's size says is a wrong size, not a sensor's error."""
@@ -67,8 +68,9 @@ def solve_intrinsics(
         camera: as the site has it: its focal length is where the search starts.
         board: the board.
         views: this camera's.
-        coefficients: 0, 5 or 8 of distortion; None: 5 if they explain the corners better than none (Akaike's
-            information criterion, 1974), else none.
+        coefficients: 0, 5 or 8 of distortion; None: as many as the site says of this camera, 5 if none. To leave
+            them out where a lens bends costs far more than to seek them where it does not, so no test of the
+            corners decides that.
         least_views: fewer are refused.
 
     Raises:
@@ -81,9 +83,9 @@ def solve_intrinsics(
             "hold it before this camera, whole and tilted this way and that"
         )
     start = _first_solution(camera, board, mine)
-    wanted = (0, 5) if coefficients is None else (coefficients,)
-    solved = [_solved(LensModel(camera, board, mine, count), start) for count in wanted]
-    model, numbers, covariance, _criterion = min(solved, key=lambda found: found[3])
+    count = len(camera.intrinsics.distortion) or USUAL_COEFFICIENTS if coefficients is None else coefficients
+    model = LensModel(camera, board, mine, count)
+    numbers, covariance = _solved(model, start)
     return _result(camera, board, model, numbers, covariance)
 
 
@@ -123,8 +125,8 @@ def _first_solution(camera: DepthCamera, board: Board, views: Sequence[BoardView
     return numbers, np.hstack([np.reshape(turns, (-1, 3)), np.reshape(shifts, (-1, 3))])
 
 
-def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[LensModel, Array, Array, float]:
-    """The numbers that fit best, their covariance, and the information criterion (less is better)."""
+def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[Array, Array]:
+    """The numbers that fit best, and their covariance."""
     pinhole, poses = start
     numbers = np.concatenate([pinhole, np.zeros(model.coefficients), (1.0, 0.0), poses.ravel()])
     _check_size(model, numbers)
@@ -157,8 +159,7 @@ def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[LensModel, Ar
     covariance: Array = spread * np.asarray(
         np.linalg.inv(jacobian.T @ (jacobian * weight[:, None])), dtype=np.float64
     )
-    criterion = 2 * cost / spread + 2 * model.coefficients
-    return model, numbers, covariance, float(criterion)
+    return numbers, covariance
 
 
 def _cost(residuals: Array) -> float:

@@ -112,7 +112,7 @@ def hand_poses(
         for _ in range(MOST_TRIES):
             camera = cameras[int(random.permutation(_neediest(views))[0])]
             pose = _drawn(camera, board, random)
-            if not _in_room(board, pose, half_side_m) or not shown(camera, board, pose).whole:
+            if not in_room(board, pose, half_side_m) or not shown(camera, board, pose).whole:
                 continue
             worth = _worth(cameras, board, pose, views, cells)
             if worth > most:
@@ -151,19 +151,20 @@ def _drawn(camera: DepthCamera, board: Board, random: np.random.Generator) -> ND
     tilt = Rotation.from_rotvec(np.radians(tilt_deg) * np.array([np.cos(turn), np.sin(turn), 0]))
     roll = Rotation.from_euler("z", random.normal(0, 20) + 90 * random.integers(0, 4), degrees=True)
     camera_from_board = np.eye(4)
-    camera_from_board[:3, :3] = (_facing(middle) * tilt * roll).as_matrix()
+    camera_from_board[:3, :3] = (facing(middle) * tilt * roll).as_matrix()
     camera_from_board[:3, 3] = middle - camera_from_board[:3, :3] @ board.corners_in_board.mean(axis=0)
     return camera.world_from_camera @ camera_from_board
 
 
-def _facing(middle: NDArray[np.float64]) -> Rotation:
-    """Turns the camera's z axis to the line of sight."""
+def facing(middle: NDArray[np.float64]) -> Rotation:
+    """Turns the camera's z axis to the line of sight to a point in the camera's frame [m]."""
     axis = np.array([-middle[1], middle[0], 0.0])
     across = float(np.linalg.norm(axis))
     return Rotation.from_rotvec(axis / max(across, 1e-12) * np.arctan2(across, middle[2]))
 
 
-def _in_room(board: Board, pose: NDArray[np.float64], half_side_m: float) -> bool:
+def in_room(board: Board, pose: NDArray[np.float64], half_side_m: float) -> bool:
+    """Whether the board at a pose in the world keeps clear of walls, floor and ceiling."""
     corners = board.outline_in_board @ pose[:3, :3].T + pose[:3, 3]
     low, high = corners.min(axis=0), corners.max(axis=0)
     side = half_side_m - CLEARANCE_M
