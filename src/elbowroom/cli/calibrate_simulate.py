@@ -48,6 +48,12 @@ def simulate(
         float, typer.Option(metavar="PERCENT", help="Depth is too long by up to this.")
     ] = 0.0,
     depth_bias: Annotated[float, typer.Option(metavar="METRES", help="And by up to this.")] = 0.0,
+    near: Annotated[
+        bool,
+        typer.Option(
+            "--near", help="The board right before one camera after the other, for intrinsics; 20 poses each."
+        ),
+    ] = False,
     hand: Annotated[
         float,
         typer.Option(
@@ -85,6 +91,7 @@ def simulate(
         square,
         border,
         start,
+        near,
         hand,
         moved_pose,
         knock,

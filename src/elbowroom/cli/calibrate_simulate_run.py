@@ -29,6 +29,8 @@ from elbowroom.simulate import wall_cameras
 USUAL_POSES = {"board": 40, "machine": 12, "room": 30}
 USUAL_BOARD = {"vga": ((8, 5), 0.1), "qqvga": ((6, 5), 0.12), "thesis": ((5, 4), 0.18)}
 """Inner corners and edge of a square [m] by size of image."""
+NEAR_POSES = 20
+"""Of a board before each camera."""
 PLATE_M = 0.003
 """Thickness of the plate [m]."""
 
@@ -48,6 +50,7 @@ class Wanted:
     square_m: float | None
     border_m: float
     start: Start
+    near: bool
     hand_m: float
     moved_pose: int | None
     knock: str | None
@@ -63,7 +66,8 @@ def simulate_capture(wanted: Wanted, json: Path | None) -> None:
         InputError: a noise that is none, a board that does not fit, a folder that cannot be written to.
     """
     begun = time.perf_counter()
-    cameras, poses = _cameras(wanted), wanted.poses or USUAL_POSES[wanted.kind]
+    cameras = _cameras(wanted)
+    poses = wanted.poses or (NEAR_POSES * len(cameras) if wanted.near else USUAL_POSES[wanted.kind])
     console = Console(stderr=True)
     images: list[int] = []
 
@@ -90,7 +94,8 @@ def simulate_capture(wanted: Wanted, json: Path | None) -> None:
                 "site": str(site),
             }
         )
-    on = "calibrate machine" if wanted.kind == "machine" else "calibrate extrinsics"
+    on = {"machine": "calibrate machine", "room": "calibrate refine"}.get(wanted.kind, "calibrate extrinsics")
+    on = "calibrate intrinsics" if wanted.near else on
     Console(highlight=False).print(
         f"{sum(images)} images of {len(cameras)} cameras in {seconds:.0f} s; "
         f"now: elbowroom {on} {site} --out calibrated.yaml",
@@ -112,6 +117,7 @@ def _record(wanted: Wanted, cameras: tuple[TrueCamera, ...], poses: int, on_pose
         hand_moved_m=wanted.hand_m,
         hand_turned_deg=np.degrees(wanted.hand_m),
         moved_pose=wanted.moved_pose,
+        near=wanted.near,
     )
     return record_board(capture, wanted.out, on_pose)
 

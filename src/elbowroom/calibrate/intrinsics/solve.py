@@ -58,7 +58,7 @@ def solve_intrinsics(
     camera: DepthCamera,
     board: Board,
     views: Sequence[BoardView],
-    coefficients: int | None = None,
+    coefficients: int = 5,
     least_views: int = LEAST_VIEWS,
 ) -> FoundIntrinsics:
     """Focal lengths, principal point, distortion, depth scale and bias of a camera.
@@ -67,8 +67,8 @@ def solve_intrinsics(
         camera: as the site has it: its focal length is where the search starts.
         board: the board.
         views: this camera's.
-        coefficients: 0, 5 or 8 of distortion; None: 5 if they explain the corners better than none (Akaike's
-            information criterion, 1974), else none.
+        coefficients: 0, 5 or 8 of distortion. None at all only where the driver delivers pinhole images: a lens that
+            is taken for straight bends the focal length.
         least_views: fewer are refused.
 
     Raises:
@@ -81,9 +81,7 @@ def solve_intrinsics(
             "hold it before this camera, whole and tilted this way and that"
         )
     start = _first_solution(camera, board, mine)
-    wanted = (0, 5) if coefficients is None else (coefficients,)
-    solved = [_solved(LensModel(camera, board, mine, count), start) for count in wanted]
-    model, numbers, covariance, _criterion = min(solved, key=lambda found: found[3])
+    model, numbers, covariance = _solved(LensModel(camera, board, mine, coefficients), start)
     return _result(camera, board, model, numbers, covariance)
 
 
@@ -123,8 +121,8 @@ def _first_solution(camera: DepthCamera, board: Board, views: Sequence[BoardView
     return numbers, np.hstack([np.reshape(turns, (-1, 3)), np.reshape(shifts, (-1, 3))])
 
 
-def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[LensModel, Array, Array, float]:
-    """The numbers that fit best, their covariance, and the information criterion (less is better)."""
+def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[LensModel, Array, Array]:
+    """The numbers that fit best, and their covariance."""
     pinhole, poses = start
     numbers = np.concatenate([pinhole, np.zeros(model.coefficients), (1.0, 0.0), poses.ravel()])
     _check_size(model, numbers)
@@ -157,8 +155,7 @@ def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[LensModel, Ar
     covariance: Array = spread * np.asarray(
         np.linalg.inv(jacobian.T @ (jacobian * weight[:, None])), dtype=np.float64
     )
-    criterion = 2 * cost / spread + 2 * model.coefficients
-    return model, numbers, covariance, float(criterion)
+    return model, numbers, covariance
 
 
 def _cost(residuals: Array) -> float:

@@ -38,6 +38,7 @@ class BoardCapture:
         hand_moved_m, hand_turned_deg: how far a hand moves the board between the exposures of different cameras.
         moved_pose: in this pose the board is moved on by `MOVED_M` while half of the cameras have yet to see it; None:
             in none.
+        near: each pose right before one camera, for intrinsics.
         all_views: also images that show a part of the board or its back, as a real capture has.
 
     Raises:
@@ -52,6 +53,7 @@ class BoardCapture:
     hand_moved_m: float = 0.0002
     hand_turned_deg: float = 0.01
     moved_pose: int | None = None
+    near: bool = False
     all_views: bool = True
 
     def __post_init__(self) -> None:
@@ -85,7 +87,9 @@ def record_board(
     lying = WorldFromBoard(by="board", pose=0, first_corner_m=first_corner_m, x_axis_deg=x_axis_deg)
     true_cameras = [camera.true for camera in capture.cameras]
     poses = [lying.world_from_board]
-    poses += hand_poses(true_cameras, capture.board, capture.poses - 1, random, taken=poses)
+    poses += hand_poses(
+        true_cameras, capture.board, capture.poses - 1, random, taken=poses, near=capture.near
+    )
     rows = []
     for number, pose in enumerate(poses):
         seen = _show(capture, writer, number, pose, random)
