@@ -72,7 +72,9 @@ def cut_out_view(
             worst = worst or (_other_size(picture, plate, camera, board, pose) if other_sizes else None)
             continue
         if laid.known < LEAST_KNOWN or not _outline_inside(camera, board, laid.camera_from_board):
-            return Trouble(camera.name, pose, Fault.HALF_SEEN)
+            # a smaller pattern, laid over a larger board's edge, reaches beyond what is known, too
+            other = _other_size(picture, plate, camera, board, pose) if other_sizes else None
+            return worst or other or Trouble(camera.name, pose, Fault.HALF_SEEN)
         found = _read(view, board, picture, laid, depth_m, pose, stamp_ns)
         if isinstance(found, BoardView) or found.fault is not Fault.NOT_SEEN:
             return found

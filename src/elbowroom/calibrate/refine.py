@@ -30,6 +30,8 @@ STILL = 0.05
 """A step of fewer sigmas is the last one."""
 RESTLESS, HALF_AFTER = 1.0, 8
 """Points that come and go keep the poses swinging a little: later steps are halved; longer ones never came to rest."""
+WORSE = 0.98
+"""Share of the agreeing pixels that must be left: less is more than chance."""
 MOST_MOMENTS, MOST_COMPARISONS = 12, 1500
 """Of the room, and of images with images: a still room says no more the oftener it is seen."""
 
@@ -109,11 +111,13 @@ def refine(
     sums = pair_sums(pairs, poses, RULE)
     check_refined(sums, poses, before, length < RESTLESS)
     common = [(pair, own) for pair, own in zip(pairs, sums, strict=True) if own.compared >= FEWEST_COMMON]
+    agreements = tuple(_agreement(pair, before.poses, poses) for pair, _ in common)
+    _refuse_worse(agreements, before)
     return Refinement(
         _refined(
             cameras, sums, poses, before, np.linalg.inv(equations(sums, poses, before, without_noise=True)[0])
         ),
-        tuple(_agreement(pair, before.poses, poses) for pair, _ in common),
+        agreements,
         used,
         _pictures(views, common, poses),
     )
@@ -187,6 +191,22 @@ def _together(one: Surfaces, other: Surfaces) -> list[tuple[int, int]]:
     """Rows of the images of both of the same moments."""
     _, rows, other_rows = np.intersect1d(one.moments, other.moments, return_indices=True)
     return [(int(a), int(b)) for a, b in zip(rows, other_rows, strict=True)]
+
+
+def _refuse_worse(pairs: Sequence[PairAgreement], before: Before) -> None:
+    """A camera that fits worse than before was laid on the wrong surfaces.
+
+    Raises:
+        CalibrationError: names the first one.
+    """
+    for name in before.free:
+        mine = [pair for pair in pairs if name in (pair.one, pair.other)]
+        now, then = sum(pair.after.agree for pair in mine), sum(pair.before.agree for pair in mine)
+        if now < WORSE * then:
+            raise CalibrationError(
+                f"camera {name}: {then} of its pixels agreed with other cameras, refined only {now} would; it was laid "
+                "on the wrong surfaces: capture a room with more in it, or calibrate by a board or the machine"
+            )
 
 
 def _agreement(

@@ -27,7 +27,7 @@ def bench(
     part: Annotated[
         list[str] | None,
         typer.Option(
-            help="calibration: only real, coverage, captures, machine or refine; may be given more than once."
+            help="calibration: only real, coverage, captures, intrinsics, machine or refine; may be repeated."
         ),
     ] = None,
     json: JsonFile = None,

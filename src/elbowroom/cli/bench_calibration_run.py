@@ -10,10 +10,11 @@ from rich.console import Console
 from elbowroom.cli.json_output import json_rows
 from elbowroom.errors import InputError
 from elbowroom.evaluate.bench_calibration import PARTS, extrinsics_rows
+from elbowroom.evaluate.bench_calibration_boards import intrinsics_row
 from elbowroom.evaluate.bench_calibration_machine import machine_row, refine_rows
 from elbowroom.view.atomic import folder
 
-MORE = ("machine", "refine")
+MORE = ("intrinsics", "machine", "refine")
 SHOWN = (
     "case",
     "worst_mm",
@@ -21,6 +22,7 @@ SHOWN = (
     "median_mm",
     "median_deg",
     "inside_pct",
+    "worst_focal_pct",
     "seconds",
     "occupied_pct",
     "found_pct",
@@ -64,6 +66,10 @@ def run_bench_calibration(
             add(row)
             _say(row)
         more = () if quick else parts or MORE
+        if "intrinsics" in more:
+            row = intrinsics_row(kept, said=tell)
+            add(row)
+            _say(row)
         if "machine" in more:
             row = machine_row(said=tell)
             add(row)

@@ -1,9 +1,18 @@
 """Where a voxel's bit lies: 64 voxels of a 4 x 4 x 4 block share one uint64, 64 such words make a 16-voxel cube."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
+
+
+def uncounted(**options: Any) -> Any:
+    """As `njit(nogil=True, **options)`, for small kernels of inner loops that allocate nothing.
+
+    They count no references to the arrays that they are handed, which all threads would do on the same few words of
+    memory (https://github.com/numba/numba/issues/2345). Whoever calls them holds the arrays.
+    """
+    return njit(nogil=True, _nrt=False, **options)  # type: ignore[call-overload]
 
 
 class Lattice(NamedTuple):

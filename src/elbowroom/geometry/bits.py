@@ -1,5 +1,7 @@
 """Volumes of one bit a voxel, in the order that carving, clearing and sweeping share (docs/conventions.md)."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -56,6 +58,9 @@ def unpack(words: Words, grid: VoxelGrid) -> NDArray[np.bool_]:
     return np.ascontiguousarray(padded[: grid.shape[0], : grid.shape[1], : grid.shape[2]])
 
 
+@lru_cache(maxsize=8)
 def inside(grid: VoxelGrid) -> Words:
-    """The plane of all voxels of the grid: ones, but zero beyond it."""
-    return pack(np.ones(grid.shape, dtype=np.bool_), grid)
+    """The plane of all voxels of the grid: ones, but zero beyond it; always the same array, read-only."""
+    words = pack(np.ones(grid.shape, dtype=np.bool_), grid)
+    words.setflags(write=False)
+    return words

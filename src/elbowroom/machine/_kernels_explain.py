@@ -98,9 +98,13 @@ def _compare(view, depth, drawn, across, start, stop, tolerance, sigmas, model):
     fixed, factor = np.float32(tolerance + sigmas * view.constant), np.float32(sigmas * view.linear)
     square, offset = np.float32(sigmas * view.quadratic), np.float32(view.offset)
     low, high = np.float32(view.min_depth), np.float32(min(view.max_depth, MOST_M))
-    for u in range(start, stop + 1):
-        nearest = max(across[0, u + 1], max(across[1, u + 1], across[2, u + 1]))
-        farthest = min(across[3, u + 1], min(across[4, u + 1], across[5, u + 1]))
+    flying = view.flying
+    # unsigned indices, or the compiler does one pixel at a time
+    for n in range(start, stop + 1):
+        u = np.uint64(n)
+        after = u + np.uint64(1)
+        nearest = max(across[0, after], max(across[1, after], across[2, after]))
+        farthest = min(across[3, after], min(across[4, after], across[5, after]))
         d = depth[u]
         beyond = max(d - offset, zero)
         slack = fixed + factor * d + square * beyond * beyond
@@ -109,7 +113,7 @@ def _compare(view, depth, drawn, across, start, stop, tolerance, sigmas, model):
         # behind the model's nearest surface and beside it: perhaps a mixed pixel of its edge (`_settle_edges`)
         # up to the surface drawn in the pixel itself; beside the drawn edge up to the nearest one about it
         free_to = one / (drawn[u] if drawn[u] > zero else nearest)
-        unfit = -free_to if view.flying & (nearest > zero) else zero
+        unfit = -free_to if flying & (nearest > zero) else zero
         model[u] = free_to if fits else unfit
 
 

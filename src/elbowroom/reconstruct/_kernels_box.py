@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry._kernels import uncounted
 from elbowroom.reconstruct._kernels_pyramid import NO_RETURN
 
 FLOATS = 7 * 64
@@ -65,7 +66,7 @@ class Views(NamedTuple):
     doubt_tiles: np.ndarray
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def place_cube(numbers, c, scale, x, y, z, edge):
     """A cube of 64 children in camera axes: child 0's centre (x times fx, y times fy, z), and where the cube lies.
 
@@ -102,7 +103,7 @@ def place_cube(numbers, c, scale, x, y, z, edge):
     return np.float32(px * fx), np.float32(py * fy), np.float32(pz), state
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def _choose_windows(numbers, levels, c, reach, floats, ints):
     """Points each lane at the window around its centre pixel that reaches at least `reach` pixels to every side.
 
@@ -118,7 +119,7 @@ def _choose_windows(numbers, levels, c, reach, floats, ints):
         ints[TEXEL + lane] = first + (v >> shift) * stride + (u >> shift)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def _add_margin(numbers, offset, c, scale, px, py, pz, floats):
     """Rows NEAR and FAR: a lane's depth bounds become what a pixel's depth is compared with."""
     if numbers[c, RADIAL] != 0.0:
@@ -145,7 +146,7 @@ def _add_margin(numbers, offset, c, scale, px, py, pz, floats):
         floats[FAR + lane] = far + margin
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
     """Depth bounds and windows of the 64 children of a cube that lies wholly inside the image.
 
@@ -180,7 +181,7 @@ def bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
     return pixels
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
     """The same for a cube that the image's edge or the camera's plane cuts; row STATE says where each child lies."""
     fx, fy = np.float32(numbers[c, LENS + 0]), np.float32(numbers[c, LENS + 1])
@@ -231,11 +232,11 @@ def bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints):
     return pixels
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def look_up(windows, quantum, floats, ints):
     """Least and greatest depth [m] of each lane's window: rows LEAST, GREATEST. No return: infinity."""
     for lane in range(64):
-        texel = windows[ints[TEXEL + lane]]
+        texel = windows[np.uint32(ints[TEXEL + lane])]
         ints[LOW_LEAST + lane] = np.int32(texel >> np.uint32(16))
         ints[LOW_GREATEST + lane] = np.int32(NO_RETURN) - np.int32(texel & np.uint32(0xFFFF))
     scale = np.float32(quantum)
@@ -248,7 +249,7 @@ def look_up(windows, quantum, floats, ints):
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _bits(flag_words, row):
+def bits_of(flag_words, row):
     """Row of sixty-four bytes of 0 or 1 as one word, lane n to bit n; the bytes come as eight words."""
     out = np.uint64(0)
     for n in range(8):
@@ -256,7 +257,7 @@ def _bits(flag_words, row):
     return out
 
 
-@njit(cache=True, nogil=True)
+@uncounted(cache=True)
 def decide_inside(floats, flags, flag_words):
     """Words (through, mixed) of 64 boxes that lie wholly inside the image. `flag_words` is a view of `flags`."""
     for lane in range(64):
@@ -264,11 +265,11 @@ def decide_inside(floats, flags, flag_words):
         hidden = floats[GREATEST + lane] < floats[NEAR + lane]
         flags[lane] = front
         flags[64 + lane] = hidden
-    through = _bits(flag_words, 0)
-    return through, ~(through | _bits(flag_words, 1))
+    through = bits_of(flag_words, 0)
+    return through, ~(through | bits_of(flag_words, 1))
 
 
-@njit(cache=True, nogil=True)
+@uncounted(cache=True)
 def decide_partly(floats, flags, flag_words):
     """The same where row STATE tells: only a box wholly inside is ever through, one outside is never mixed.
 
@@ -282,4 +283,4 @@ def decide_partly(floats, flags, flag_words):
         flags[lane] = (state == INSIDE) & front
         flags[64 + lane] = (state == CROSSING) | ((state != OUTSIDE) & (not hidden) & (not front))
         flags[128 + lane] = (state == PARTLY) & front
-    return _bits(flag_words, 0), _bits(flag_words, 1), _bits(flag_words, 2)
+    return bits_of(flag_words, 0), bits_of(flag_words, 1), bits_of(flag_words, 2)

@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 from numba.cpython.unsafe.numbers import trailing_zeros
 
+from elbowroom.geometry._kernels import uncounted
 from elbowroom.reconstruct._kernels_box import (
     CENTRE,
     LATERAL,
@@ -29,7 +30,7 @@ PIXEL_FLOATS = 64
 D0, D1, D2, DW, LOW, HIGH, LINES = 0, 3, 6, 9, 12, 15, 18
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def _silhouette(b, c, s, count):
     """Adds the two lines that bound the voxel as seen along the third axis; none if the camera is within its shadow.
 
@@ -59,7 +60,7 @@ def _silhouette(b, c, s, count):
     return count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def _prepare(numbers, c, x, y, z, edge, s):
     """Fills the scratch array for one voxel and camera; returns the number of silhouette lines."""
     half = 0.5 * edge
@@ -124,7 +125,7 @@ def _says_nothing(doubtful, clear_from, hidden_to):
     )
 
 
-@njit(cache=True, nogil=True)
+@uncounted(cache=True)
 def _bounds(texels, first, width, ua, ub, va, vb):
     """Least and greatest depth over at least a rectangle of texels, ends included, in quanta; eight at a time.
 
@@ -147,7 +148,7 @@ def _bounds(texels, first, width, ua, ub, va, vb):
     return least >> np.uint32(16), np.uint32(NO_RETURN) - low
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile_first, x, y, z, edge, s):
     """What camera c says of the voxel around (x, y, z): a sum of THROUGH or DISPUTES, IS_SURFACE, IS_BLIND; or 0.
 
@@ -264,7 +265,7 @@ def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile
     return answer
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def settle_word(
     numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile_first, voxels, x, y, z, edge, s
 ):
@@ -304,7 +305,7 @@ def settle_word(
     return through, disputed, surface, blind
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy")
 def settle_centre(numbers, c, first, doubt, x, y, z, edge):
     """The thesis' depth test (section 3.1): the voxel's centre against the one pixel that it projects to."""
     px = numbers[c, 0] * x + numbers[c, 1] * y + numbers[c, 2] * z + numbers[c, 3]

@@ -11,7 +11,9 @@ from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.parallel import spread
-from elbowroom.reconstruct import _kernels_carve as kernels
+from elbowroom.reconstruct._kernels_carve import carve_cubes
+from elbowroom.reconstruct._kernels_planes import PLANES
+from elbowroom.reconstruct._kernels_points import carve_points
 from elbowroom.reconstruct.evidence import Counts, Evidence
 from elbowroom.reconstruct.images import RoomImages, room_images
 from elbowroom.reconstruct.views import fill, layout_of
@@ -93,11 +95,11 @@ def carve_images(
     layout = layout_of(grid, images.cameras, margin or Margin())
     cells = bits.lattice(grid)
     cubes = cells.cubes_x * cells.cubes_y * cells.cubes_z
-    planes = np.zeros((kernels.PLANES, cubes * 64), dtype=np.uint64)
+    planes = np.zeros((PLANES, cubes * 64), dtype=np.uint64)
     through, disputes = (np.zeros((cubes * 64 if complete else 0, 64), dtype=np.uint8) for _ in range(2))
-    kernel = kernels.carve_points if detail == "point" else kernels.carve_cubes
+    kernel = carve_points if detail == "point" else carve_cubes
     fine = np.full(cubes * 64, detail == "pixel")
-    asked = layout.inside if focus is None else np.where(focus, layout.inside, np.uint64(0))
+    asked = layout.inside.copy() if focus is None else np.where(focus, layout.inside, np.uint64(0))
     worth = np.flatnonzero(asked.reshape(cubes, 64).any(axis=1))
     views, buffers = fill(layout, images, model_depth or {}, threads)
     try:
