@@ -7,6 +7,7 @@ are widened by f a + f b / 2.5 m, and depth is trusted to b + a z. The curves lo
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,13 @@ from scipy.spatial.transform import Rotation
 
 from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.room import Tally
-from elbowroom.evaluate.scene import room_grid
+from elbowroom.evaluate.scene import DECIMALS, room_grid
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.thesis import HEIGHTS_M, c_arm
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.reconstruct import reconstruct
-from elbowroom.sensing import Margin
-from elbowroom.simulate import render, setup, true_occupancy, wall_cameras
+from elbowroom.sensing import DepthFrame, Margin
+from elbowroom.simulate import Truth, render, setup, true_occupancy, wall_cameras
 from elbowroom.view.blocks import Block, Picture, Table, Words, cm, mean, pct
 from elbowroom.view.charts import Line, chart
 
@@ -37,6 +38,7 @@ SHARES = (0.25, 0.5, 1.0, 1.5)
 THIRD = 3
 CHUNK = 25
 """Draws of one share of the work."""
+MEASURES = ("occupied_pct", "found_pct", "free_pct")
 
 
 def tasks(settings: Settings) -> list[Task]:
@@ -116,15 +118,11 @@ def judge_draws(
     cameras: int,
 ) -> Outcome:
     """Some draws of one size of error, with each margin."""
-    machine, scene, grid = c_arm(), setup(number), room_grid(voxel_size_m)
-    moment = scene.at(machine)
-    truth = true_occupancy(grid, moment)
-    views = wall_cameras(cameras, HEIGHTS_M, size=size)
-    frames = render(views, moment, noise=False)
-    seen = reconstruct(grid, views, frames, rule="any", detail="point").free
+    machine, moment = c_arm(), setup(number).at(c_arm())
+    grid, truth, views, frames, seen = _exact_scene(number, voxel_size_m, size, cameras)
     focus = None if whole else third_of(grid)
     looked_at = np.ones(grid.shape, dtype=np.bool_) if focus is None else _voxels_of(focus, grid)
-    rows = []
+    found: dict[float, list[dict[str, Any]]] = {share: [] for share in shares}
     for draw in range(first, first + draws):
         said = disturbed(views, rotation_deg, translation_m, np.random.default_rng([draw, 612]))
         for share in shares:
@@ -141,28 +139,39 @@ def judge_draws(
             )
             tally = Tally()
             tally.add(space.free, truth.occupied & looked_at, truth.machine | ~looked_at, seen & looked_at)
-            row = tally.row()
-            rows.append(
-                {
-                    "kind": "draw",
-                    "curve": curve,
-                    "setup": number,
-                    "sensor": f"{views[0].width}x{views[0].height}",
-                    "noise": False,
-                    "voxel_size_m": voxel_size_m,
-                    "rule": "three",
-                    "detail": detail,
-                    "rotation_deg": rotation_deg,
-                    "translation_m": translation_m,
-                    "margin_share": share,
-                    "draw": draw,
-                    **{
-                        key: row[key]
-                        for key in ("occupied_pct", "found_pct", "free_pct", "false_free_voxels")
-                    },
-                }
-            )
-    return Outcome(rows)
+            found[share].append(tally.row())
+    case = {
+        "kind": "draws",
+        "curve": curve,
+        "setup": number,
+        "sensor": f"{views[0].width}x{views[0].height}",
+        "noise": False,
+        "voxel_size_m": voxel_size_m,
+        "rule": "three",
+        "detail": detail,
+        "rotation_deg": rotation_deg,
+        "translation_m": translation_m,
+        "first": first,
+    }
+    return Outcome([{**case, "margin_share": share, **_of_draws(found[share])} for share in shares])
+
+
+@lru_cache(maxsize=2)
+def _exact_scene(
+    number: int, voxel_size_m: float, size: str, cameras: int
+) -> tuple[VoxelGrid, Truth, tuple[DepthCamera, ...], list[DepthFrame], NDArray[np.bool_]]:
+    """What all draws of a sensor share: grid, truth, cameras where they really are, images, voxels seen by them."""
+    grid, moment = room_grid(voxel_size_m), setup(number).at(c_arm())
+    views = wall_cameras(cameras, HEIGHTS_M, size=size)
+    frames = render(views, moment, noise=False)
+    seen = reconstruct(grid, views, frames, rule="any", detail="point").free
+    return grid, true_occupancy(grid, moment), views, frames, seen
+
+
+def _of_draws(tallies: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Means over some draws, and each draw's own figures in their order."""
+    each = {key: [round(tally[key], DECIMALS) for tally in tallies] for key in MEASURES}
+    return {**{key: mean(values) for key, values in each.items()}, "each": each}
 
 
 def margin_for(rotation_deg: float, translation_m: float, share: float, focal_px: float) -> Margin:
@@ -210,18 +219,17 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
     result = []
     for values in dict.fromkeys(tuple(row[key] for key in same) for row in rows):
         mine = [row for row in rows if tuple(row[key] for key in same) == values]
+        each = {key: [value for row in mine for value in row["each"][key]] for key in MEASURES}
         result.append(
             {
                 "kind": "summary",
                 **dict(zip(same, values, strict=True)),
                 "noise": False,
                 "rule": "three",
-                "draws": len(mine),
-                **{
-                    key: mean([row[key] for row in mine]) for key in ("occupied_pct", "found_pct", "free_pct")
-                },
-                "least_occupied_pct": min(row["occupied_pct"] for row in mine),
-                "least_found_pct": min(row["found_pct"] for row in mine),
+                "draws": len(each["occupied_pct"]),
+                **{key: mean(each[key]) for key in MEASURES},
+                "least_occupied_pct": min(each["occupied_pct"]),
+                "least_found_pct": min(each["found_pct"]),
             }
         )
     return result

@@ -70,8 +70,9 @@ def _motions(rows: Sequence[Row]) -> list[tuple[str, ...]]:
         lines.append(_at_most("and of small objects", "2", 0, row["unsafe_of_small_objects"]))
         lines.append(_at_least(f"movements: right band, {of}", "27", right, row["s"], 0))
         lines.append(_at_most("movements: too safe by three bands", "1", 0, row["tts"]))
-    for row in [r for r in summaries if r["of"] == "random"]:
+    for row in [r for r in summaries if r["of"] == "random"][:1]:
         lines.append(_at_most(f"random motions: unsafe, of {row['motions']}", "", 0, row["u"]))
+        lines.append(_at_most("and of small objects", "", 0, row["unsafe_of_small_objects"]))
         short = row["median_shortfall_voxels"]
         lines.append(_at_most("random motions: median shortfall [voxels]", "", 2, short))
     return lines
@@ -93,11 +94,15 @@ def _scale(rows: Sequence[Row]) -> list[tuple[str, ...]]:
     for row in rows:
         if row.get("part") == "scale" and row.get("kind") == "summary" and row["noise"]:
             lines.append(_at_most("scale model, noise: more than the truth", "", 0, row["more_than_truth"]))
-            for key, words, most in (
-                ("median", "short by, median [mm]", 5),
-                ("worst", "short by, worst [mm]", 12),
-            ):
-                lines.append(_at_most(f"scale model: {words}", "5", most, row[f"{key}_short_mm"]))
+            for key, most in (("median", 5), ("worst", 12)):
+                lines.append(
+                    _at_most(
+                        f"scale model, noise, objects in view: short by, {key} [mm]",
+                        "5",
+                        most,
+                        row[f"{key}_in_view_short_mm"],
+                    )
+                )
     return lines
 
 

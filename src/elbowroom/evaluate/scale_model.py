@@ -1,0 +1,149 @@
+"""The thesis' scale model (5.2), simulated: a laboratory with the C-arm, table and doctor at 1:5, and four Kinects."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
+
+from elbowroom.evaluate.cases import as_png
+from elbowroom.evaluate.scene import room_motions
+from elbowroom.evaluate.thesis import c_arm
+from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, looking_at
+from elbowroom.machine import Machine
+from elbowroom.motion import Motion
+from elbowroom.reconstruct import FreeSpace
+from elbowroom.sensing import NOISE_PRESETS
+from elbowroom.simulate import Moment, Solid, setup
+from elbowroom.simulate.picture import View, cubes
+from elbowroom.simulate.shapes import box, join
+from elbowroom.simulate.solid import Mesh
+from elbowroom.simulate.truth import touched_by
+
+FACTOR = 0.2
+OBJECTS = ("table", "mattress", "table controls", "doctor")
+AIM_M = (0.0, 0.0, 0.22)
+"""What the Kinects look at: the middle of the C."""
+DISTANCE_M = 0.9
+"""From there to each Kinect: the machine stays beyond their near limit of 0.5 m at all joint positions but few."""
+AZIMUTHS_DEG, ELEVATIONS_DEG = (45.0, 135.0, 225.0, 315.0), (35.0, 10.0, 35.0, 10.0)
+BLUE, GREEN, RED = (0.05, 0.15, 0.75), (0.05, 0.5, 0.12), (0.75, 0.04, 0.04)
+GREY = (0.75, 0.75, 0.72)
+
+
+def model_grid(voxel_size_m: float) -> VoxelGrid:
+    """The watched box of the model: the room of the thesis at 1:5, up to the machine's rail."""
+    return VoxelGrid.covering((-0.4, -0.4, 0.0), (0.4, 0.4, 0.5), voxel_size_m)
+
+
+@cache
+def model_machine() -> Machine:
+    """The C-arm at 1:5; always the same object, so that what is worked out for it is kept."""
+    return scaled(c_arm(), FACTOR)
+
+
+def scaled(machine: Machine, factor: float) -> Machine:
+    """The same machine, smaller: lengths times a factor, angles as they are."""
+
+    def pose(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+        smaller = np.array(matrix)
+        smaller[..., :3, 3] *= factor
+        return smaller
+
+    joints = tuple(
+        replace(
+            joint,
+            parent_from_joint=pose(joint.parent_from_joint),
+            lower=joint.lower * (factor if joint.kind == "prismatic" else 1.0),
+            upper=joint.upper * (factor if joint.kind == "prismatic" else 1.0),
+        )
+        for joint in machine.joints
+    )
+    return replace(
+        machine,
+        links=tuple(replace(link, vertices=link.vertices * factor) for link in machine.links),
+        joints=joints,
+        tree=machine.tree._replace(parent_from_joint=pose(machine.tree.parent_from_joint)),
+        world_from_base=pose(machine.world_from_base),
+    )
+
+
+@cache
+def model_solids() -> tuple[Solid, ...]:
+    """Table and doctor of the first setup at 1:5, on the floor of a laboratory."""
+    small = [
+        replace(solid, mesh=Mesh(solid.mesh.vertices * FACTOR, solid.mesh.faces))
+        for solid in setup(1).solids()
+        if solid.name.startswith(OBJECTS)
+    ]
+    a, b, c = 2.0, 2.2, 2.6
+    parts = {
+        "floor": [box((-b, -b, -0.2), (b, b, 0.0))],
+        "walls": [
+            box((-b, -b, 0), (-a, b, c)),
+            box((a, -b, 0), (b, b, c)),
+            box((-a, -b, 0), (a, -a, c)),
+            box((-a, a, 0), (a, b, c)),
+        ],
+        "ceiling": [box((-b, -b, c), (b, b, c + 0.2))],
+    }
+    lab = [Solid(name, join(shapes), np.eye(4), is_static=True) for name, shapes in parts.items()]
+    return (*small, *lab)
+
+
+@cache
+def kinects(noise: bool) -> tuple[DepthCamera, ...]:
+    """Four of Kinect v1, placed by hand: over the four corners, two high and two low, turn about."""
+    focal_px = 320 / np.tan(np.radians(57.0) / 2)
+    placed = []
+    for number, (azimuth, elevation) in enumerate(
+        zip(np.radians(AZIMUTHS_DEG), np.radians(ELEVATIONS_DEG), strict=True)
+    ):
+        away = np.array([np.cos(azimuth), np.sin(azimuth), np.tan(elevation)]) * np.cos(elevation)
+        x, y, z = AIM_M + DISTANCE_M * away
+        placed.append(
+            DepthCamera(
+                name=f"kinect{number}",
+                width=640,
+                height=480,
+                world_from_camera=looking_at((x, y, z), AIM_M),
+                intrinsics=Intrinsics(fx=focal_px, fy=focal_px, cx=319.5, cy=239.5),
+                noise=NOISE_PRESETS["kinect_v1"] if noise else None,
+                min_depth_m=0.5,
+                max_depth_m=4.0,
+            )
+        )
+    return tuple(placed)
+
+
+def whole_motions(machine: Machine) -> list[Motion]:
+    """Every joint in both directions, to the end of its range; braking distances at 1:5 where they are lengths."""
+    whole = []
+    for motion in room_motions(c_arm()):
+        joint = machine.joint(motion.joint)
+        factor = FACTOR if joint.kind == "prismatic" else 1.0
+        whole.append(
+            Motion(
+                motion.joint, motion.direction, motion.braking_distance * factor, joint.upper - joint.lower
+            )
+        )
+    return whole
+
+
+def coloured_picture(space: FreeSpace, moment: Moment) -> bytes:
+    """Surfaces as the thesis' Fig. 10 shows them: C-arm blue, table green, the doctor red. PNG."""
+    grid = space.grid
+    owner = np.zeros(grid.shape, dtype=np.uint8)
+    for solid in moment.solids:
+        number = 1 if solid.is_machine else 3 if solid.name.startswith("doctor") else 2
+        if solid.name in ("floor", "walls", "ceiling"):
+            continue
+        corner, touched = touched_by(grid, solid)
+        part = owner[tuple(slice(c, c + n) for c, n in zip(corner, touched.shape, strict=True))]
+        part[touched] = number
+    away, nearest = distance_transform_edt(owner == 0, return_indices=True)
+    shown = (space.surface & (away <= 4)) | (owner == 1)
+    labels = np.where(shown, owner[tuple(nearest)], 0)
+    view = View((0.75, -0.80, 0.80), (0.0, 0.0, 0.22), 46, 640, 480)
+    return as_png(cubes(labels, grid, np.array([GREY, BLUE, GREEN, RED]), view))
