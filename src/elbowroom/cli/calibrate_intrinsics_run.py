@@ -10,7 +10,7 @@ from rich.table import Table
 
 from elbowroom.calibrate.capture import Sightings, sightings
 from elbowroom.calibrate.intrinsics import FoundIntrinsics, cells_seen, solve_intrinsics
-from elbowroom.cli.calibrate_options import site_path
+from elbowroom.cli.calibrate_site import site_path
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.errors import CalibrationError
