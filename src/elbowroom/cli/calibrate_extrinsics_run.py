@@ -96,7 +96,7 @@ def solve(
         ]
         if not why:
             raise
-        raise CalibrationError(f"{error} (its images: {why[0]}, and {len(why) - 1} more)") from None
+        raise CalibrationError(f"{error} (of {len(why)} images without a view: {why[0]})") from None
 
 
 def summary_row(site: Site, found: Extrinsics, seen: Sightings, seconds: dict[str, float]) -> dict[str, Any]:
