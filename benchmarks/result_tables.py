@@ -433,6 +433,7 @@ def calibration_tables(rows: Sequence[Row]) -> list[str]:
 CALIBRATION_COLUMNS = {
     "extrinsics": (
         "case",
+        "world",
         "noise",
         "cameras",
         "poses",
@@ -444,7 +445,15 @@ CALIBRATION_COLUMNS = {
         "inside_pct",
         "seconds",
     ),
-    "room": ("case", "noise", "occupied_pct", "found_pct", "median_lateral_px", "median_bias_mm"),
+    "room": (
+        "case",
+        "noise",
+        "occupied_pct",
+        "found_pct",
+        "sensor_lateral_px",
+        "pose_lateral_px",
+        "pose_bias_mm",
+    ),
     "coverage": ("case", "cameras", "poses", "draws", "inside_pct", "mean_square"),
     "real": ("case", "agree_pct", "shares_pct", "note"),
     "machine": (

@@ -8,9 +8,9 @@ from typer.testing import CliRunner
 
 from elbowroom.calibrate import Board
 from elbowroom.calibrate.lens import project
-from elbowroom.calibrate.simulated import Start, near_poses, read_truth, started
+from elbowroom.calibrate.simulated import Start, hand_poses, read_truth, started
 from elbowroom.cli.app import app
-from elbowroom.errors import CalibrationError, InputError
+from elbowroom.errors import InputError
 from elbowroom.simulate import wall_cameras
 from elbowroom.site import Site
 from elbowroom.site.images import images_of_cameras
@@ -23,10 +23,10 @@ def call(*arguments):
     return RUNNER.invoke(app, ["calibrate", *map(str, arguments)], catch_exceptions=False)
 
 
-def test_near_poses_fill_the_image_and_are_tilted():
+def test_near_poses_fill_the_image():
     (bent,) = started(wall_cameras(1), Start(focal_pct=2.0, lens=True), np.random.default_rng(3))
     camera = bent.true
-    poses = near_poses(camera, BOARD, 12, np.random.default_rng(4))
+    poses = hand_poses([camera], BOARD, 12, np.random.default_rng(4), near=True)
     covered = np.zeros((3, 3), dtype=bool)
     for pose in poses:
         camera_from_board = camera.camera_from_world @ pose
@@ -36,33 +36,28 @@ def test_near_poses_fill_the_image_and_are_tilted():
         assert pixels.min() > 0 and (pixels < (639, 479)).all()
         assert (np.ptp(pixels, axis=0) / (640, 480)).max() > 0.35
         sight = points.mean(axis=0) / np.linalg.norm(points.mean(axis=0))
-        assert 19 < np.degrees(np.arccos(abs(camera_from_board[:3, 2] @ sight))) < 50
+        assert np.degrees(np.arccos(abs(camera_from_board[:3, 2] @ sight))) < 50
         ninth = np.floor(3 * (pixels[4:] + 0.5) / (640, 480)).astype(int)
         covered[ninth[:, 1], ninth[:, 0]] = True
     assert covered.all()
 
 
-def test_a_board_too_large_to_be_held_near_is_refused():
-    (camera,) = wall_cameras(1)
-    with pytest.raises(CalibrationError, match=r"camera cam00: no place near before it.*make it smaller"):
-        near_poses(camera, Board(8, 5, 1.0, "cut_out", 0.04), 1, np.random.default_rng(1))
-
-
 def test_a_capture_with_near_poses_gives_intrinsics(tmp_path):
     out, rows = tmp_path / "capture", tmp_path / "rows.json"
-    size = ("--cameras", 1, "--size", "qqvga", "--poses", 3, "--near", 6, "--focal", 2, "--depth-bias", 0.01)
+    size = ("--cameras", 1, "--size", "qqvga", "--poses", 8, "--near", "--focal", 2, "--depth-bias", 0.01)
     done = call("simulate", "board", "--out", out, *size, "--noise", "exact", "--json", rows)
     assert done.exit_code == 0
     assert f"now: elbowroom calibrate intrinsics {out / 'site.yaml'}" in done.stdout
     (row,) = json.loads(rows.read_text())["rows"]
-    assert (row["cameras"], row["poses"]) == (1, 9)
+    assert (row["cameras"], row["poses"]) == (1, 8)
     site, truth = Site.load(out / "site.yaml"), read_truth(out)["cameras"]["cam00"]
     assert row["images"] == len(images_of_cameras(site)["cam00"])
     new = tmp_path / "new.yaml"
-    assert call("intrinsics", out, "--distortion", 0, "--out", new).exit_code == 0
-    k, before = Site.load(new).cameras()[0].intrinsics, site.cameras()[0].intrinsics
-    assert abs(before.fx / truth["fx"] - 1) > 0.003
-    assert abs(k.fx / truth["fx"] - 1) < 0.003
+    assert call("intrinsics", out, "--distortion", 0, "--out", new, "--json", rows).exit_code == 0
+    k = Site.load(new).cameras()[0].intrinsics
+    found = json.loads(rows.read_text())["rows"][0]
+    assert abs(k.fx - truth["fx"]) < 4 * found["sigma"][0]
+    assert found["sigma"][0] < 0.01 * k.fx
 
 
 def test_a_knocked_camera_is_elsewhere_than_the_site_says(tmp_path):
@@ -83,7 +78,7 @@ def test_a_knocked_camera_is_elsewhere_than_the_site_says(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (("room", "--near", 2), "--near: 2 with room; near poses are those of a board"),
+        (("room", "--near"), "--near with room: near poses are those of a board"),
         (("room", "--noise", "kinect"), "--noise: 'kinect' is unknown; exact, "),
         (("room", "--knock", "north"), "knocked camera 'north': unknown; cameras are cam00, cam01"),
         (("board", "--corners", "8x6"), "odd"),

@@ -21,7 +21,7 @@ RECORDINGS = {
 
 def test_every_example_is_named_here_and_explained():
     names = {path.stem for path in EXAMPLES.glob("*.yaml")}
-    assert names == {*RECORDINGS, "simulated_room", "thesis_room"}
+    assert names == {*RECORDINGS, "kinect_board_2cam_calibration", "simulated_room", "thesis_room"}
     readme = (EXAMPLES / "README.md").read_text()
     assert all(f"`{name}.yaml`" in readme for name in names)
 

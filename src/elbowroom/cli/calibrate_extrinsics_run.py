@@ -12,8 +12,8 @@ from elbowroom.calibrate.extrinsics.report import report_sections
 from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
 from elbowroom.calibrate.extrinsics.solve import Extrinsics, solve_extrinsics
 from elbowroom.calibrate.pictures import grey_depth
-from elbowroom.cli.calibrate_options import site_path
 from elbowroom.cli.calibrate_result import with_margins, write_page, write_result
+from elbowroom.cli.calibrate_site import site_path
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.errors import CalibrationError
@@ -96,7 +96,7 @@ def solve(
         ]
         if not why:
             raise
-        raise CalibrationError(f"{error} (its images: {why[0]}, and {len(why) - 1} more)") from None
+        raise CalibrationError(f"{error} (of {len(why)} images without a view: {why[0]})") from None
 
 
 def summary_row(site: Site, found: Extrinsics, seen: Sightings, seconds: dict[str, float]) -> dict[str, Any]:

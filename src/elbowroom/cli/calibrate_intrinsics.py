@@ -16,11 +16,9 @@ def intrinsics(
         typer.Option(metavar="NAME", help="Only this camera; may be given more than once. Default: all."),
     ] = None,
     distortion: Annotated[
-        Literal["auto", "0", "5", "8"],
-        typer.Option(
-            help="Coefficients; auto: as many as the site has, 5 if none; 0: the lens is known to be a pinhole."
-        ),
-    ] = "auto",
+        Literal["0", "5", "8"],
+        typer.Option(help="Coefficients; 0 where the driver delivers pinhole images already."),
+    ] = "5",
     json: JsonFile = None,
 ) -> None:
     """Find focal length, principal point, distortion, depth scale and bias of each camera, and how sure they are.
@@ -29,5 +27,4 @@ def intrinsics(
     """
     from elbowroom.cli.calibrate_intrinsics_run import run_intrinsics
 
-    count = None if distortion == "auto" else int(distortion)
-    run_intrinsics(site, out, tuple(camera or ()), count, json)
+    run_intrinsics(site, out, tuple(camera or ()), int(distortion), json)

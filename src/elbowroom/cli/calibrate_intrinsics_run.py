@@ -10,7 +10,7 @@ from rich.table import Table
 
 from elbowroom.calibrate.capture import Sightings, sightings
 from elbowroom.calibrate.intrinsics import FoundIntrinsics, cells_seen, solve_intrinsics
-from elbowroom.cli.calibrate_options import site_path
+from elbowroom.cli.calibrate_site import site_path
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.errors import CalibrationError
@@ -23,7 +23,7 @@ SIGNIFICANT = 2.0
 
 
 def run_intrinsics(
-    given: Path, out: Path, names: Sequence[str], coefficients: int | None, json_file: Path | None
+    given: Path, out: Path, names: Sequence[str], coefficients: int, json_file: Path | None
 ) -> None:
     """Detects, solves camera by camera, writes the new site file, prints what was found.
 
@@ -57,7 +57,7 @@ def _chosen(site: Site, names: Sequence[str]) -> list[DepthCamera]:
     return [known[name] for name in names] if names else list(known.values())
 
 
-def _solved(site: Site, camera: DepthCamera, seen: Sightings, coefficients: int | None) -> FoundIntrinsics:
+def _solved(site: Site, camera: DepthCamera, seen: Sightings, coefficients: int) -> FoundIntrinsics:
     """One camera; an error also says what its other images showed."""
     entry = site.entry.calibration
     least = 3 if entry is None else entry.least_views

@@ -10,8 +10,8 @@ from rich.console import Console
 
 from elbowroom.calibrate.refine import Refinement, refine
 from elbowroom.calibrate.surface_report import pair_table, refine_sections
-from elbowroom.cli.calibrate_options import chosen_cameras, site_path
 from elbowroom.cli.calibrate_result import with_margins, write_page, write_result
+from elbowroom.cli.calibrate_site import chosen_cameras, site_path
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.tables import rich_table

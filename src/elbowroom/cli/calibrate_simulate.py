@@ -22,14 +22,6 @@ def simulate(
         int | None,
         typer.Option(min=2, help="Of board or machine, or moments of the room. Default: 40, 12, 30."),
     ] = None,
-    near: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            max=200,
-            help="Board: after --poses also so many near before each camera, for its intrinsics; 20 are good.",
-        ),
-    ] = 0,
     noise: Annotated[str, typer.Option(help="exact, or a sensor such as tof, kinect_v1.")] = "kinect_v1",
     board: Annotated[
         Literal["cut_out", "printed"],
@@ -56,6 +48,12 @@ def simulate(
         float, typer.Option(metavar="PERCENT", help="Depth is too long by up to this.")
     ] = 0.0,
     depth_bias: Annotated[float, typer.Option(metavar="METRES", help="And by up to this.")] = 0.0,
+    near: Annotated[
+        bool,
+        typer.Option(
+            "--near", help="The board right before one camera after the other, for intrinsics; 20 poses each."
+        ),
+    ] = False,
     hand: Annotated[
         float,
         typer.Option(
@@ -75,7 +73,7 @@ def simulate(
 ) -> None:
     """Simulate a capture for calibration: depth images, infrared where the board is printed, a site file, the truth.
 
-    Go on with elbowroom calibrate intrinsics DIR (with --near), extrinsics, machine or refine.
+    Go on with elbowroom calibrate intrinsics DIR/site.yaml, or extrinsics.
     """
     from elbowroom.calibrate.simulated.start import Start
     from elbowroom.cli.calibrate_simulate_run import Wanted, simulate_capture
@@ -87,13 +85,13 @@ def simulate(
         cameras,
         size,
         poses,
-        near,
         noise,
         board,
         corners,
         square,
         border,
         start,
+        near,
         hand,
         moved_pose,
         knock,

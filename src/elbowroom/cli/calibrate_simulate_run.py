@@ -29,6 +29,8 @@ from elbowroom.simulate import wall_cameras
 USUAL_POSES = {"board": 40, "machine": 12, "room": 30}
 USUAL_BOARD = {"vga": ((8, 5), 0.1), "qqvga": ((6, 5), 0.12), "thesis": ((5, 4), 0.18)}
 """Inner corners and edge of a square [m] by size of image."""
+NEAR_POSES = 20
+"""Of a board before each camera."""
 PLATE_M = 0.003
 """Thickness of the plate [m]."""
 
@@ -42,13 +44,13 @@ class Wanted:
     cameras: int
     size: str
     poses: int | None
-    near: int
     noise: str
     board: Literal["cut_out", "printed"]
     corners: str | None
     square_m: float | None
     border_m: float
     start: Start
+    near: bool
     hand_m: float
     moved_pose: int | None
     knock: str | None
@@ -64,21 +66,21 @@ def simulate_capture(wanted: Wanted, json: Path | None) -> None:
         InputError: a noise that is none, a board that does not fit, a folder that cannot be written to.
     """
     begun = time.perf_counter()
+    cameras = _cameras(wanted)
     if wanted.near and wanted.kind != "board":
-        raise InputError(f"--near: {wanted.near} with {wanted.kind}; near poses are those of a board")
-    cameras, poses = _cameras(wanted), wanted.poses or USUAL_POSES[wanted.kind]
-    shown = poses + wanted.near * len(cameras)
+        raise InputError(f"--near with {wanted.kind}: near poses are those of a board; leave it out")
+    poses = wanted.poses or (NEAR_POSES * len(cameras) if wanted.near else USUAL_POSES[wanted.kind])
     console = Console(stderr=True)
     images: list[int] = []
 
     with json_rows(json) as add:
-        bar = iter(track(range(shown), "rendering", console=console, disable=not console.is_terminal))
+        bar = iter(track(range(poses), "rendering", console=console, disable=not console.is_terminal))
 
         def on_pose(done: int, views: int) -> None:
             images.append(views)
             next(bar, None)
-            if not console.is_terminal and (done % 10 == 0 or done == shown):
-                console.print(f"rendering: {done} of {shown}, {sum(images)} images", highlight=False)
+            if not console.is_terminal and (done % 10 == 0 or done == poses):
+                console.print(f"rendering: {done} of {poses}, {sum(images)} images", highlight=False)
 
         site = _record(wanted, cameras, poses, on_pose)
         next(bar, None)
@@ -88,24 +90,19 @@ def simulate_capture(wanted: Wanted, json: Path | None) -> None:
                 "kind": "calibrate simulate",
                 "capture": wanted.kind,
                 "cameras": len(cameras),
-                "poses": shown,
+                "poses": poses,
                 "images": sum(images),
                 "seconds": seconds,
                 "site": str(site),
             }
         )
+    on = {"machine": "calibrate machine", "room": "calibrate refine"}.get(wanted.kind, "calibrate extrinsics")
+    on = "calibrate intrinsics" if wanted.near else on
     Console(highlight=False).print(
         f"{sum(images)} images of {len(cameras)} cameras in {seconds:.0f} s; "
-        f"now: elbowroom calibrate {_next(wanted)} {site} --out calibrated.yaml",
+        f"now: elbowroom {on} {site} --out calibrated.yaml",
         soft_wrap=True,
     )
-
-
-def _next(wanted: Wanted) -> str:
-    """The command that the capture is for."""
-    if wanted.kind == "board":
-        return "intrinsics" if wanted.near else "extrinsics"
-    return "machine" if wanted.kind == "machine" else "refine"
 
 
 def _record(wanted: Wanted, cameras: tuple[TrueCamera, ...], poses: int, on_pose) -> Path:  # type: ignore[no-untyped-def]

@@ -14,6 +14,7 @@ from elbowroom.errors import CalibrationError
 Array = NDArray[np.float64]
 SIZE_SHARE = 0.03
 """Distances by corners and by depth may differ by so much: no depth camera's scale is off by more."""
+SIZE_SIGMAS = 4.0
 MOVED_M = 0.004
 MOVED_SIGMAS = 4.0
 """Two views' own poses of the board may lie so far apart."""
@@ -29,25 +30,33 @@ def require_board_size(board: Board, seen: Sequence[SeenBoard]) -> None:
     Raises:
         CalibrationError: they differ in all cameras (the board), or in one (its depth scale or its lens).
     """
-    ratios: dict[str, list[float]] = defaultdict(list)
+    ratios: dict[str, list[tuple[float, float]]] = defaultdict(list)
     for one in seen:
         if one.depth_over_corners is not None:
             ratios[one.view.camera].append(one.depth_over_corners)
     if not ratios:
         return
-    by_camera = {name: float(np.median(values)) for name, values in ratios.items()}
+    by_camera = {name: float(np.median([ratio for ratio, _ in own])) for name, own in ratios.items()}
+    # of a few small boards in coarse images the distance by corners is not known that well
+    sure_to = {name: SIZE_SIGMAS * _median_sigma([sigma for _, sigma in own]) for name, own in ratios.items()}
     overall = float(np.median(list(by_camera.values())))
-    worst = max(by_camera, key=lambda name: abs(by_camera[name] / overall - 1))
-    if abs(overall - 1) > SIZE_SHARE:
+    worst = max(by_camera, key=lambda name: abs(by_camera[name] / overall - 1) - sure_to[name])
+    every = SIZE_SIGMAS * _median_sigma([sigma for own in ratios.values() for _, sigma in own])
+    if abs(overall - 1) > SIZE_SHARE + every:
         raise CalibrationError(
             f"board: square_m is {board.square_m:g}, but by the depth images of {_count(len(ratios))} its squares "
             f"are {board.square_m * overall:.4g} m; measure a square, or check depth_scale_m and fx"
         )
-    if abs(by_camera[worst] / overall - 1) > SIZE_SHARE and len(by_camera) > 2:
+    if abs(by_camera[worst] / overall - 1) > SIZE_SHARE + sure_to[worst] and len(by_camera) > 2:
         raise CalibrationError(
             f"camera {worst}: its depth makes the board's squares {board.square_m * by_camera[worst]:.4g} m, "
             f"the others {board.square_m * overall:.4g} m; check its depth_scale_m, depth_kind and fx"
         )
+
+
+def _median_sigma(sigmas: Sequence[float]) -> float:
+    """Of the median of values with these sigmas, about."""
+    return 1.2533 * float(np.sqrt(np.mean(np.square(sigmas)) / len(sigmas)))
 
 
 def require_tilts(seen: Sequence[SeenBoard], solution: Solution) -> None:

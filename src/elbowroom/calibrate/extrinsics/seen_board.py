@@ -64,7 +64,8 @@ class SeenBoard:
         weight: of each corner, 0 to 1, shape (n,): what is far off its neighbours counts less.
         plane: what depth says; None: nothing.
         lone: one or two poses, the likelier first.
-        depth_over_corners: distance of the board by depth over that by its corners alone; None without depth.
+        depth_over_corners: distance of the board by depth over that by its corners alone, and the sigma of the latter's
+            share; None without depth.
     """
 
     view: BoardView
@@ -73,7 +74,7 @@ class SeenBoard:
     weight: Array
     plane: SeenPlane | None
     lone: tuple[Lone, ...]
-    depth_over_corners: float | None
+    depth_over_corners: tuple[float, float] | None
 
 
 def corner_rows(
@@ -283,8 +284,13 @@ def _require_its_face(corners: Array, best: Lone, what: str) -> None:
         )
 
 
-def _depth_over_corners(plane: SeenPlane | None, alone: Lone, corners: Array) -> float | None:
+def _depth_over_corners(plane: SeenPlane | None, alone: Lone, corners: Array) -> tuple[float, float] | None:
     if plane is None:
         return None
-    middle = alone.camera_from_board[:3, :3] @ corners.mean(axis=0) + alone.camera_from_board[:3, 3]
-    return float(1 / (plane.m @ middle))
+    rotation, centre = alone.camera_from_board[:3, :3], corners.mean(axis=0)
+    middle = rotation @ centre + alone.camera_from_board[:3, 3]
+    # the middle moves by rotation @ (t + w x centre)
+    slope = plane.m @ rotation @ np.concatenate([-cross_matrix(centre), np.eye(3)], axis=1)
+    ratio = float(1 / (plane.m @ middle))
+    variance = slope @ np.linalg.solve(alone.information + 1e-9 * np.eye(6), slope)
+    return ratio, ratio * float(np.sqrt(max(variance, 0.0)))

@@ -16,7 +16,6 @@ from elbowroom.geometry import DepthCamera
 
 Array = NDArray[np.float64]
 LEAST_VIEWS = 3
-USUAL_COEFFICIENTS = 5
 LEAST_TILT_DEG = 4.0
 MOST_SCALE_OFF = 0.08
 """Depth that differs by more from what the board's size says is a wrong size, not a sensor's error."""
@@ -59,7 +58,7 @@ def solve_intrinsics(
     camera: DepthCamera,
     board: Board,
     views: Sequence[BoardView],
-    coefficients: int | None = None,
+    coefficients: int = 5,
     least_views: int = LEAST_VIEWS,
 ) -> FoundIntrinsics:
     """Focal lengths, principal point, distortion, depth scale and bias of a camera.
@@ -68,9 +67,8 @@ def solve_intrinsics(
         camera: as the site has it: its focal length is where the search starts.
         board: the board.
         views: this camera's.
-        coefficients: 0, 5 or 8 of distortion; None: as many as the site says of this camera, 5 if none. To leave
-            them out where a lens bends costs far more than to seek them where it does not, so no test of the
-            corners decides that.
+        coefficients: 0, 5 or 8 of distortion. None at all only where the driver delivers pinhole images: a lens that
+            is taken for straight bends the focal length.
         least_views: fewer are refused.
 
     Raises:
@@ -83,9 +81,7 @@ def solve_intrinsics(
             "hold it before this camera, whole and tilted this way and that"
         )
     start = _first_solution(camera, board, mine)
-    count = len(camera.intrinsics.distortion) or USUAL_COEFFICIENTS if coefficients is None else coefficients
-    model = LensModel(camera, board, mine, count)
-    numbers, covariance = _solved(model, start)
+    model, numbers, covariance = _solved(LensModel(camera, board, mine, coefficients), start)
     return _result(camera, board, model, numbers, covariance)
 
 
@@ -125,7 +121,7 @@ def _first_solution(camera: DepthCamera, board: Board, views: Sequence[BoardView
     return numbers, np.hstack([np.reshape(turns, (-1, 3)), np.reshape(shifts, (-1, 3))])
 
 
-def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[Array, Array]:
+def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[LensModel, Array, Array]:
     """The numbers that fit best, and their covariance."""
     pinhole, poses = start
     numbers = np.concatenate([pinhole, np.zeros(model.coefficients), (1.0, 0.0), poses.ravel()])
@@ -159,7 +155,7 @@ def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[Array, Array]
     covariance: Array = spread * np.asarray(
         np.linalg.inv(jacobian.T @ (jacobian * weight[:, None])), dtype=np.float64
     )
-    return numbers, covariance
+    return model, numbers, covariance
 
 
 def _cost(residuals: Array) -> float:

@@ -2,7 +2,6 @@
 
 from elbowroom.calibrate.simulated.board_capture import BoardCapture, record_board
 from elbowroom.calibrate.simulated.hand_poses import Shown, hand_poses
-from elbowroom.calibrate.simulated.near_poses import near_poses
 from elbowroom.calibrate.simulated.room_capture import record_machine, record_room
 from elbowroom.calibrate.simulated.start import Start, started
 from elbowroom.calibrate.simulated.writer import CaptureWriter, read_truth
@@ -13,7 +12,6 @@ __all__ = [
     "Shown",
     "Start",
     "hand_poses",
-    "near_poses",
     "read_truth",
     "record_board",
     "record_machine",

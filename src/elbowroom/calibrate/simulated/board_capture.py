@@ -1,4 +1,4 @@
-"""A capture of a board that is laid on the floor once, held up all over the room, and near before each camera."""
+"""A capture of a board that is held up all over the room, and laid on the floor once."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate.board import Board
 from elbowroom.calibrate.simulated.hand_poses import Shown, floor_pose, hand_poses, shown
-from elbowroom.calibrate.simulated.near_poses import near_poses
 from elbowroom.calibrate.simulated.start import TrueCamera, moved
 from elbowroom.calibrate.simulated.writer import INFRARED_FOLDER, CaptureWriter
 from elbowroom.errors import CalibrationError
@@ -39,11 +38,11 @@ class BoardCapture:
         hand_moved_m, hand_turned_deg: how far a hand moves the board between the exposures of different cameras.
         moved_pose: in this pose the board is moved on by `MOVED_M` while half of the cameras have yet to see it; None:
             in none.
+        near: each pose right before one camera, for intrinsics.
         all_views: also images that show a part of the board or its back, as a real capture has.
-        near: after these poses the board is shown to each camera by itself in so many near poses, for its intrinsics.
 
     Raises:
-        CalibrationError: fewer than two poses, or less than no near ones.
+        CalibrationError: fewer than two poses.
     """
 
     cameras: tuple[TrueCamera, ...]
@@ -54,19 +53,12 @@ class BoardCapture:
     hand_moved_m: float = 0.0002
     hand_turned_deg: float = 0.01
     moved_pose: int | None = None
+    near: bool = False
     all_views: bool = True
-    near: int = 0
 
     def __post_init__(self) -> None:
         if self.poses < 2:
             raise CalibrationError(f"capture: {self.poses} poses, must be at least 2")
-        if self.near < 0:
-            raise CalibrationError(f"capture: {self.near} near poses, must be at least 0")
-
-    @property
-    def all_poses(self) -> int:
-        """How often the board is shown, the near poses of all cameras among them."""
-        return self.poses + self.near * len(self.cameras)
 
 
 MOVED_M = 0.03
@@ -95,14 +87,12 @@ def record_board(
     lying = WorldFromBoard(by="board", pose=0, first_corner_m=first_corner_m, x_axis_deg=x_axis_deg)
     true_cameras = [camera.true for camera in capture.cameras]
     poses = [lying.world_from_board]
-    poses += hand_poses(true_cameras, capture.board, capture.poses - 1, random, taken=poses)
-    shows = [(pose, capture.cameras) for pose in poses]
-    for camera in capture.cameras:
-        near = near_poses(camera.true, capture.board, capture.near, random)
-        shows += [(pose, (camera,)) for pose in near]
+    poses += hand_poses(
+        true_cameras, capture.board, capture.poses - 1, random, taken=poses, near=capture.near
+    )
     rows = []
-    for number, (pose, before) in enumerate(shows):
-        seen = _show(capture, writer, number, pose, before, random)
+    for number, pose in enumerate(poses):
+        seen = _show(capture, writer, number, pose, random)
         rows.append(
             {
                 "stamp_ns": _stamp(number),
@@ -126,13 +116,12 @@ def _show(
     writer: CaptureWriter,
     number: int,
     pose: NDArray[np.float64],
-    before: tuple[TrueCamera, ...],
     random: np.random.Generator,
 ) -> dict[str, Shown]:
-    """Renders the board at one pose for each of the cameras it is shown to that has it in view."""
+    """Renders the board at one pose for each camera that has it in view."""
     seen: dict[str, Shown] = {}
     work: list[tuple[TrueCamera, NDArray[np.float64]]] = []
-    for index, camera in enumerate(before):
+    for index, camera in enumerate(capture.cameras):
         by_hand = pose @ moved(capture.hand_turned_deg, capture.hand_moved_m, random) if number else pose
         if number == capture.moved_pose and index % 2:
             by_hand = by_hand @ moved(0.0, MOVED_M, random)

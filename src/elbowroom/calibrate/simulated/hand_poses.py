@@ -24,6 +24,9 @@ MOST_INCIDENCE_DEG = 60.0
 LEAST_SQUARE_PX = 2.6
 EDGE_PX = 2.0
 TILT_DEG = 38.0
+NEAR_FILLS = (0.9, 1.6)
+"""Distance of a board that is held near, over that at which its diagonal is as long as the image is wide."""
+NEAR_TILT_DEG = (20.0, 45.0)
 FEET_M = 0.25
 """A board that is cut out stands on feet this high when it lies: through its holes depth must differ [m]."""
 FLOOR_PLACE_M = (-0.35, 0.2)
@@ -82,6 +85,7 @@ def hand_poses(
     random: np.random.Generator,
     half_side_m: float = HALF_SIDE_M,
     taken: Sequence[NDArray[np.float64]] = (),
+    near: bool = False,
 ) -> list[NDArray[np.float64]]:
     """Poses of a board that is held up before one camera after the other, tilted and turned, all over their images.
 
@@ -95,6 +99,8 @@ def hand_poses(
         random: source of randomness.
         half_side_m: the walls' distance from the room's middle [m].
         taken: poses that are there already, such as the one on the floor.
+        near: right before one camera each time, so that the board fills half of its image or more and is always
+            tilted: what intrinsics want. Other cameras hardly see it.
 
     Returns:
         world_from_board, each of shape (4, 4).
@@ -111,8 +117,8 @@ def hand_poses(
         best, most, drawn = None, -1.0, 0
         for _ in range(MOST_TRIES):
             camera = cameras[int(random.permutation(_neediest(views))[0])]
-            pose = _drawn(camera, board, random)
-            if not in_room(board, pose, half_side_m) or not shown(camera, board, pose).whole:
+            pose = _drawn(camera, board, random, near)
+            if not _in_room(board, pose, half_side_m) or not shown(camera, board, pose).whole:
                 continue
             worth = _worth(cameras, board, pose, views, cells)
             if worth > most:
@@ -137,34 +143,40 @@ def _neediest(views: dict[str, int]) -> NDArray[np.int64]:
     return np.flatnonzero(counts <= counts.min() + 1)
 
 
-def _drawn(camera: DepthCamera, board: Board, random: np.random.Generator) -> NDArray[np.float64]:
+def _drawn(
+    camera: DepthCamera, board: Board, random: np.random.Generator, near_by: bool
+) -> NDArray[np.float64]:
     """The board before a camera: a place of its image, a distance, a tilt and a turn."""
     reach = float(np.linalg.norm(np.ptp(board.outline_in_board, axis=0)))
     near = max(0.5, 0.6 * reach * camera.intrinsics.fx / camera.width)
     far = min(3.2, board.square_m * camera.intrinsics.fx / LEAST_SQUARE_PX)
+    least_tilt_deg, most_tilt_deg = 0.0, TILT_DEG
+    if near_by:
+        fills = reach * camera.intrinsics.fx / camera.width
+        near, far = NEAR_FILLS[0] * fills, NEAR_FILLS[1] * fills
+        least_tilt_deg, most_tilt_deg = NEAR_TILT_DEG
     z = random.uniform(near, max(far, near + 0.1))
     u, v = random.uniform(0, camera.width), random.uniform(0, camera.height)
     k = camera.intrinsics
     middle = np.array([(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z])
-    tilt_deg = random.uniform(0, TILT_DEG)
+    tilt_deg = random.uniform(least_tilt_deg, most_tilt_deg)
     turn = random.uniform(0, 2 * np.pi)
     tilt = Rotation.from_rotvec(np.radians(tilt_deg) * np.array([np.cos(turn), np.sin(turn), 0]))
     roll = Rotation.from_euler("z", random.normal(0, 20) + 90 * random.integers(0, 4), degrees=True)
     camera_from_board = np.eye(4)
-    camera_from_board[:3, :3] = (facing(middle) * tilt * roll).as_matrix()
+    camera_from_board[:3, :3] = (_facing(middle) * tilt * roll).as_matrix()
     camera_from_board[:3, 3] = middle - camera_from_board[:3, :3] @ board.corners_in_board.mean(axis=0)
     return camera.world_from_camera @ camera_from_board
 
 
-def facing(middle: NDArray[np.float64]) -> Rotation:
-    """Turns the camera's z axis to the line of sight to a point in the camera's frame [m]."""
+def _facing(middle: NDArray[np.float64]) -> Rotation:
+    """Turns the camera's z axis to the line of sight."""
     axis = np.array([-middle[1], middle[0], 0.0])
     across = float(np.linalg.norm(axis))
     return Rotation.from_rotvec(axis / max(across, 1e-12) * np.arctan2(across, middle[2]))
 
 
-def in_room(board: Board, pose: NDArray[np.float64], half_side_m: float) -> bool:
-    """Whether the board at a pose in the world keeps clear of walls, floor and ceiling."""
+def _in_room(board: Board, pose: NDArray[np.float64], half_side_m: float) -> bool:
     corners = board.outline_in_board @ pose[:3, :3].T + pose[:3, 3]
     low, high = corners.min(axis=0), corners.max(axis=0)
     side = half_side_m - CLEARANCE_M
