@@ -467,6 +467,7 @@ CALIBRATION_COLUMNS = {
         "seconds",
     ),
     "refine": ("start", "agree_pct", "note"),
+    "intrinsics": ("case", "views", "worst_focal_pct", "focal_error_pct", "seconds"),
 }
 
 
