@@ -478,6 +478,7 @@ def _due_of(key: str) -> Due:
         wanted = row.get("due", {}).get(key)
         if not isinstance(wanted, int | float) or not isinstance(row.get(key), int | float):
             return None
-        return ("≥" if key.endswith("_pct") else "≤", float(wanted))
+        is_error = key.startswith("worst") or not key.endswith("_pct")
+        return ("≤" if is_error else "≥", float(wanted))
 
     return due
