@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.calibrate.commission import Commissioning
+from elbowroom.calibrate.commissioning.commission import Commissioning
 from elbowroom.errors import CalibrationError, InputError
 from elbowroom.monitor import Condition, Watch
 from elbowroom.monitor.camera_watch import BLIND_S, COVERED_S

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.calibrate.commission import Commissioning
+from elbowroom.calibrate.commissioning.commission import Commissioning
 from elbowroom.geometry import DepthCamera
 from elbowroom.monitor.health import Condition
 from elbowroom.monitor.reference import CameraReference

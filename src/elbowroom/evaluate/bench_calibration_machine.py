@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from scipy.stats import chi2
 
-from elbowroom.calibrate.agreement import Agreement, agreement
-from elbowroom.calibrate.machine_target import calibrate_from_machine
+from elbowroom.calibrate.from_machine.target import calibrate_from_machine
 from elbowroom.calibrate.planar_images import planar_images
-from elbowroom.calibrate.refine import refine
+from elbowroom.calibrate.refinement.agreement import Agreement, agreement
+from elbowroom.calibrate.refinement.refine import refine
 from elbowroom.calibrate.rigid import exp
 from elbowroom.calibrate.twist import between, sizes
 from elbowroom.errors import SiteError

@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.board_view import BoardView
-from elbowroom.calibrate.cut_out import LEAST_AGREEMENT, pixel_rays_of
-from elbowroom.calibrate.edge_fit import edges_fitted
-from elbowroom.calibrate.near_far import NearFar
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.edge_fit import LEAST_AGREEMENT, edges_fitted
+from elbowroom.calibrate.boards.near_far import NearFar
+from elbowroom.calibrate.boards.pixel_rays import pixel_rays_of
+from elbowroom.calibrate.boards.trouble import Fault, Trouble
 from elbowroom.calibrate.opencv import opencv
-from elbowroom.calibrate.trouble import Fault, Trouble
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing.distortion import distorted
 from elbowroom.simulate.rays import undistort
@@ -120,8 +120,7 @@ def _refined(
     refined = np.column_stack([u, v])
     if np.abs(refined - flat).max() > MOST_CHANGE_PX:
         return None
-    variance = (intrinsics.fx**2 * fit.covariance[:, 0, 0] + intrinsics.fy**2 * fit.covariance[:, 1, 1]) / 2
-    return refined, np.sqrt(variance)
+    return refined, fit.sigma_px(intrinsics)
 
 
 def _as_near_far(
@@ -212,9 +211,11 @@ def _grey_at(grey: NDArray[np.uint8], homography: Array, x: float, y: float, hal
 def _mark_contrast(grey: NDArray[np.uint8], corners: Array, board: Board) -> float:
     """How much brighter the mark's place is than where a mirror would put it, over the board's own contrast."""
     homography = _homography(board, corners)
-    twin = (-0.5, board.rows - 0.5) if board.columns % 2 else (board.columns - 0.5, -0.5)
     contrast = abs(_square_grey(grey, homography, board, 0, 0) - _square_grey(grey, homography, board, 1, 0))
-    here, there = _grey_at(grey, homography, -0.5, -0.5, 0.15), _grey_at(grey, homography, *twin, 0.15)
+    here, there = (
+        _grey_at(grey, homography, float(x), float(y), 0.15)
+        for x, y, _ in (board.mark_in_board / board.square_m, board.mirrored_mark_in_board / board.square_m)
+    )
     return (here - there) / max(contrast, 1.0)
 
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from elbowroom.calibrate.commission import Commissioning
-from elbowroom.calibrate.flat_spots import flat_spots
+from elbowroom.calibrate.commissioning.commission import Commissioning
+from elbowroom.calibrate.commissioning.flat_spots import flat_spots
 from elbowroom.geometry import Intrinsics
 from elbowroom.machine.rasterise import rasterise
 from elbowroom.monitor import Watch

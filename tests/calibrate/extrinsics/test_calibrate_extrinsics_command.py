@@ -7,8 +7,8 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from elbowroom.calibrate.agreement import agreement
 from elbowroom.calibrate.change import pose_difference
+from elbowroom.calibrate.refinement.agreement import agreement
 from elbowroom.cli.app import app
 from elbowroom.errors import CalibrationError, InputError
 from elbowroom.site import Site, moments

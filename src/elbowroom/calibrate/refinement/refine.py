@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate._kernels_overlap import Overlap
-from elbowroom.calibrate.agreement import Agreement, agreement, seen_from
 from elbowroom.calibrate.calibrated_camera import CalibratedCamera
-from elbowroom.calibrate.overlap import PairSums, Surfaces, pair_sums, pairs_of, surfaces
 from elbowroom.calibrate.planar_images import planar_images
-from elbowroom.calibrate.refine_step import Before, equations, step
-from elbowroom.calibrate.refine_verdict import FEWEST_COMMON, check_refined, untouched_notes
+from elbowroom.calibrate.refinement._kernels_overlap import Overlap
+from elbowroom.calibrate.refinement.agreement import Agreement, agreement, seen_from
+from elbowroom.calibrate.refinement.overlap import PairSums, Surfaces, pair_sums, pairs_of, surfaces
+from elbowroom.calibrate.refinement.step import Before, equations, step
+from elbowroom.calibrate.refinement.verdict import FEWEST_COMMON, check_refined, untouched_notes
 from elbowroom.calibrate.surface_picture import SurfacePicture
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera

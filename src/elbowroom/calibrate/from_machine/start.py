@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter
 from scipy.spatial import cKDTree
 
-from elbowroom.calibrate.drawn_machine import DrawnMachine
-from elbowroom.calibrate.machine_capture import MachineViews
+from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
+from elbowroom.calibrate.from_machine.views import MachineViews
 from elbowroom.calibrate.planar_images import PlanarImages, thinned
 from elbowroom.calibrate.twist import between, moved, sizes
 from elbowroom.errors import CalibrationError

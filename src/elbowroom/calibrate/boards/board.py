@@ -76,6 +76,17 @@ class Board:
         return corners
 
     @property
+    def mark_in_board(self) -> NDArray[np.float64]:
+        """Middle of the first square, where the mark is, shape (3,), board frame [m]."""
+        return np.array([-self.square_m / 2, -self.square_m / 2, 0.0])
+
+    @property
+    def mirrored_mark_in_board(self) -> NDArray[np.float64]:
+        """Middle of the square in which a mirror shows the mark, as `mark_in_board`."""
+        far = np.array([-0.5, self.rows - 0.5]) if self.columns % 2 else np.array([self.columns - 0.5, -0.5])
+        return np.append(far * self.square_m, 0.0)
+
+    @property
     def outline_in_board(self) -> NDArray[np.float64]:
         """The plate's four corners, border and all, in turn, shape (4, 3), board frame [m]."""
         before = self.square_m + self.border_m

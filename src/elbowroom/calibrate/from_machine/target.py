@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.calibrated_camera import CalibratedCamera
-from elbowroom.calibrate.drawn_machine import DrawnMachine
-from elbowroom.calibrate.machine_capture import MachineViews, machine_views
-from elbowroom.calibrate.machine_fit import Known, MachineFit, fit
-from elbowroom.calibrate.machine_start import start
-from elbowroom.calibrate.machine_verdict import check_camera, notes_of
+from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
+from elbowroom.calibrate.from_machine.fit import Known, MachineFit, fit
+from elbowroom.calibrate.from_machine.start import start
+from elbowroom.calibrate.from_machine.surface_sums import SurfaceSums
+from elbowroom.calibrate.from_machine.verdict import check_camera, notes_of
+from elbowroom.calibrate.from_machine.views import MachineViews, machine_views
 from elbowroom.calibrate.surface_picture import SurfacePicture
-from elbowroom.calibrate.surface_sums import SurfaceSums
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.geometry.parallel import spread

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from elbowroom.calibrate.agreement import Agreement, agreement, seen_from
 from elbowroom.calibrate.planar_images import planar_images
-from elbowroom.calibrate.refine import refine
-from elbowroom.calibrate.refine_verdict import ALLOWED
+from elbowroom.calibrate.refinement.agreement import Agreement, agreement, seen_from
+from elbowroom.calibrate.refinement.refine import refine
+from elbowroom.calibrate.refinement.verdict import ALLOWED
 from elbowroom.calibrate.twist import between, sizes
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import invert_rigid

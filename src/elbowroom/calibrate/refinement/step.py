@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.overlap import PairSums
+from elbowroom.calibrate.refinement.overlap import PairSums
 from elbowroom.calibrate.twist import adjoint, between, moved
 from elbowroom.geometry import invert_rigid
 

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from elbowroom.calibrate._kernels_overlap import AGREES, COMPARED
-from elbowroom.calibrate.overlap import PairSums
 from elbowroom.calibrate.pose_words import deviations, weakest_words
-from elbowroom.calibrate.refine_step import Before
+from elbowroom.calibrate.refinement._kernels_overlap import AGREES, COMPARED
+from elbowroom.calibrate.refinement.overlap import PairSums
+from elbowroom.calibrate.refinement.step import Before
 from elbowroom.calibrate.twist import between, sizes
 from elbowroom.errors import CalibrationError
 

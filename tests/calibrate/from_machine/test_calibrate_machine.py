@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from elbowroom.calibrate.machine_target import calibrate_from_machine
+from elbowroom.calibrate.from_machine.target import calibrate_from_machine
 from elbowroom.calibrate.twist import between, moved, sizes
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate._kernels_overlap import COMPARED, Overlap, compare_points, fit_planes
 from elbowroom.calibrate.planar_images import PlanarImages
+from elbowroom.calibrate.refinement._kernels_overlap import COMPARED, Overlap, compare_points, fit_planes
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.rasterise import view_of

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.flat_spots import flat_spots
+from elbowroom.calibrate.commissioning.flat_spots import flat_spots
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine import Machine

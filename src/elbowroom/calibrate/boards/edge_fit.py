@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import erf
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.near_far import NearFar
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.near_far import NearFar
+from elbowroom.geometry import Intrinsics
 
 Array = NDArray[np.float64]
 EDGE_PX = 0.6
@@ -16,6 +17,8 @@ ROUNDS = 12
 LOCAL_ROUNDS = 3
 LEAST_LOCAL_PX = 7.0
 """Squares below this get no corners of their own: their edges are too few, the homography of all says it better."""
+LEAST_AGREEMENT = 0.72
+"""Of the pattern when it was fitted; boards of other sizes reach 0.5."""
 MOST_SHIFT = 0.2
 """A corner that moves by more than this share of a square is not believed."""
 
@@ -41,6 +44,11 @@ class Fit(NamedTuple):
     residual: float
     agreement: float
     square_px: float
+
+    def sigma_px(self, intrinsics: Intrinsics) -> Array:
+        """Standard deviation of each corner, mean of both directions, shape (n,) [px]."""
+        variance = intrinsics.fx**2 * self.covariance[:, 0, 0] + intrinsics.fy**2 * self.covariance[:, 1, 1]
+        return np.asarray(np.sqrt(variance / 2))
 
 
 class _Edges(NamedTuple):

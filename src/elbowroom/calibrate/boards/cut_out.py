@@ -1,27 +1,24 @@
 """A board that is cut out, seen in a depth image."""
 
-from functools import lru_cache
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import erf
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.board_view import BoardView
-from elbowroom.calibrate.edge_fit import EDGE_PX, Fit, edges_fitted
-from elbowroom.calibrate.near_far import NearFar, cropped, near_far
-from elbowroom.calibrate.plate import Plate, View, plates
-from elbowroom.calibrate.registration import Registration, registered
-from elbowroom.calibrate.trouble import Fault, Trouble
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.edge_fit import EDGE_PX, LEAST_AGREEMENT, Fit, edges_fitted
+from elbowroom.calibrate.boards.near_far import NearFar, cropped, near_far
+from elbowroom.calibrate.boards.pixel_rays import pixel_rays_of
+from elbowroom.calibrate.boards.plate import Plate, View, plates
+from elbowroom.calibrate.boards.registration import Registration, registered
+from elbowroom.calibrate.boards.trouble import Fault, Trouble
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing.distortion import distorted
-from elbowroom.simulate.rays import PixelRays, pixel_rays
+from elbowroom.simulate.rays import PixelRays
 
 Array = NDArray[np.float64]
 LEAST_SCORE = 0.2
 """Of the pattern laid over the picture by steps of turn and place; what is below is not tried."""
-LEAST_AGREEMENT = 0.72
-"""Of the pattern when it was fitted; boards of other sizes reach 0.5."""
 LEAST_KNOWN = 0.93
 """Share of the pattern that must be seen."""
 LEAST_SQUARE_PX = 2.2
@@ -80,12 +77,6 @@ def cut_out_view(
             return found
         worst = worst or (_other_size(picture, plate, camera, board, pose) if other_sizes else None) or found
     return worst or Trouble(camera.name, pose, Fault.NOT_SEEN)
-
-
-@lru_cache(maxsize=64)
-def pixel_rays_of(camera: DepthCamera) -> PixelRays:
-    """The rays of a camera's pixels, kept for the cameras that were asked last."""
-    return pixel_rays(camera)
 
 
 def _planar(camera: DepthCamera, rays: PixelRays, depth_m: NDArray[np.floating]) -> NDArray[np.float32]:
@@ -160,7 +151,7 @@ def _read(
         pose=pose,
         corner_ids=np.arange(len(u)),
         corners_px=np.column_stack([u, v]),
-        corner_sigma_px=_sigma_px(camera, fit),
+        corner_sigma_px=np.maximum(fit.sigma_px(camera.intrinsics), LEAST_SIGMA_PX),
         plane_px=np.column_stack([columns, rows]).astype(float),
         plane_depth_m=np.asarray(depth_m, dtype=float)[rows, columns],
         stamp_ns=stamp_ns,
@@ -183,22 +174,16 @@ def _half_walls(board: Board, fit: Fit) -> Array:
     return np.asarray(deeper[:, :2] / deeper[:, 2:] - face[:, :2] / face[:, 2:])
 
 
-def _sigma_px(camera: DepthCamera, fit: Fit) -> Array:
-    k = camera.intrinsics
-    variance = (k.fx**2 * fit.covariance[:, 0, 0] + k.fy**2 * fit.covariance[:, 1, 1]) / 2
-    return np.maximum(np.sqrt(variance), LEAST_SIGMA_PX)
-
-
 def _mark_contrast(board: Board, picture: NearFar, fit: Fit) -> float:
     """How much farther it is in the first square's middle than in that of the square where a mirror would put it."""
-    s = board.square_m
-    twin = (-0.5 * s, (board.rows - 0.5) * s) if board.columns % 2 else ((board.columns - 0.5) * s, -0.5 * s)
+    quarter = board.square_m / 4
 
-    def hole(x: float, y: float) -> float:
-        weight = _box(fit.board_x - x, s / 4) * _box(fit.board_y - y, s / 4) * picture.known
+    def hole(middle: Array) -> float:
+        x, y = fit.board_x - middle[0], fit.board_y - middle[1]
+        weight = _box(x, quarter) * _box(y, quarter) * picture.known
         return float((weight * (1 - picture.near)).sum() / max(float(weight.sum()), 1e-9))
 
-    return hole(-s / 2, -s / 2) - hole(*twin)
+    return hole(board.mark_in_board) - hole(board.mirrored_mark_in_board)
 
 
 def _box(place: Array, half: float) -> Array:

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image as Pictures
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.board_view import BoardView
-from elbowroom.calibrate.colour import carried_to_depth
-from elbowroom.calibrate.cut_out import cut_out_view
-from elbowroom.calibrate.printed import printed_view
-from elbowroom.calibrate.trouble import Fault, Trouble
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.colour import carried_to_depth
+from elbowroom.calibrate.boards.cut_out import cut_out_view
+from elbowroom.calibrate.boards.printed import printed_view
+from elbowroom.calibrate.boards.trouble import Fault, Trouble
 from elbowroom.errors import CalibrationError, FrameError
 from elbowroom.geometry import DepthCamera, Intrinsics, nearest_rigid
 from elbowroom.geometry.parallel import spread

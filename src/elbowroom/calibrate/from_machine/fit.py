@@ -7,10 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate._kernels_surface import Trust
-from elbowroom.calibrate.drawn_machine import DrawnMachine
-from elbowroom.calibrate.machine_capture import MachineViews
-from elbowroom.calibrate.surface_sums import (
+from elbowroom.calibrate.from_machine._kernels_surface import Trust
+from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
+from elbowroom.calibrate.from_machine.surface_sums import (
     TRUST,
     SurfaceSums,
     depth_error_step,
@@ -18,6 +17,7 @@ from elbowroom.calibrate.surface_sums import (
     surface_sums,
     whole,
 )
+from elbowroom.calibrate.from_machine.views import MachineViews
 from elbowroom.calibrate.twist import adjoint, between, moved
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import invert_rigid

@@ -11,11 +11,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.board_view import BoardView
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.printed import points_within
 from elbowroom.calibrate.extrinsics.seen_board import seen_board
 from elbowroom.calibrate.lens import directions, project
-from elbowroom.calibrate.printed import points_within
 from elbowroom.geometry import DepthCamera, invert_rigid
 
 Array = NDArray[np.float64]

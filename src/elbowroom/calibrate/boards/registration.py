@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 from scipy.ndimage import gaussian_filter
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.near_far import NearFar
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.near_far import NearFar
+from elbowroom.calibrate.boards.plate import Plate
 from elbowroom.calibrate.opencv import opencv
-from elbowroom.calibrate.plate import Plate
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing.distortion import distorted
 

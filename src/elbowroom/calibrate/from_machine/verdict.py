@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from elbowroom.calibrate.drawn_machine import DrawnMachine
-from elbowroom.calibrate.machine_capture import MachineViews
-from elbowroom.calibrate.machine_fit import MachineFit
+from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
+from elbowroom.calibrate.from_machine.fit import MachineFit
+from elbowroom.calibrate.from_machine.surface_sums import SurfaceSums
+from elbowroom.calibrate.from_machine.views import MachineViews
 from elbowroom.calibrate.pose_words import deviations, weakest_words
-from elbowroom.calibrate.surface_sums import SurfaceSums
 from elbowroom.errors import CalibrationError
 from elbowroom.machine import Machine
 

@@ -5,9 +5,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate._kernels_surface import AGREES, BEFORE, BEHIND, SEEN, SILENT, Trust, compare
-from elbowroom.calibrate.drawn_machine import DrawnMachine
-from elbowroom.calibrate.machine_capture import MachineViews
+from elbowroom.calibrate.from_machine._kernels_surface import (
+    AGREES,
+    BEFORE,
+    BEHIND,
+    SEEN,
+    SILENT,
+    Trust,
+    compare,
+)
+from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
+from elbowroom.calibrate.from_machine.views import MachineViews
 from elbowroom.machine.rasterise import view_of
 
 MODEL_SIGMA_M = 0.002
