@@ -12,6 +12,8 @@ from elbowroom.monitor.health import CameraHealth, Condition
 from elbowroom.monitor.reference import MOVE_PRIOR_M, TURN_PRIOR_RAD, CameraReference
 from elbowroom.monitor.sequential import Tally
 from elbowroom.monitor.shift import Shift
+from elbowroom.monitor.shown_part import ShownPart
+from elbowroom.monitor.tolerance import Tolerance
 from elbowroom.sensing import DepthFrame
 
 GATE_M = 0.20
@@ -33,28 +35,6 @@ COVERED_S = 5.0
 BLIND_S = 1.0
 
 
-@dataclass(frozen=True, slots=True)
-class Tolerance:
-    """What is not yet called moved; the margin has to cover it.
-
-    Args:
-        turn_rad: [rad].
-        move_m: [m].
-
-    Raises:
-        InputError: not above zero.
-    """
-
-    turn_rad: float = float(np.radians(0.4))
-    move_m: float = 0.008
-
-    def __post_init__(self) -> None:
-        for name in ("turn_rad", "move_m"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise InputError(f"watch: {name} is {value}, must be above 0")
-
-
 @dataclass(slots=True, eq=False)
 class CameraWatch:
     """Hears the frames of one camera and remembers what its tests have come to.
@@ -73,6 +53,9 @@ class CameraWatch:
     """Why nothing may move, once it was found; it stays."""
     shift: Shift | None = field(default=None, init=False)
     """By how much it had moved when that was found."""
+    _part: ShownPart | None = field(init=False)
+    _least: Tolerance = field(init=False)
+    """What is not yet called moved in this view."""
     _spots: Spots = field(init=False)
     _memory: Memory = field(init=False)
     _since_moved: Memory = field(init=False)
@@ -83,6 +66,8 @@ class CameraWatch:
 
     def __post_init__(self) -> None:
         self.reference.require(self.camera)
+        self._part = ShownPart.of(self.reference, self.tolerance)
+        self._least = self.tolerance if self._part is None else self._part.tolerance
         self._spots = self.reference.spots()
         self._memory, self._since_moved = _nothing_heard(self._spots), _nothing_heard(self._spots)
 
@@ -139,7 +124,7 @@ class CameraWatch:
         moved = (
             speaks_for > max(FOR_OVER_AGAINST * against, LEAST_FOR)
             and fits_moved >= LEAST_FIT
-            and shift.exceeds(self.tolerance.turn_rad, self.tolerance.move_m, SIGMAS)
+            and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
         )
         return CameraHealth(name, Condition.MOVED if moved else Condition.STILL, shift, share)
 
@@ -153,7 +138,8 @@ class CameraWatch:
             frame.depth_m.ravel(), self._spots, float(self.camera.min_depth_m), float(self.camera.max_depth_m),
             GATE_M, TURN_PRIOR_RAD, MOVE_PRIOR_M, memory, counted, motion, covariance, said,
         )  # fmt: skip
-        return counted, Shift.of(motion, covariance), said
+        shift = Shift.of(motion, covariance) if self._part is None else self._part.shift(motion, covariance)
+        return counted, shift, said
 
     def _count(self, frame: DepthFrame, now: CameraHealth, stamp_ns: int) -> None:
         """Lets the tests hear what the frame said."""
@@ -181,7 +167,7 @@ class CameraWatch:
         name = self.camera.name
         if shift is not None:
             self.shift = shift
-            return f"camera {name} has {shift.words(self.tolerance.turn_rad, self.tolerance.move_m)}"
+            return f"camera {name} has {shift.words(self._least.turn_rad, self._least.move_m)}"
         if changed:
             return f"camera {name} {Condition.CHANGED.value}: turned or moved far, or the room was rebuilt"
         for lasting, limit_s in ((Condition.COVERED, COVERED_S), (Condition.BLIND, BLIND_S)):
