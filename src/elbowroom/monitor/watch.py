@@ -102,7 +102,7 @@ class Watch:
         shares = [turn[first::threads] for first in range(threads)]
         heard = {health.camera: health for part in spread(hear, shares, threads) for health in part}
         return tuple(
-            heard[name] if name in heard else watch.newest if name in newest else watch.hear(None, now_ns)
+            heard[name] if name in heard else watch.pass_over(newest.get(name), now_ns)
             for watch in self._watches
             for name in [watch.camera.name]
         )
