@@ -1,4 +1,4 @@
-"""A camera whose view is hidden, or that gives nothing, is named and stops after its time; a passer-by stops nothing."""
+"""A camera whose view is hidden, or that gives nothing, is named and stops after its time; a passer-by stops none."""
 
 import numpy as np
 import pytest
