@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 STEADY_TURN_RAD = 0.0009
 STEADY_MOVE_M = 0.0015
 """No shift is known better than this, however many frames speak: what is steady in the reference stays in the mean. So
-large that 95 % of the knocks of benchmarks/calibration_drift.py lie within two sigmas."""
+large that 95 % of the knocks of `elbowroom bench calibration --part drift` lie within two sigmas."""
 STEADY_COVARIANCE = np.diag([STEADY_TURN_RAD**2] * 3 + [STEADY_MOVE_M**2] * 3)
 LARGE_TURN_DEG, LARGE_MOVE_MM = 2.0, 60.0
 """Beyond this the surfaces about the spots are others than those that were commissioned: sizes are rough."""
