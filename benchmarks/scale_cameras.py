@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from elbowroom.evaluate.scale import NEAR_VOXELS
 from elbowroom.evaluate.scale_model import (
     AIM_M,
+    LABORATORY,
     POSES,
     VOXEL_M,
     kinect,
@@ -27,7 +28,9 @@ from elbowroom.evaluate.way_view import WayView
 from elbowroom.simulate import Moment
 from elbowroom.simulate.machine_solids import link_solids
 
-DISTANCES_M, AZIMUTHS_DEG, HEIGHTS_M = (0.85, 0.95), range(0, 360, 20), (0.03, 0.12, 0.25, 0.45, 0.7, 0.9)
+DISTANCES_M, AZIMUTHS_DEG, HEIGHTS_M = (0.8, 0.9), range(0, 360, 20), (0.03, 0.12, 0.25, 0.45, 0.7, 0.9)
+CLEAR_M = 0.55
+"""Nothing is nearer to a Kinect than this, which measures from 0.5 m on [m]."""
 STARTS = 10
 NEARLY = 0.997
 """From this share of its voxels on a way counts a little, so that the search has a slope to climb."""
@@ -41,13 +44,18 @@ def candidates() -> NDArray[np.float64]:
         if across_squared > 0.1:
             across = np.sqrt(across_squared)
             places.append((across * np.cos(azimuth), across * np.sin(azimuth), height))
-    return np.array(places)
+    near = np.concatenate([s.vertices_in_world for s in model_solids() if s.name not in LABORATORY])
+    links = [link_solids(model_machine(), model_pose(pose)[0]) for pose in range(POSES)]
+    near = np.concatenate([near, *(s.vertices_in_world for solids in links for s in solids)])
+    clear = [np.linalg.norm(near - place, axis=1).min() > CLEAR_M for place in places]
+    return np.array(places)[clear]
 
 
 def views_of_ways(places: NDArray[np.float64]) -> list[NDArray[np.bool_]]:
     """Of each motion, which candidate sees all of which voxel of its way, shape (candidates, voxels)."""
     grid, machine, solids = model_grid(VOXEL_M), model_machine(), model_solids()
     cameras = [kinect(str(n), tuple(place), False) for n, place in enumerate(places)]
+    print(f"{len(cameras)} candidates", flush=True)
     found = []
     for pose in range(POSES):
         joints, met = model_pose(pose)

@@ -128,7 +128,9 @@ def _frames(views: Sequence[DepthCamera], moment: Moment, losses: bool, seed: in
     return frames
 
 
-def _compared(contact: Contact, verdict: Verdict, travel_in_view: float, voxel_size_m: float) -> dict[str, Any]:
+def _compared(
+    contact: Contact, verdict: Verdict, travel_in_view: float, voxel_size_m: float
+) -> dict[str, Any]:
     def short_mm(travel: float) -> float:
         return 1000 * (contact.travel - travel) * contact.speed
 

@@ -25,6 +25,8 @@ from elbowroom.simulate.truth import touched_by
 
 FACTOR = 0.2
 OBJECTS = ("table", "mattress", "table controls", "doctor")
+LABORATORY = ("floor", "walls", "ceiling")
+"""Solids that are not of the model."""
 VOXEL_M = 0.004
 """Edge of a voxel: 2 cm at full size [m]."""
 POSES = 24
@@ -161,7 +163,7 @@ def coloured_picture(space: FreeSpace, moment: Moment) -> bytes:
     owner = np.zeros(grid.shape, dtype=np.uint8)
     for solid in moment.solids:
         number = 1 if solid.is_machine else 3 if solid.name.startswith("doctor") else 2
-        if solid.name in ("floor", "walls", "ceiling"):
+        if solid.name in LABORATORY:
             continue
         corner, touched = touched_by(grid, solid)
         part = owner[tuple(slice(c, c + n) for c, n in zip(corner, touched.shape, strict=True))]

@@ -1,8 +1,9 @@
 """How far the way of a motion is in view, by exact rays: what no reconstruction from these cameras can go beyond.
 
 The way of a motion is the voxels that its moving links come to touch, without those that the body covers already and
-those that a solid touches. A voxel is in view if one camera alone sees all of it: its eight corners and its centre,
-by rays against the exact meshes of the room and of the machine where it stands. No image, no noise, no verdict.
+those that a solid touches. A voxel is in view if one camera alone sees all of it: its centre, and its eight corners
+with half a pixel to spare, since that is how far a pixel looks to each side. Rays are cast against the exact
+meshes of the room and of the machine where it stands. No image, no noise, no verdict.
 """
 
 from collections.abc import Sequence
@@ -20,6 +21,8 @@ from elbowroom.simulate import Moment, true_occupancy
 
 PLACES = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)] + [[0, 0, 0]]) * 0.49
 """Of a voxel, where it is looked at, in edges from its centre: just within its corners, and its centre."""
+SPARE_PX = 0.5
+"""So much farther out, across the ray, a corner has to be in view: a pixel looks half a pixel to each side."""
 BEFORE_M = 2e-4
 """What is hit this little before a place hides it no more than rounding does [m]."""
 STEP_IN_VOXELS = 0.5
@@ -71,7 +74,9 @@ class WayView:
         """
         machine, grid = self._machine, self._grid
         samples = body_samples(machine, grid.voxel_size_m)
-        rows = [row for row, link in enumerate(machine.links) if link.name in machine.moved_links(motion.joint)]
+        rows = [
+            row for row, link in enumerate(machine.links) if link.name in machine.moved_links(motion.joint)
+        ]
         moving = np.isin(samples.point_link, rows)
         points, link = samples.points[moving].astype(np.float64), samples.point_link[moving]
         ends = [self._places(motion, travel, points, link) for travel in (0.0, max(length, 0.0))]
@@ -109,9 +114,17 @@ class WayView:
             centres: of the voxels, shape (n, 3) [m].
         """
         seen = np.ones(len(centres), dtype=np.bool_)
-        for place in PLACES:
+        turned = PLACES @ camera.world_from_camera[:3, :3]
+        across = np.linalg.norm(turned[:, :2], axis=1, keepdims=True)
+        outward = np.hstack([turned[:, :2] / np.maximum(across, 1e-9), np.zeros((len(PLACES), 1))])
+        outward = outward @ camera.world_from_camera[:3, :3].T
+        axis = camera.world_from_camera[:3, 2]
+        for place, out in zip(PLACES, outward, strict=True):
             left = np.flatnonzero(seen)
-            seen[left] = self._sees(camera, centres[left] + place * self._grid.voxel_size_m)
+            depth = (centres[left] - camera.centre_in_world) @ axis
+            spare_m = SPARE_PX * np.abs(depth) / camera.intrinsics.fx
+            points = centres[left] + place * self._grid.voxel_size_m + spare_m[:, None] * out
+            seen[left] = self._sees(camera, points)
         return seen
 
     def _sees(self, camera: DepthCamera, points: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -122,7 +135,14 @@ class WayView:
         ahead = z > max(camera.min_depth_m, 1e-6)
         depth = np.where(ahead, z, 1.0)
         u, v = lens.fx * x / depth + lens.cx, lens.fy * y / depth + lens.cy
-        inside = ahead & (z < camera.max_depth_m) & (u > 0) & (u < camera.width - 1) & (v > 0) & (v < camera.height - 1)
+        inside = (
+            ahead
+            & (z < camera.max_depth_m)
+            & (u > 0)
+            & (u < camera.width - 1)
+            & (v > 0)
+            & (v < camera.height - 1)
+        )
         if inside.any():
             directions = rays[inside].astype(np.float32)
             origins = np.repeat(camera.centre_in_world.astype(np.float32)[None], len(directions), axis=0)
@@ -145,4 +165,3 @@ class WayView:
             left = np.flatnonzero(~seen)
             seen[left] = self.seen_by(camera, way.centres[left])
         return float(way.travel[~seen].min(initial=length))
-
