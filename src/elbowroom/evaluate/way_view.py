@@ -1,7 +1,7 @@
 """How far the way of a motion is in view, by exact rays: what no reconstruction from these cameras can go beyond.
 
-The way of a motion is the voxels that its moving links come to touch, without those that the body covers already and
-those that a solid touches. A voxel is in view if one camera alone sees all of it: its centre, and its eight corners
+The way of a motion is the voxels that its moving links come to touch, without those that the body covers already. A
+voxel is in view if no solid touches it and one camera alone sees all of it: its centre, and its eight corners
 with half a pixel to spare, since that is how far a pixel looks to each side. Rays are cast against the exact
 meshes of the room and of the machine where it stands. No image, no noise, no verdict.
 """
@@ -53,8 +53,8 @@ class WayView:
 
     def __init__(self, machine: Machine, moment: Moment, grid: VoxelGrid) -> None:
         self._machine, self._joints, self._grid = machine, moment.joints, grid
-        body = bits.unpack(body_words(machine, moment.joints, grid), grid)
-        self._passed_over = body | true_occupancy(grid, moment).occupied
+        self._body = bits.unpack(body_words(machine, moment.joints, grid), grid)
+        self._occupied = true_occupancy(grid, moment).occupied
         self._scene = EmbreeScene()
         firsts = np.cumsum([0] + [len(solid.mesh.vertices) for solid in moment.solids])
         TriangleMesh(
@@ -82,7 +82,7 @@ class WayView:
         ends = [self._places(motion, travel, points, link) for travel in (0.0, max(length, 0.0))]
         moved_m = float(np.linalg.norm(ends[1] - ends[0], axis=1).max())
         steps = int(np.ceil(moved_m / (STEP_IN_VOXELS * grid.voxel_size_m))) + 1 if length > 0 else 0
-        seen_before = self._passed_over.copy()
+        seen_before = self._body.copy()
         centres: list[NDArray[np.float64]] = []
         travels: list[NDArray[np.float64]] = []
         for travel in np.linspace(0.0, length, steps).tolist():
@@ -107,13 +107,13 @@ class WayView:
         return moved
 
     def seen_by(self, camera: DepthCamera, centres: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Which voxels one camera sees all of: in its image and range, and nothing before them.
+        """Which voxels one camera sees all of: in its image and range, nothing in them or before them.
 
         Args:
             camera: planar, without distortion.
             centres: of the voxels, shape (n, 3) [m].
         """
-        seen = np.ones(len(centres), dtype=np.bool_)
+        seen = ~self._occupied[tuple(self._grid.index_of(centres).T)]
         turned = PLACES @ camera.world_from_camera[:3, :3]
         across = np.linalg.norm(turned[:, :2], axis=1, keepdims=True)
         outward = np.hstack([turned[:, :2] / np.maximum(across, 1e-9), np.zeros((len(PLACES), 1))])
