@@ -78,15 +78,19 @@ pixels and missing returns; margins are three sigmas and half a pixel unless a t
 
 What misses, what is measured in part, and why:
 
-- **Time.** `evaluate all` is due in 12 minutes on two cores. It was not timed from end to end; by its shares it takes
-  about 15 on the two hyperthreads of one core that these figures come from. The tables say
-  how many random motions (500 are due) and draws of calibration error (50 are due) stand behind them.
+- **Time.** `evaluate all` is due in 12 minutes on two cores. It was not timed from end to end; its shares, some of each
+  kind measured by themselves, add up to about 16 minutes of one core. The tables say how many random motions (500 are
+  due) and draws of calibration error (50 are due) stand behind them.
 - **Calibration error and "what else"** were measured before the pixel test's rule on edges, as the commit beneath
   their tables says, and calibration with 10 draws; they are to be measured again.
-- **Scale model.** Four cameras leave pockets beside the machine that none of them sees, and free travel ends there,
-  with noise and without. With unseen space passed over, as an operator may, exact images come within millimetres of
-  an object in view, but what is passed over may hide one: that travel is no promise. With noise, lost returns and
-  mixed pixels stop the motion where one camera alone looks. So the due figures are missed.
+- **Scale model.** No motion goes farther than the truth, by any sensor. But four cameras see the way of few motions
+  wholly: where one voxel of it is hidden from all, free travel ends there, within 2 mm of it in the median. In ways
+  that are in view, exact images stop short by what voxels of 4 mm and the swept check cost; the margin of three sigmas
+  for a Kinect's noise (5 mm at 0.9 m) comes on top, and so the due median is missed. The two worst
+  ways turn along their own surface and clip a voxel beside it that no camera sees wholly; the points that stand for the
+  way miss it, so by the rays they count as in view. Mixed pixels and lost
+  returns, which the noise model of a Kinect does not have, cost the most: where one camera alone looks, or two, nobody
+  can overrule them.
 """
 
 

@@ -5,18 +5,15 @@ import json
 import numpy as np
 import pytest
 
-import elbowroom as er
 from elbowroom.cli import run
 from elbowroom.evaluate.bands import BANDS, compared, counted
 from elbowroom.evaluate.calibration import disturbed, judge_draws, margin_for
 from elbowroom.evaluate.calibration import tasks as calibration_tasks
 from elbowroom.evaluate.cases import cases_of, counts_of
 from elbowroom.evaluate.random_motions import judge_random
-from elbowroom.evaluate.scale import without_unseen
 from elbowroom.evaluate.scale_model import scaled
 from elbowroom.evaluate.task import Settings
 from elbowroom.evaluate.thesis import TABLE_2, c_arm, sensor_cameras
-from elbowroom.geometry.bits import unpack
 
 SMALL = ["--setup", "6", "--voxel-size", "0.1", "--sensor", "64x48", "--jobs", "1"]
 
@@ -147,25 +144,6 @@ def test_a_scaled_machine_is_the_same_but_smaller():
     for name in machine.link_names:
         assert model[name][:3, 3] == pytest.approx(0.2 * whole[name][:3, 3])
         assert model[name][:3, :3] == pytest.approx(whole[name][:3, :3])
-
-
-def test_passing_over_unseen_space_still_stops_at_what_is_measured_or_blind():
-    grid = er.VoxelGrid(origin_m=(-0.5, -0.5, 0.2), shape=(16, 16, 16), voxel_size_m=0.0625)
-    camera = er.DepthCamera(
-        name="one",
-        width=64,
-        height=48,
-        world_from_camera=np.eye(4),
-        intrinsics=er.Intrinsics(fx=40, fy=40, cx=31.5, cy=23.5),
-    )
-    depth = np.full((48, 64), 0.7, dtype=np.float32)
-    depth[20:30, 40:50] = 0.0
-    space = er.reconstruct(grid, [camera], [er.DepthFrame(camera="one", stamp_ns=0, depth_m=depth)])
-    passed = without_unseen(space).free
-    disputed = unpack(space.disputed_words, grid)
-    blind = unpack(space.blind_words, grid)
-    assert space.surface.any() and blind.any() and (passed & ~space.free).any()
-    assert (passed == (space.free | ~(space.surface | blind | disputed))).all()
 
 
 def test_an_unknown_sensor_is_one_line(capsys):

@@ -91,18 +91,13 @@ def _calibration(rows: Sequence[Row]) -> list[tuple[str, ...]]:
 
 def _scale(rows: Sequence[Row]) -> list[tuple[str, ...]]:
     lines = []
-    for row in rows:
-        if row.get("part") == "scale" and row.get("kind") == "summary" and row["noise"]:
-            lines.append(_at_most("scale model, noise: more than the truth", "", 0, row["more_than_truth"]))
-            for key, most in (("median", 5), ("worst", 12)):
-                lines.append(
-                    _at_most(
-                        f"scale model, noise, objects in view: short by, {key} [mm]",
-                        "5",
-                        most,
-                        row[f"{key}_in_view_short_mm"],
-                    )
-                )
+    summaries = [r for r in rows if r.get("kind") == "summary" and r.get("part") == "scale"]
+    for row in [r for r in summaries if r["noise"] and not r["losses"]]:
+        name = f"scale model, noise: more than the truth, of {row['motions']}"
+        lines.append(_at_most(name, "", 0, row["more_than_truth"]))
+        for key, most in (("median", 5), ("worst", 12)):
+            name = f"scale model, noise, the {row['in_view']} ways in view: short by, {key} [mm]"
+            lines.append(_at_most(name, "5", most, row[f"{key}_in_view_short_mm"]))
     return lines
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
 from elbowroom.evaluate.cases import as_png
+from elbowroom.evaluate.exact import Contact, ExactTravel
 from elbowroom.evaluate.scene import room_motions
 from elbowroom.evaluate.thesis import c_arm
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, looking_at
@@ -16,6 +17,7 @@ from elbowroom.motion import Motion
 from elbowroom.reconstruct import FreeSpace
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import Moment, Solid, setup
+from elbowroom.simulate.machine_solids import random_joints
 from elbowroom.simulate.picture import View, cubes
 from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Mesh
@@ -23,11 +25,17 @@ from elbowroom.simulate.truth import touched_by
 
 FACTOR = 0.2
 OBJECTS = ("table", "mattress", "table controls", "doctor")
+LABORATORY = ("floor", "walls", "ceiling")
+"""Solids that are not of the model."""
+VOXEL_M = 0.004
+"""Edge of a voxel: 2 cm at full size [m]."""
+POSES = 24
+CLEAR_M = 0.008
+"""Between the machine and everything else at the start [m of the model]."""
 AIM_M = (0.0, 0.0, 0.22)
 """What the Kinects look at: the middle of the C."""
-DISTANCE_M = 0.9
-"""From there to each Kinect: the machine stays beyond their near limit of 0.5 m at all joint positions but few."""
-AZIMUTHS_DEG, ELEVATIONS_DEG = (45.0, 135.0, 225.0, 315.0), (35.0, 10.0, 35.0, 10.0)
+PLACES_M = ((0.45, -0.77, 0.12), (-0.83, -0.3, 0.03), (0.13, 0.75, 0.7), (-0.44, 0.76, 0.03))
+"""Where they stand: `benchmarks/scale_cameras.py` found it, by exact rays to the ways of the motions judged [m]."""
 BLUE, GREEN, RED = (0.05, 0.15, 0.75), (0.05, 0.5, 0.12), (0.75, 0.04, 0.04)
 GREY = (0.75, 0.75, 0.72)
 
@@ -94,41 +102,59 @@ def model_solids() -> tuple[Solid, ...]:
 
 @cache
 def kinects(noise: bool) -> tuple[DepthCamera, ...]:
-    """Four of Kinect v1, placed by hand: over the four corners, two high and two low, turn about."""
+    """Four of Kinect v1, at `PLACES_M`."""
+    return tuple(kinect(f"kinect{number}", place, noise) for number, place in enumerate(PLACES_M))
+
+
+def kinect(name: str, place_m: tuple[float, float, float], noise: bool) -> DepthCamera:
+    """A Kinect v1 that looks at the middle of the C.
+
+    Args:
+        name: its name.
+        place_m: where it stands [m].
+        noise: whether it has any.
+    """
     focal_px = 320 / np.tan(np.radians(57.0) / 2)
-    placed = []
-    for number, (azimuth, elevation) in enumerate(
-        zip(np.radians(AZIMUTHS_DEG), np.radians(ELEVATIONS_DEG), strict=True)
-    ):
-        away = np.array([np.cos(azimuth), np.sin(azimuth), np.tan(elevation)]) * np.cos(elevation)
-        x, y, z = AIM_M + DISTANCE_M * away
-        placed.append(
-            DepthCamera(
-                name=f"kinect{number}",
-                width=640,
-                height=480,
-                world_from_camera=looking_at((x, y, z), AIM_M),
-                intrinsics=Intrinsics(fx=focal_px, fy=focal_px, cx=319.5, cy=239.5),
-                noise=NOISE_PRESETS["kinect_v1"] if noise else None,
-                min_depth_m=0.5,
-                max_depth_m=4.0,
-            )
-        )
-    return tuple(placed)
+    return DepthCamera(
+        name=name,
+        width=640,
+        height=480,
+        world_from_camera=looking_at(place_m, AIM_M),
+        intrinsics=Intrinsics(fx=focal_px, fy=focal_px, cx=319.5, cy=239.5),
+        noise=NOISE_PRESETS["kinect_v1"] if noise else None,
+        min_depth_m=0.5,
+        max_depth_m=4.0,
+    )
 
 
-def whole_motions(machine: Machine) -> list[Motion]:
-    """Every joint in both directions, to the end of its range; braking distances at 1:5 where they are lengths."""
-    whole = []
-    for motion in room_motions(c_arm()):
-        joint = machine.joint(motion.joint)
-        factor = FACTOR if joint.kind == "prismatic" else 1.0
-        whole.append(
-            Motion(
-                motion.joint, motion.direction, motion.braking_distance * factor, joint.upper - joint.lower
-            )
-        )
-    return whole
+def model_motions(machine: Machine) -> list[Motion]:
+    """Every joint in both directions with the usual reach; braking distances at 1:5 where they are lengths."""
+    small = {joint.name: FACTOR if joint.kind == "prismatic" else 1.0 for joint in machine.joints}
+    return [
+        Motion(motion.joint, motion.direction, motion.braking_distance * small[motion.joint])
+        for motion in room_motions(c_arm())
+    ]
+
+
+def model_pose(pose: int) -> tuple[dict[str, float], dict[Motion, Contact]]:
+    """The first random pose of a seed that is clear of everything, and from which a motion truly ends at an object.
+
+    Args:
+        pose: its number, which is the seed.
+
+    Returns:
+        Joint positions by name, and the motions that end at an object with where they do.
+    """
+    machine = model_machine()
+    truth, rng = ExactTravel(machine, model_solids()), np.random.default_rng([pose, 15])
+    while True:
+        joints = random_joints(machine, rng)
+        if truth.gap(joints, CLEAR_M) < CLEAR_M:
+            continue
+        contacts = {motion: truth.until_contact(joints, motion) for motion in model_motions(machine)}
+        met = {motion: contact for motion, contact in contacts.items() if contact.touches}
+        if met:
+            return joints, met
 
 
 def coloured_picture(space: FreeSpace, moment: Moment) -> bytes:
@@ -137,7 +163,7 @@ def coloured_picture(space: FreeSpace, moment: Moment) -> bytes:
     owner = np.zeros(grid.shape, dtype=np.uint8)
     for solid in moment.solids:
         number = 1 if solid.is_machine else 3 if solid.name.startswith("doctor") else 2
-        if solid.name in ("floor", "walls", "ceiling"):
+        if solid.name in LABORATORY:
             continue
         corner, touched = touched_by(grid, solid)
         part = owner[tuple(slice(c, c + n) for c, n in zip(corner, touched.shape, strict=True))]

@@ -1,0 +1,136 @@
+"""The scale model: its motions beside the truth, and which voxels of their ways are in view."""
+
+import numpy as np
+import pytest
+
+import elbowroom as er
+from elbowroom.evaluate.due import due_table
+from elbowroom.evaluate.part import Part
+from elbowroom.evaluate.task import Settings
+from elbowroom.geometry import looking_at
+from elbowroom.simulate import Moment, Solid
+from elbowroom.simulate.machine_solids import link_solids
+from elbowroom.simulate.shapes import box, join
+
+pytest.importorskip("coal", reason="coal is not installed; exact mesh distance is left out")
+from elbowroom.evaluate.scale import PART, SENSORS, judge_pose
+from elbowroom.evaluate.scale_model import (
+    PLACES_M,
+    VOXEL_M,
+    kinect,
+    model_grid,
+    model_machine,
+    model_motions,
+    model_pose,
+)
+from elbowroom.evaluate.way_view import WayView
+
+JOINTS = {"long": 0.0, "larm": 0.0, "propeller": 0.0, "carc": 0.0}
+
+
+def wall(lower, upper):
+    return Solid("wall", join([box(lower, upper)]), np.eye(4))
+
+
+def view_of(*solids):
+    machine = model_machine()
+    moment = Moment(0.0, (*solids, *link_solids(machine, JOINTS)), JOINTS)
+    return WayView(machine, moment, model_grid(VOXEL_M))
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return judge_pose(1, VOXEL_M, False).rows
+
+
+def test_no_motion_goes_farther_than_the_truth(rows):
+    assert rows
+    for row in rows:
+        assert row["free_travel"] <= row["truth_travel"] + 1e-6 and not row["more_than_truth"]
+
+
+def test_every_motion_is_judged_by_every_sensor_and_its_view_is_the_same_for_all(rows):
+    motions = {row["motion"] for row in rows}
+    assert len(rows) == len(motions) * len(SENSORS)
+    for motion in motions:
+        assert len({(row["in_view"], row["travel_in_view"]) for row in rows if row["motion"] == motion}) == 1
+
+
+def test_summary_adds_up_and_answers_what_was_due(rows):
+    assert isinstance(PART, Part)
+    summaries = PART.summary(rows)
+    assert [(row["noise"], row["losses"]) for row in summaries] == list(SENSORS)
+    for row in summaries:
+        mine = [r for r in rows if (r["noise"], r["losses"]) == (row["noise"], row["losses"])]
+        assert row["motions"] == len(mine)
+        assert row["in_view"] == sum(r["in_view"] for r in mine)
+        assert row["worst_short_mm"] == max(r["short_mm"] for r in mine)
+    table = due_table([{"part": "scale", **row} for row in rows + summaries])
+    assert table is not None and len(table.lines) == 3
+
+
+def test_a_pose_is_the_same_each_time_and_its_motions_reach_five_braking_distances():
+    joints, met = model_pose(3)
+    assert joints == model_pose(3)[0]
+    assert all(motion.looked_at == pytest.approx(5 * motion.braking_distance) for motion in met)
+    assert all(0 < contact.travel < motion.looked_at for motion, contact in met.items())
+
+
+def test_tasks_are_one_for_each_pose_and_take_a_voxel_size_at_full_scale():
+    tasks = PART.tasks(Settings(voxel_sizes_m=(0.05,)))
+    assert len({task.name for task in tasks}) == len(tasks)
+    assert all(task.arguments["voxel_size_m"] == pytest.approx(0.01) for task in tasks)
+
+
+def test_nothing_hides_a_voxel_in_the_open_and_a_wall_hides_what_lies_behind_it():
+    camera = kinect("one", (0.9, 0.0, 0.22), False)
+    centres = np.array([(0.32, 0.0, 0.22), (0.32, 0.05, 0.22)])
+    assert view_of().seen_by(camera, centres).all()
+    hiding = wall((0.35, 0.02, 0.1), (0.36, 0.08, 0.3))
+    assert view_of(hiding).seen_by(camera, centres).tolist() == [True, False]
+
+
+def test_a_wall_that_ends_within_half_a_pixel_of_a_voxel_hides_it():
+    camera = kinect("one", (0.9, 0.0, 0.22), False)
+    # seen from the camera, the voxel's nearer face ends at y = 0.002 m
+    centre = np.array([(0.32, 0.0, 0.22)])
+    beside = 0.002 * 0.545 / 0.578
+    for gap_px, seen in ((0.2, False), (1.2, True)):
+        edge = beside + gap_px * 0.545 / camera.intrinsics.fx
+        hiding = wall((0.35, edge, 0.1), (0.36, 0.2, 0.3))
+        assert view_of(hiding).seen_by(camera, centre)[0] == seen
+
+
+@pytest.mark.parametrize(
+    "place", [(0.5, 0.0, 0.22), (0.9, 0.0, 5.0)], ids=["nearer than the sensor measures", "out of the image"]
+)
+def test_what_is_out_of_range_or_image_is_not_in_view(place):
+    camera = er.DepthCamera(
+        name="one",
+        width=640,
+        height=480,
+        world_from_camera=looking_at(place, (0.0, 0.0, place[2])),
+        intrinsics=er.Intrinsics(fx=589, fy=589, cx=319.5, cy=239.5),
+        min_depth_m=0.5,
+        max_depth_m=4.0,
+    )
+    assert not view_of().seen_by(camera, np.array([(0.32, 0.0, 0.22)])).any()
+
+
+def test_a_way_leaves_out_the_body_and_grows_with_the_travel():
+    view = view_of()
+    motion = next(m for m in model_motions(model_machine()) if m.name == "long +")
+    near, far = (view.way(motion, length) for length in (0.01, 0.02))
+    assert 0 < len(near.centres) < len(far.centres)
+    assert (far.travel >= 0).all() and far.travel.max() <= 0.02
+    assert len(np.unique(far.centres, axis=0)) == len(far.centres)
+    assert len(view.way(motion, 0.0).centres) == 0 and len(view.way(motion, -0.01).centres) == 0
+
+
+def test_more_cameras_never_see_less_of_a_way_and_none_see_nothing():
+    view = view_of()
+    motion = next(m for m in model_motions(model_machine()) if m.name == "larm +")
+    way = view.way(motion, 0.1)
+    cameras = [kinect(str(n), place, False) for n, place in enumerate(PLACES_M)]
+    travels = [view.travel_in_view(way, cameras[:count], 0.1) for count in range(len(cameras) + 1)]
+    assert travels == sorted(travels) and travels[0] == way.travel.min() and travels[-1] <= 0.1
