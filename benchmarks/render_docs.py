@@ -161,10 +161,13 @@ true cameras. *seconds*: detection in all images and solution, two cores.
         "Whether covariances hold the truth",
         """
 Corners and depth points of known cameras, projected, with noise, and in every second draw with a hand that shakes and
-errors that a whole view shares. *mean square*: of errors in their covariance, 6 if it is exact. Besides, the recording
+errors that a whole view shares. *mean square*: of errors in their covariance, 6 if it is exact. *margin held*: share of
+cameras of which the true pose displaces nothing they see by more than their margin. *images*: boards rendered before a
+camera of each size and found in the image: by how much all corners of a view are off together, and each about that;
+*inside*: of poses by one view alone. Besides, the recording
 with a board: share of co-visible depth pixels that agree within 5 cm, its two cameras' poses found from the board.
 """,
-        "elbowroom bench calibration --part real --part coverage",
+        "elbowroom bench calibration --part real --part coverage --part images",
         tables.calibration_tables,
     ),
     Section(

@@ -27,7 +27,7 @@ def bench(
     part: Annotated[
         list[str] | None,
         typer.Option(
-            help="calibration: only real, coverage, captures, intrinsics, machine or refine; may be repeated."
+            help="calibration: only real, coverage, images, captures, intrinsics, machine or refine; may be repeated."
         ),
     ] = None,
     json: JsonFile = None,

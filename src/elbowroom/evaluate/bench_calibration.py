@@ -22,6 +22,7 @@ from elbowroom.calibrate.margin import is_within, pose_margin
 from elbowroom.calibrate.rigid import log
 from elbowroom.calibrate.simulated import BoardCapture, Start, record_board, started
 from elbowroom.errors import SiteError
+from elbowroom.evaluate.bench_board_images import board_image_rows
 from elbowroom.evaluate.board_views import BOARD, ROUGH, board_poses, floor, ring, views_of
 from elbowroom.evaluate.room import MOMENTS_S, ROOM_LOWER_M, ROOM_UPPER_M, Tally
 from elbowroom.geometry import DepthCamera, VoxelGrid, invert_rigid
@@ -32,7 +33,7 @@ from elbowroom.site import Site, moments
 
 SENSOR_LATERAL_PX = (0.5, 0.0)
 Tell = Callable[[str], None]
-PARTS = ("real", "coverage", "captures")
+PARTS = ("real", "coverage", "images", "captures")
 REAL_SITE = Path(__file__).parents[3] / "examples" / "kinect_board_2cam_calibration.yaml"
 """Two real cameras; only a checkout has it."""
 INSIDE = float(chi2.ppf(0.95, 6))
@@ -98,12 +99,15 @@ def extrinsics_rows(
         draws: for the coverage of the covariance.
 
     Yields:
-        Rows of kind "extrinsics", "room", "coverage", "real".
+        Rows of kind "real", "coverage", "images", "extrinsics", "room".
     """
     if "real" in parts:
         yield real_row(tell)
     if "coverage" in parts:
         yield coverage_row(draws, tell)
+    if "images" in parts:
+        tell("boards in rendered images")
+        yield from board_image_rows()
     for case in CASES if "captures" in parts else ():
         site = capture(case, captures / case.name, cameras, poses, tell)
         tell(f"{case.name}: looking for the board, solving")
