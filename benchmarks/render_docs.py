@@ -193,8 +193,9 @@ error of the focal length found [%].
         "calibration_machine.json",
         "Calibration from the machine, and refinement",
         """
-From the C-arm alone, without a board; and two recorded cameras, one of them put off, refined on what both see: share of
-pixels that agree within 5 cm, due what the recording's own poses reach.
+From the C-arm alone, without a board. Refined on what they see in common: cameras of the simulated room, people in it,
+beside their truth; and two recorded cameras, one of them put off: share of pixels that agree within 5 cm, due what the
+recording's own poses reach.
 """,
         "elbowroom bench calibration --part machine --part refine",
         tables.calibration_tables,
@@ -206,11 +207,12 @@ pixels that agree within 5 cm, due what the recording's own poses reach.
 The simulated room with 21 cameras at two heights, commissioned while people walk and the machine moves
 ([the watch](calibration.md#drift-watch)). Frames come at 30 Hz; a knock must be named within 60 of them. *others*:
 cameras named that did not move. *within 2 σ*: share of the sizes said that lie within the uncertainty said beside
-them. False alarms: five people walk, two of them along the walls before the cameras; each frame counted is new and
-was listened to. Real: a recording between whose moments boxes were moved, played again and again; its first camera's
-reference is that of a camera that stood elsewhere.
+them, of cameras whose view shows the whole knock; *named by a part of it*: others, and what they said. *not shown*:
+a move that such a view does not show, and how exact images before and after it differ. False alarms: five people walk,
+two of them along the walls before the cameras; each frame counted is new and was listened to. Recorded: between its
+moments boxes were moved, played again and again; its first camera's reference is that of a camera that stood elsewhere.
 """,
-        "",
+        "elbowroom bench calibration --part drift",
         tables.drift_tables,
     ),
 )

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from elbowroom.calibrate.change import pose_difference
 from elbowroom.calibrate.extrinsics.disagreement import unseen_parts
+from elbowroom.calibrate.extrinsics.seen_plane import rays_of, seen_plane
 from elbowroom.calibrate.lens import directions, project
 from elbowroom.calibrate.pictures import camera_graph, coverage, histogram, reprojection
 from elbowroom.calibrate.rigid import cross_matrix, exp, log
-from elbowroom.calibrate.seen_plane import rays_of, seen_plane
 from elbowroom.errors import CalibrationError
 from elbowroom.evaluate.board_views import ring
 from elbowroom.geometry import Intrinsics, invert_rigid

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from elbowroom.calibrate.commission import Commissioning
+from elbowroom.calibrate.commissioning.commission import Commissioning
 from elbowroom.machine import Machine
 from elbowroom.machine.rasterise import rasterise
 from elbowroom.monitor import Watch

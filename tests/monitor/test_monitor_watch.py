@@ -5,10 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.calibrate.commission import Commissioning
+from elbowroom.calibrate.commissioning.commission import Commissioning
 from elbowroom.errors import CalibrationError, InputError
 from elbowroom.monitor import Condition, Watch
-from elbowroom.monitor.camera_watch import BLIND_S, COVERED_S
 from elbowroom.monitor.sequential import Tally, mean_run_length
 from elbowroom.sensing import DepthFrame
 from reference.watch_twins import CAMERAS, NOISE_M, camera_at, commissioned, frame, knocked, walls
@@ -111,21 +110,6 @@ def test_furniture_that_is_pushed_is_no_camera_that_moved(seed):
 def test_a_camera_that_is_turned_far_is_named_too():
     health = run(Watch(CAMERAS, REFERENCES), [knocked(CAMERAS[0], (0, 25, 0)), *CAMERAS[1:]])
     assert list(health.stops) == ["north"]
-
-
-@pytest.mark.parametrize(
-    ("value", "word", "seconds"), [(0.3, "covered", COVERED_S), (0.0, "returns", BLIND_S)]
-)
-def test_a_covered_or_blind_camera_is_named_after_its_time_and_not_before(value, word, seconds):
-    def hidden(seen: DepthFrame, k: int) -> DepthFrame:
-        same = seen.camera != "low"
-        return seen if same else DepthFrame("low", seen.stamp_ns, np.full((60, 80), value, np.float32))
-
-    watch = Watch(CAMERAS, REFERENCES)
-    moments = int(seconds / 0.033)
-    assert run(watch, CAMERAS, moments=moments - 3, change=hidden).reason is None
-    health = run(watch, CAMERAS, moments - 3, 8, change=hidden)
-    assert list(health.stops) == ["low"] and word in health.reason
 
 
 def test_a_frame_that_is_heard_twice_counts_once():

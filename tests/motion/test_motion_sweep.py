@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.ndimage import maximum_filter
 
 from elbowroom.geometry import bits
 from elbowroom.motion import JointPath, Motion
@@ -36,6 +37,14 @@ def test_blocked_is_every_voxel_of_the_grid_that_is_not_free(shape):
     volume = swept.volume_of(space)
     np.testing.assert_array_equal(volume.words, space.blocked_words)
     np.testing.assert_array_equal(volume.cubes, (volume.words.reshape(-1, 64) != 0).any(axis=1))
+
+
+@pytest.mark.parametrize("shape", [(16, 16, 16), (17, 5, 33), (40, 20, 50)])
+def test_a_corner_is_blocked_where_any_of_the_eight_voxels_about_it_is(shape):
+    grid = room(0.1, lower=(0, 0, 0), upper=np.array(shape) * 0.1)
+    occupied = np.random.default_rng(0).random(shape) < 0.01
+    corners = bits.unpack(swept.volume_of(FreeSpace.from_occupied(grid, occupied)).corners, grid)
+    np.testing.assert_array_equal(corners, maximum_filter(occupied, size=2, origin=0, mode="constant"))
 
 
 def test_balls_meet_the_voxels_that_they_touch():

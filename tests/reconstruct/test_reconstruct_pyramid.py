@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from elbowroom.reconstruct import _kernels_pyramid as kernels
+from elbowroom.reconstruct._kernels_look import least_of_tiles
 from reference import reconstruct_pyramid as naive
 from reference.reconstruct_pyramid import NO_RETURN, bounds_of, packed
 
@@ -150,3 +151,38 @@ def test_an_explained_pixel_is_free_up_to_the_model_and_silent():
     up_to = bounds_of(trust)[0][0, 4:] * quantum - (0.01 + 0.002 * model[0, 4:])
     assert (up_to <= model[0, 4:]).all()
     np.testing.assert_allclose(up_to, model[0, 4:], atol=3 * quantum)
+
+
+@pytest.mark.parametrize("shape", [*SHAPES, (31, 40)])
+def test_squares_hold_the_least_of_the_texels_from_each_on(shape):
+    smaller = random_texels(shape, 4)
+    least, greatest = bounds_of(smaller)
+    for edge in (2, 4, 8):
+        squares = np.zeros(shape, dtype=np.uint32)
+        kernels.squares_of(smaller, edge, squares)
+        for v, u in np.ndindex(shape):
+            here = (slice(v, v + edge), slice(u, u + edge))
+            assert bounds_of(squares[v, u]) == (least[here].min(), greatest[here].max())
+        smaller = squares
+
+
+def test_the_least_of_a_rectangle_of_tiles_is_the_least_of_all_in_it():
+    shape, first = (17, 23), 5
+    tiles = random_texels(shape, 5)
+    least, greatest = bounds_of(tiles)
+    flat, squares = np.zeros(first + tiles.size, dtype=np.uint32), []
+    flat[first:] = tiles.reshape(-1)
+    smaller = tiles
+    for edge in (2, 4, 8):
+        squares.append(np.zeros_like(flat))
+        larger = np.zeros_like(tiles)
+        kernels.squares_of(smaller, edge, larger)
+        squares[-1][first:] = larger.reshape(-1)
+        smaller = larger
+    rng = np.random.default_rng(6)
+    for _ in range(300):
+        top, left = rng.integers(0, shape[0]), rng.integers(0, shape[1])
+        bottom, right = rng.integers(top, shape[0]), rng.integers(left, shape[1])
+        got = least_of_tiles(flat, np.array(squares), first, shape[1], top, bottom, left, right)
+        here = (slice(top, bottom + 1), slice(left, right + 1))
+        assert bounds_of(np.uint32(got)) == (least[here].min(), greatest[here].max())

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from elbowroom.calibrate.commission import Commissioning
+from elbowroom.calibrate.commissioning.commission import Commissioning
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.monitor import _kernels_watch as kernels
 from elbowroom.sensing import DepthFrame

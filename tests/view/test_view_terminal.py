@@ -159,8 +159,8 @@ def test_an_empty_log_says_that_there_was_no_verdict():
 def of_health(stops: dict[str, str], condition: Condition = Condition.STILL) -> CycleResult:
     shift = Shift(np.radians([0.0, 0.9, 0.0]), np.zeros(3), np.diag([1e-8] * 3 + [1e-6] * 3))
     cameras = (
-        CameraHealth("cam03", condition, shift, 0.9),
-        CameraHealth("cam04", Condition.SILENT, None, 0.0),
+        CameraHealth("cam03", condition, shift, 0.9, 0.05),
+        CameraHealth("cam04", Condition.SILENT, None, 0.0, 1.0),
     )
     health = Health(cameras, (LinkHealth("l_arm", 0.031, ("a", "b", "c"), True),), stops)
     return CycleResult(7, 3_200_000_000, None, VERDICTS, {"watch": 3.0}, 12.0, None, health)
@@ -171,6 +171,8 @@ def test_the_health_line_says_how_cameras_and_machine_are():
     assert "1 of 2 cameras stand still" in text and "1 silent" in text
     assert "cam03 by 0.90°" in text and "l_arm" in text and "31 mm" in text
     assert "unnoticed" in health_text(None)
+    hidden = of_health({}, Condition.HIDDEN).health
+    assert "1 hidden (cam03 5 %), 1 silent (cam04)" in health_text(hidden)
 
 
 @pytest.mark.parametrize("terminal", [True, False])

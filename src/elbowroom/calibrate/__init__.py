@@ -3,13 +3,13 @@
 captures -> what was seen of the target -> first solution -> joint least squares -> pose, covariance -> margin
 """
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.board_view import BoardView
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.capture import Sightings, board_of, sightings
+from elbowroom.calibrate.boards.cut_out import cut_out_view
+from elbowroom.calibrate.boards.printed import printed_view
+from elbowroom.calibrate.boards.trouble import Fault, Trouble
 from elbowroom.calibrate.calibrated_camera import CalibratedCamera
-from elbowroom.calibrate.capture import Sightings, board_of, sightings
-from elbowroom.calibrate.cut_out import cut_out_view
-from elbowroom.calibrate.printed import printed_view
-from elbowroom.calibrate.trouble import Fault, Trouble
 
 __all__ = [
     "Board",

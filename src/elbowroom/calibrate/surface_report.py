@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from elbowroom.calibrate.change import change_table
-from elbowroom.calibrate.machine_target import MachineCalibration
-from elbowroom.calibrate.refine import Refinement
+from elbowroom.calibrate.from_machine.target import MachineCalibration
+from elbowroom.calibrate.refinement.refine import Refinement
 from elbowroom.calibrate.surface_picture import SurfacePicture
 from elbowroom.view.blocks import Block, Picture, Table, Words
 from elbowroom.view.depth import depth_picture

@@ -1,7 +1,7 @@
 """The run of `elbowroom bench calibration`."""
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +11,11 @@ from elbowroom.cli.json_output import json_rows
 from elbowroom.errors import InputError
 from elbowroom.evaluate.bench_calibration import PARTS, extrinsics_rows
 from elbowroom.evaluate.bench_calibration_boards import intrinsics_row
-from elbowroom.evaluate.bench_calibration_machine import machine_row, refine_rows
+from elbowroom.evaluate.bench_calibration_machine import machine_row, refine_rows, room_refine_row
+from elbowroom.evaluate.drift import drift_rows
 from elbowroom.view.atomic import folder
 
-MORE = ("intrinsics", "machine", "refine")
+MORE = ("intrinsics", "machine", "refine", "drift")
 SHOWN = (
     "case",
     "worst_mm",
@@ -27,6 +28,21 @@ SHOWN = (
     "occupied_pct",
     "found_pct",
     "agree_pct",
+    "knock",
+    "joint",
+    "what",
+    "noise",
+    "runs",
+    "named",
+    "others_named",
+    "found",
+    "frames_max",
+    "cameras_named",
+    "camera_frames",
+    "false_alarms",
+    "not_shown",
+    "differs_mm",
+    "median_ms",
     "note",
 )
 
@@ -34,10 +50,10 @@ SHOWN = (
 def run_bench_calibration(
     quick: bool, captures: Path | None, parts: Sequence[str], json_file: Path | None
 ) -> None:
-    """Measures board, machine and refinement, and prints a line for each row.
+    """Measures board, machine, refinement and drift watch, and prints a line for each row.
 
     Args:
-        quick: five cameras, twelve poses and ten draws, and neither machine nor refinement.
+        quick: five cameras, twelve poses and ten draws, and nothing else.
         parts: which to measure, of `PARTS`; none: all.
         captures: folder where simulated captures are kept; None: a temporary one.
         json_file: for the rows.
@@ -65,18 +81,23 @@ def run_bench_calibration(
         for row in extrinsics_rows(tell, kept, parts or PARTS, **size):
             add(row)
             _say(row)
-        more = () if quick else parts or MORE
-        if "intrinsics" in more:
-            row = intrinsics_row(kept, said=tell)
-            add(row)
-            _say(row)
-        if "machine" in more:
-            row = machine_row(said=tell)
-            add(row)
-            _say(row)
-        for row in refine_rows(said=tell) if "refine" in more else ():
-            add(row)
-            _say(row)
+        for part in () if quick else [part for part in MORE if part in (parts or MORE)]:
+            for row in _more_rows(part, kept, tell):
+                add(row)
+                _say(row)
+
+
+def _more_rows(part: str, captures: Path, tell: Callable[[str], None]) -> Iterator[dict[str, Any]]:
+    """The rows of a part of `MORE`."""
+    if part == "intrinsics":
+        yield intrinsics_row(captures, said=tell)
+    elif part == "machine":
+        yield machine_row(said=tell)
+    elif part == "refine":
+        yield room_refine_row(said=tell)
+        yield from refine_rows(said=tell)
+    else:
+        yield from drift_rows(tell)
 
 
 def _say(row: Mapping[str, Any]) -> None:

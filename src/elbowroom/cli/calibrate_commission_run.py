@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from elbowroom.calibrate.commission import Commissioning
-from elbowroom.calibrate.commission_site import write_commissioned
+from elbowroom.calibrate.commissioning.commission import Commissioning
+from elbowroom.calibrate.commissioning.site_file import write_commissioned
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.room import open_room
 from elbowroom.errors import CalibrationError

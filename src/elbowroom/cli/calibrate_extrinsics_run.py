@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from elbowroom.calibrate.capture import Sightings, images_by_pose, sightings
+from elbowroom.calibrate.boards.capture import Sightings, images_by_pose, sightings
 from elbowroom.calibrate.extrinsics.report import report_sections
 from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
 from elbowroom.calibrate.extrinsics.solve import Extrinsics, solve_extrinsics

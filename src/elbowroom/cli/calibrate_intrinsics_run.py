@@ -8,7 +8,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from elbowroom.calibrate.capture import Sightings, sightings
+from elbowroom.calibrate.boards.capture import Sightings, sightings
 from elbowroom.calibrate.intrinsics import FoundIntrinsics, cells_seen, solve_intrinsics
 from elbowroom.cli.calibrate_site import site_path
 from elbowroom.cli.json_output import json_rows

@@ -4,17 +4,8 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.calibrate_options import Confidence, Near, OutSite, ReportFolder, SiteOrFolder
+from elbowroom.cli.calibrate_options import Confidence, Near, Only, OutSite, ReportFolder, SiteOrFolder
 from elbowroom.cli.options import JsonFile
-
-Only = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--camera",
-        metavar="NAME",
-        help="Only this one; may be given more than once. Others stay as they are.",
-    ),
-]
 
 
 def machine(

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from elbowroom.calibrate.machine_target import MachineCalibration, calibrate_from_machine
+from elbowroom.calibrate.from_machine.target import MachineCalibration, calibrate_from_machine
 from elbowroom.calibrate.surface_report import machine_sections
 from elbowroom.cli.calibrate_result import with_margins, write_page, write_result
-from elbowroom.cli.calibrate_site import chosen_cameras, site_path
+from elbowroom.cli.calibrate_site import chosen_cameras, require_known, site_path
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.errors import CalibrationError, SiteError
@@ -55,13 +55,6 @@ def run_machine(wanted: Wanted, json_file: Path | None) -> None:
     begun = time.perf_counter()
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 3) as steps:
-            shown: list[str] = []
-
-            def progress(words: str) -> None:
-                if words not in shown:
-                    shown.append(words)
-                    steps.begin(words)
-
             found = calibrate_from_machine(
                 machine,
                 cameras,
@@ -69,7 +62,7 @@ def run_machine(wanted: Wanted, json_file: Path | None) -> None:
                 hold=hold,
                 free_base=wanted.base,
                 model_sigma_m=wanted.model_mm / 1e3,
-                progress=progress,
+                progress=steps.begin_once,
             )
         for row in found.rows:
             add(row)
@@ -99,9 +92,7 @@ def _hold(
     world = site.entry.calibration.world if site.entry.calibration is not None else None
     if isinstance(world, WorldFromCamera):
         named.append(world.camera)
-    unknown = sorted(set(named) - set(known))
-    if unknown:
-        raise CalibrationError(f"--hold: no camera {unknown[0]!r}; cameras are {', '.join(known)}")
+    require_known("--hold", named, list(known))
     return {**hold, **dict.fromkeys(named)}
 
 

@@ -34,3 +34,11 @@ Near = Annotated[
         help="Lateral margins hold from this depth on. Default: 1, or a camera's least depth if that is more.",
     ),
 ]
+Only = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--camera",
+        metavar="NAME",
+        help="Only this one; may be given more than once. Others stay as they are.",
+    ),
+]

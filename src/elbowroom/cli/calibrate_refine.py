@@ -4,8 +4,7 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.calibrate_machine import Only
-from elbowroom.cli.calibrate_options import Confidence, Near, OutSite, ReportFolder, SiteOrFolder
+from elbowroom.cli.calibrate_options import Confidence, Near, Only, OutSite, ReportFolder, SiteOrFolder
 from elbowroom.cli.options import JsonFile
 
 

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 
-from elbowroom.calibrate.refine import Refinement, refine
+from elbowroom.calibrate.refinement.refine import Refinement, refine
 from elbowroom.calibrate.surface_report import pair_table, refine_sections
 from elbowroom.cli.calibrate_result import with_margins, write_page, write_result
-from elbowroom.cli.calibrate_site import chosen_cameras, site_path
+from elbowroom.cli.calibrate_site import chosen_cameras, require_known, site_path
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.tables import rich_table
-from elbowroom.errors import CalibrationError, InputError
+from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
 from elbowroom.site import Site, moments
 from elbowroom.view.site_update import refuse_other_files
@@ -50,15 +50,8 @@ def run_refine(wanted: Wanted, json_file: Path | None) -> None:
     begun = time.perf_counter()
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 3) as steps:
-            shown: list[str] = []
-
-            def progress(words: str) -> None:
-                if words not in shown:
-                    shown.append(words)
-                    steps.begin(words)
-
             # where the machine was does not matter here
-            found = refine(cameras, covariances, moments(site, joints={}), progress=progress)
+            found = refine(cameras, covariances, moments(site, joints={}), progress=steps.begin_once)
         for row in pair_rows(found):
             add(row | {"seconds": time.perf_counter() - begun})
         written = with_margins(site, found.cameras, wanted.confidence, near_m=wanted.near_m)
@@ -91,9 +84,7 @@ def _covariances(
 ) -> dict[str, NDArray[np.float64] | None]:
     """By camera: None holds exactly; what the site says; or what the command line says."""
     names = [camera.name for camera in cameras]
-    unknown = sorted(set(wanted.hold) - set(names))
-    if unknown:
-        raise CalibrationError(f"--hold: no camera {unknown[0]!r}; cameras are {', '.join(names)}")
+    require_known("--hold", wanted.hold, names)
     usual = _sure_to(wanted.sure_to)
     found: dict[str, NDArray[np.float64] | None] = {}
     for name in names:

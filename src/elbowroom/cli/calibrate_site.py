@@ -31,8 +31,21 @@ def chosen_cameras(site: Site, only: Sequence[str]) -> tuple[DepthCamera, ...]:
         SiteError: the site lists none, or has none of that name.
     """
     cameras = site.cameras()
-    unknown = sorted(set(only) - {camera.name for camera in cameras})
-    if unknown:
-        known = ", ".join(camera.name for camera in cameras)
-        raise SiteError(f"--camera: no camera {unknown[0]!r}; cameras are {known}")
+    require_known("--camera", only, [camera.name for camera in cameras])
     return tuple(camera for camera in cameras if not only or camera.name in only)
+
+
+def require_known(option: str, named: Sequence[str], cameras: Sequence[str]) -> None:
+    """Checks the names of cameras that an option was given.
+
+    Args:
+        option: as it is typed.
+        named: what was given.
+        cameras: names of all that it may be.
+
+    Raises:
+        SiteError: a name that is none of them.
+    """
+    unknown = sorted(set(named) - set(cameras))
+    if unknown:
+        raise SiteError(f"{option}: no camera {unknown[0]!r}; cameras are {', '.join(cameras)}")

@@ -18,6 +18,7 @@ class Steps:
     def __init__(self, console: Console, count: int) -> None:
         self.console, self.count, self.done = console, count, 0
         self.seconds: dict[str, float] = {}
+        self._begun: set[str] = set()
         self._current: tuple[str, float] | None = None
         columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
         self._bar = Progress(*columns, console=console, transient=True) if console.is_terminal else None
@@ -44,6 +45,12 @@ class Steps:
         else:
             self.console.print(f"{what} ...", highlight=False)
         self.done += 1
+
+    def begin_once(self, what: str) -> None:
+        """As `begin`, but nothing where this step was begun before: for work that goes round in rounds."""
+        if what not in self._begun:
+            self._begun.add(what)
+            self.begin(what)
 
     def _end_step(self) -> None:
         if self._current is not None:

@@ -72,6 +72,7 @@ def health_rows(result: CycleResult, said: dict[str, str]) -> list[dict[str, Any
                     "condition": camera.condition.name.lower(),
                     "stop": stop,
                     "seen_pct": 100 * camera.share_seen,
+                    "hidden_pct": 100 * camera.share_hidden,
                     "turn_deg": None if shift is None else shift.turn_deg,
                     "turn_sigma_deg": None if shift is None else shift.turn_sigma_deg,
                     "move_mm": None if shift is None else shift.move_mm,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from elbowroom.calibrate.commission import Commissioning
+from elbowroom.calibrate.commissioning.commission import Commissioning
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.room import Room
 from elbowroom.errors import CalibrationError

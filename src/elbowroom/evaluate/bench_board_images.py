@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from elbowroom.calibrate import Board, BoardView
-from elbowroom.calibrate.cut_out import cut_out_view
+from elbowroom.calibrate.boards.cut_out import cut_out_view
 from elbowroom.calibrate.extrinsics.seen_board import seen_board
 from elbowroom.calibrate.lens import project
 from elbowroom.calibrate.rigid import log

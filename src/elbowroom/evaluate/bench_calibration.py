@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from elbowroom.calibrate import Board, BoardView, CalibratedCamera
-from elbowroom.calibrate.agreement import agreement
-from elbowroom.calibrate.capture import sightings
+from elbowroom.calibrate.boards.capture import sightings
 from elbowroom.calibrate.change import pose_difference
 from elbowroom.calibrate.extrinsics import BoardAnchor, Extrinsics, solve_extrinsics
 from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
 from elbowroom.calibrate.margin import is_within, pose_margin
+from elbowroom.calibrate.refinement.agreement import agreement
 from elbowroom.calibrate.rigid import log
 from elbowroom.calibrate.simulated import BoardCapture, Start, record_board, started
 from elbowroom.errors import SiteError

@@ -40,6 +40,7 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around)
     across[3:6] = np.inf
     limits = np.empty((2, width), dtype=np.float32)
     found = np.zeros((width + 7) // 8 * 8, dtype=np.uint8)
+    spans, boxes = np.empty((3, width), dtype=np.float32), np.empty((6, width), dtype=np.int32)
     for v in range(-1, height):
         _across(inverse, v + 1, first, last, left, right, across, (v + 1) % 3)
         if v < 0:
@@ -53,7 +54,7 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around)
     if view.flying:
         _settle_edges(view, depth, first, last, model)
     for row in range(around.near.shape[0]):
-        mark_row_of_tiles(view, depth, model, row, around, limits, found)
+        mark_row_of_tiles(view, depth, model, row, around, limits, found, spans, boxes)
     for v in range(height):
         set_run(inverse[v], first[v], last[v] + 1, np.float32(0.0))
 

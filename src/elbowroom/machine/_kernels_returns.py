@@ -6,13 +6,15 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry._kernels import Lattice, bit_of, word_of
+from elbowroom.geometry._kernels import Lattice, bit_of, uncounted, word_of
 from elbowroom.machine._kernels_draw import NEAR_M
 
 MOST_M = 1e6
 TILE = 16
 UNSAFE = np.float32(-1e-6)
 """In place of a depth where the model is about a pixel, but what is about it is not all explained or farther [m]."""
+FLOAT_ERROR = np.float32(2e-6)
+"""Of a coordinate that float32 arithmetic worked out, more than it errs, as a share of its terms."""
 SUPPORT = 4
 """Of eight neighbours, how many must be like a return beside the machine's edge for it to count as a surface."""
 
@@ -103,41 +105,52 @@ def mark_tiles(balls, link, radius, camera_from_link, view, near, far):
 
 
 @njit(nogil=True, error_model="numpy")
-def mark_row_of_tiles(view, depth, model, row, around, limits, found):
+def mark_row_of_tiles(view, depth, model, row, around, limits, found, spans, boxes):
     """Sets the voxels that the unexplained returns of one row of tiles may lie in.
 
     That is those that the cube about the measured point meets whose half side is half a pixel at its range,
     moved along the ray by up to `around.sigmas` * sigma. A return that stands alone is passed over: it may
     fly, or have slipped between two links.
     """
-    if row >= around.near.shape[0]:
-        return
     width, least, most = view.width, limits[0], limits[1]
     # taken out of the tuple once: each look into it counts references, which costs more than the arithmetic below
     sigmas, pose, cells, words = around.sigmas, around.world_from_camera, around.cells, around.words
+    left, right = width, 0
     for column in range(around.near.shape[1]):
         start, stop = column * TILE, min(column * TILE + TILE, width)
         set_run(least, start, stop, np.float32(max(around.near[row, column], view.min_depth)))
         set_run(most, start, stop, np.float32(min(around.far[row, column], view.max_depth)))
+        if around.far[row, column] > 0.0:
+            left, right = min(left, start), stop
+    if left >= right:
+        return
     eight = found.view(np.uint64)
     for v in range(row * TILE, min(row * TILE + TILE, view.height)):
-        _find(depth[v], model[v], least, most, width, found)
-        for n in range(eight.size):
-            if eight[n] != 0:
-                for u in range(8 * n, 8 * n + 8):
-                    # the voxels first: neighbours mostly lie in the same ones
-                    if (
-                        found[u] != 0
-                        and _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words, False)
-                        and has_support(view, depth, model, u, v)
-                    ):
-                        _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words, True)
+        _find(depth[v], model[v], least, most, left, right, found)
+        # tiles start at whole words of eight pixels
+        done = left
+        for n in range(left // 8, (right + 7) // 8):
+            if eight[n] == 0:
+                continue
+            if 8 * n >= done:
+                done = 8 * n
+                while done < right and eight[done // 8] != 0:
+                    done = min(done + 8, right)
+                _bound_returns(view, v, depth[v], 8 * n, done, sigmas, pose, cells, spans, boxes)
+            for u in range(8 * n, min(8 * n + 8, right)):
+                # the voxels first: neighbours mostly lie in the same ones
+                if (
+                    found[u] != 0
+                    and not _all_set(boxes, u, cells.cubes_y, cells.cubes_z, words)
+                    and has_support(view, depth, model, u, v)
+                ):
+                    _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words)
 
 
 @njit(nogil=True, error_model="numpy")
-def _find(depth, model, least, most, width, found):
+def _find(depth, model, least, most, left, right, found):
     """Notes the pixels of a row that are not explained and whose depth lies within their limits."""
-    for n in range(width):
+    for n in range(left, right):
         u = np.uint64(n)
         d = depth[u]
         found[u] = (
@@ -149,12 +162,68 @@ def _find(depth, model, least, most, width, found):
         )
 
 
+@uncounted(error_model="numpy")
+def _bound_returns(view, v, depth, start, stop, sigmas, pose, cells, spans, boxes):
+    """First and last voxel along each axis of a box about all that each return of a run may lie in.
+
+    In float32 and without branches, for many pixels at once; the box is wider by more than that errs.
+
+    Args:
+        v, start, stop: row of the run, its first column, one past its last.
+        depth: (width,) of the row [m].
+        spans: (3, width) float32, written: planar depth from and to, half a pixel there in voxels.
+        boxes: (6, width) int32, written: first and last i, j and k; none if the last comes before the first.
+    """
+    y, scale, one = np.float32((v - view.cy) / view.fy), 1.0 / cells.edge, np.float32(1.0)
+    cx, pitch, square = np.float32(view.cx), np.float32(1.0 / view.fx), one + y * y
+    half_pixel = np.float32(0.5 / min(view.fx, view.fy) * scale)
+    fixed, factor = np.float32(sigmas * view.constant), np.float32(sigmas * view.linear)
+    beyond_factor, offset = np.float32(sigmas * view.quadratic), np.float32(view.offset)
+    radial, zero = view.radial, np.float32(0.0)
+    for n in range(start, stop):
+        u = np.uint64(n)
+        x = (np.float32(n) - cx) * pitch
+        d = depth[u]
+        planar = one / np.sqrt(square + x * x) if radial else one
+        beyond = max(d - offset, zero)
+        spread = fixed + factor * d + beyond_factor * beyond * beyond
+        spans[0, u], spans[1, u] = (d - spread) * planar, (d + spread) * planar
+        spans[2, u] = half_pixel * d * planar
+    for axis in range(3):
+        corner = cells.x0 if axis == 0 else cells.y0 if axis == 1 else cells.z0
+        end = np.float32(cells.nx if axis == 0 else cells.ny if axis == 1 else cells.nz)
+        origin = np.float32((pose[axis, 3] - corner) * scale)
+        turn = np.float32(pose[axis, 0] * scale) * pitch
+        base = np.float32((pose[axis, 1] * y + pose[axis, 2]) * scale)
+        aside = abs(origin)
+        for n in range(start, stop):
+            u = np.uint64(n)
+            along = turn * (np.float32(n) - cx) + base
+            near, far = along * spans[0, u], along * spans[1, u]
+            slack = spans[2, u] + FLOAT_ERROR * (aside + abs(near) + abs(far))
+            low, high = np.floor(origin + min(near, far) - slack), np.floor(origin + max(near, far) + slack)
+            # held near the grid before they become whole numbers
+            boxes[2 * axis, u] = np.int32(min(max(low, zero), end))
+            boxes[2 * axis + 1, u] = np.int32(max(min(high, end - one), -one))
+
+
+@uncounted(error_model="numpy")
+def _all_set(boxes, u, cubes_y, cubes_z, words):
+    """Whether all voxels of a box are set already."""
+    for i in range(boxes[0, u], boxes[1, u] + 1):
+        for j in range(boxes[2, u], boxes[3, u] + 1):
+            for k in range(boxes[4, u], boxes[5, u] + 1):
+                if not words[word_of(i, j, k, cubes_y, cubes_z)] & bit_of(i, j, k):
+                    return False
+    return True
+
+
 @njit(nogil=True, error_model="numpy")
-def _mark_return(view, u, v, d, sigmas, pose, cells, words, sets):
-    """Sets the voxels that one return may lie in, or only says whether any of them is not set yet."""
+def _mark_return(view, u, v, d, sigmas, pose, cells, words):
+    """Sets the voxels that one return may lie in."""
     x, y = (u - view.cx) / view.fx, (v - view.cy) / view.fy
     z = d / math.sqrt(1.0 + x * x + y * y) if view.radial else float(d)
-    half = 0.5 * z / min(view.fx, view.fy) / cells.edge
+    half = 0.5 / min(view.fx, view.fy) / cells.edge * z
     scale = 1.0 / cells.edge
     # the ray in voxels from the grid's corner
     ox, oy, oz = (
@@ -178,12 +247,7 @@ def _mark_return(view, u, v, d, sigmas, pose, cells, words, sets):
         for i in range(max(0, math.floor(px - half)), min(cells.nx - 1, math.floor(px + half)) + 1):
             for j in range(max(0, math.floor(py - half)), min(cells.ny - 1, math.floor(py + half)) + 1):
                 for k in range(max(0, math.floor(pz - half)), min(cells.nz - 1, math.floor(pz + half)) + 1):
-                    word, bit = word_of(i, j, k, cells.cubes_y, cells.cubes_z), bit_of(i, j, k)
-                    if sets:
-                        words[word] |= bit
-                    elif not words[word] & bit:
-                        return True
-    return False
+                    words[word_of(i, j, k, cells.cubes_y, cells.cubes_z)] |= bit_of(i, j, k)
 
 
 @njit(nogil=True, error_model="numpy")

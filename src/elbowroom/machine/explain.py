@@ -21,8 +21,8 @@ from elbowroom.machine.machine import Joints, Machine
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
 from elbowroom.machine.samples import body_samples
 
-BALL_VOXEL_M = 0.1
-"""The body is covered with balls of some 0.2 m, the clusters of its samples for voxels of this size."""
+BALL_VOXEL_M = 0.07
+"""The body is covered with balls of some 0.15 m, the clusters of its samples for voxels of this size."""
 REACH_M = 0.1
 """Returns this much farther from the body are kept as well: it moves between frame and decision [m]."""
 RETURN_SIGMAS = 3.0

@@ -9,9 +9,12 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
 from elbowroom.monitor._kernels_watch import Memory, Spots, judge_image
 from elbowroom.monitor.health import CameraHealth, Condition
+from elbowroom.monitor.lasting import Lasting
 from elbowroom.monitor.reference import MOVE_PRIOR_M, TURN_PRIOR_RAD, CameraReference
 from elbowroom.monitor.sequential import Tally
 from elbowroom.monitor.shift import Shift
+from elbowroom.monitor.shown_part import ShownPart
+from elbowroom.monitor.tolerance import Tolerance
 from elbowroom.sensing import DepthFrame
 
 GATE_M = 0.20
@@ -29,30 +32,7 @@ FRAMES = 6
 CHANGED_FRAMES = 12
 CHANGED_FIT = 0.5
 COVERED_SHARE = 0.97
-COVERED_S = 5.0
-BLIND_S = 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class Tolerance:
-    """What is not yet called moved; the margin has to cover it.
-
-    Args:
-        turn_rad: [rad].
-        move_m: [m].
-
-    Raises:
-        InputError: not above zero.
-    """
-
-    turn_rad: float = float(np.radians(0.4))
-    move_m: float = 0.008
-
-    def __post_init__(self) -> None:
-        for name in ("turn_rad", "move_m"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value > 0):
-                raise InputError(f"watch: {name} is {value}, must be above 0")
+HIDDEN_SHARE = 0.7
 
 
 @dataclass(slots=True, eq=False)
@@ -73,16 +53,21 @@ class CameraWatch:
     """Why nothing may move, once it was found; it stays."""
     shift: Shift | None = field(default=None, init=False)
     """By how much it had moved when that was found."""
+    _part: ShownPart | None = field(init=False)
+    _least: Tolerance = field(init=False)
+    """What is not yet called moved in this view."""
     _spots: Spots = field(init=False)
     _memory: Memory = field(init=False)
     _since_moved: Memory = field(init=False)
     _moved: Tally = field(default_factory=lambda: Tally(FRAMES), init=False)
     _changed: Tally = field(default_factory=lambda: Tally(CHANGED_FRAMES), init=False)
-    _since: dict[Condition, int] = field(default_factory=dict, init=False)
+    _lasting: Lasting = field(default_factory=Lasting, init=False)
     _newest: tuple[int | None, CameraHealth] | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         self.reference.require(self.camera)
+        self._part = ShownPart.of(self.reference, self.tolerance)
+        self._least = self.tolerance if self._part is None else self._part.tolerance
         self._spots = self.reference.spots()
         self._memory, self._since_moved = _nothing_heard(self._spots), _nothing_heard(self._spots)
 
@@ -90,20 +75,34 @@ class CameraWatch:
         """Judges the newest frame.
 
         Args:
-            frame: of this camera; None: it gave none. A frame that was heard already is not counted again.
+            frame: of this camera; None: it gave none. One that was heard already is no new one, and counts once.
             now_ns: the time now [ns, the clock of the frames].
 
         Raises:
             InputError: the image is of another size than the reference's.
         """
-        if frame is None:
-            return self._silent
-        if self._newest is not None and frame.stamp_ns is not None and self._newest[0] == frame.stamp_ns:
-            return self._newest[1]
+        if frame is None or self._was_heard(frame):
+            self._lasting.silent(now_ns)
+            self._stop_if_too_long()
+            return self._silent if frame is None else self.newest
         now = self._judge(frame)
         self._newest = frame.stamp_ns, now
         self._count(frame, now, frame.stamp_ns if frame.stamp_ns is not None else now_ns)
         return now
+
+    def pass_over(self, frame: DepthFrame | None, now_ns: int) -> CameraHealth:
+        """What was said last, without a look at the newest frame, of which all that counts is whether it is there.
+
+        Args:
+            frame, now_ns: as of `hear`.
+        """
+        if frame is None or self._was_heard(frame):
+            return self.hear(frame, now_ns)
+        self._lasting.not_silent()
+        return self.newest
+
+    def _was_heard(self, frame: DepthFrame) -> bool:
+        return self._newest is not None and frame.stamp_ns is not None and self._newest[0] == frame.stamp_ns
 
     @property
     def newest(self) -> CameraHealth:
@@ -112,7 +111,7 @@ class CameraWatch:
 
     @property
     def _silent(self) -> CameraHealth:
-        return CameraHealth(self.camera.name, Condition.SILENT, None, 0.0)
+        return CameraHealth(self.camera.name, Condition.SILENT, None, 0.0, 1.0)
 
     def _judge(self, frame: DepthFrame) -> CameraHealth:
         """What one frame says by itself."""
@@ -127,21 +126,23 @@ class CameraWatch:
         total = len(self.reference.pixel)
         speaks_for, against, fits_still, fits_moved = (float(share) for share in said)
         fits = max(fits_still, fits_moved) * within
-        share = fits / total
+        seen, hidden = fits / total, (nearer + lost) / total
         if lost >= COVERED_SHARE * total:
-            return CameraHealth(name, Condition.BLIND, None, share)
-        if nearer + lost >= COVERED_SHARE * total:
-            return CameraHealth(name, Condition.COVERED, None, share)
+            return CameraHealth(name, Condition.BLIND, None, seen, hidden)
+        if hidden >= COVERED_SHARE:
+            return CameraHealth(name, Condition.COVERED, None, seen, hidden)
         if within + farther < max(LEAST_SEEN, LEAST_SEEN_SHARE * total):
-            return CameraHealth(name, Condition.UNSURE, None, share)
+            little = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.UNSURE
+            return CameraHealth(name, little, None, seen, hidden)
         if fits < CHANGED_FIT * (within + farther):
-            return CameraHealth(name, Condition.CHANGED, None, share)
+            return CameraHealth(name, Condition.CHANGED, None, seen, hidden)
         moved = (
             speaks_for > max(FOR_OVER_AGAINST * against, LEAST_FOR)
             and fits_moved >= LEAST_FIT
-            and shift.exceeds(self.tolerance.turn_rad, self.tolerance.move_m, SIGMAS)
+            and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
         )
-        return CameraHealth(name, Condition.MOVED if moved else Condition.STILL, shift, share)
+        still = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.STILL
+        return CameraHealth(name, Condition.MOVED if moved else still, shift, seen, hidden)
 
     def _listen(
         self, frame: DepthFrame, memory: Memory
@@ -153,19 +154,16 @@ class CameraWatch:
             frame.depth_m.ravel(), self._spots, float(self.camera.min_depth_m), float(self.camera.max_depth_m),
             GATE_M, TURN_PRIOR_RAD, MOVE_PRIOR_M, memory, counted, motion, covariance, said,
         )  # fmt: skip
-        return counted, Shift.of(motion, covariance), said
+        shift = Shift.of(motion, covariance) if self._part is None else self._part.shift(motion, covariance)
+        return counted, shift, said
 
     def _count(self, frame: DepthFrame, now: CameraHealth, stamp_ns: int) -> None:
         """Lets the tests hear what the frame said."""
         condition = now.condition
-        can_tell = condition in (Condition.MOVED, Condition.STILL)
+        can_tell = now.shift is not None
         moved = self._moved.add(condition is Condition.MOVED if can_tell else None)
         changed = self._changed.add(condition is Condition.CHANGED)
-        for lasting in (Condition.COVERED, Condition.BLIND):
-            if condition is lasting:
-                self._since.setdefault(lasting, stamp_ns)
-            else:
-                self._since.pop(lasting, None)
+        self._lasting.seen(_hidden_as(now), stamp_ns)
         if self.stop is not None:
             return
         shift = None
@@ -174,21 +172,34 @@ class CameraWatch:
         else:
             # the size is that of frames after the knock: the mean that found it holds some from before
             _, shift, _ = self._listen(frame, self._since_moved)
-        self.stop = self._found(shift if moved else None, changed, stamp_ns)
-
-    def _found(self, shift: Shift | None, changed: bool, stamp_ns: int) -> str | None:
-        """The reason to stop, if a test has decided."""
         name = self.camera.name
-        if shift is not None:
+        if moved and shift is not None:
             self.shift = shift
-            return f"camera {name} has {shift.words(self.tolerance.turn_rad, self.tolerance.move_m)}"
-        if changed:
-            return f"camera {name} {Condition.CHANGED.value}: turned or moved far, or the room was rebuilt"
-        for lasting, limit_s in ((Condition.COVERED, COVERED_S), (Condition.BLIND, BLIND_S)):
-            lasted = (stamp_ns - self._since.get(lasting, stamp_ns)) / 1e9
-            if lasted >= limit_s:
-                return f"camera {name} {lasting.value}, for {lasted:.0f} s"
-        return None
+            self.stop = f"camera {name} has {shift.words(self._least.turn_rad, self._least.move_m)}"
+        elif changed:
+            self.stop = (
+                f"camera {name} {Condition.CHANGED.value}: turned or moved far, or the room was rebuilt"
+            )
+        else:
+            self._stop_if_too_long(now.share_hidden)
+
+    def _stop_if_too_long(self, share_hidden: float | None = None) -> None:
+        """Stops for what has lasted too long; the share of the reference that is hidden is said where it is known."""
+        too_long = self._lasting.too_long
+        if self.stop is not None or too_long is None:
+            return
+        condition, lasted_s = too_long
+        hidden = (
+            "" if share_hidden is None else f": {100 * share_hidden:.0f} % of what it was commissioned on"
+        )
+        self.stop = f"camera {self.camera.name} {condition.value}{hidden}, for {lasted_s:.0f} s"
+
+
+def _hidden_as(now: CameraHealth) -> set[Condition]:
+    """All in which its view is hidden: one that is blind is covered, and one that is covered is hidden."""
+    shares = {Condition.HIDDEN: HIDDEN_SHARE, Condition.COVERED: COVERED_SHARE}
+    said = {condition for condition, share in shares.items() if now.share_hidden >= share}
+    return said | ({now.condition} & {Condition.BLIND})
 
 
 def _nothing_heard(spots: Spots) -> Memory:

@@ -6,11 +6,12 @@ How conditions combine: the first that stops decides, and it stays. While it sta
 |---|---|---|
 | STILL | the camera's reference fits | no |
 | UNSURE | too little of its reference is in view, or none of the tests has decided | no |
-| SILENT | it gave no image at this moment | no: what it looks at is disputed as it is |
+| HIDDEN | something nearer, or no return, hides most of its reference | after 60 s: its view is disputed anyway |
 | MOVED | its reference fits after a turn or a move | yes |
 | CHANGED | much of its reference is gone, and what is behind is seen: a large turn, or the room was rebuilt | yes |
-| COVERED | something hides nearly all of its reference, for seconds | yes |
-| BLIND | hardly any pixel of its reference has a return, for a second | yes |
+| COVERED | something hides nearly all of its reference | after 5 s |
+| BLIND | hardly any pixel of its reference has a return | after 1 s |
+| SILENT | it gave no new image | after 2 s |
 """
 
 from collections.abc import Mapping
@@ -25,16 +26,17 @@ class Condition(Enum):
 
     STILL = "stands where it was commissioned"
     UNSURE = "shows too little of its reference"
-    SILENT = "gave no image"
+    HIDDEN = "is mostly hidden"
     MOVED = "has moved"
     CHANGED = "no longer sees what it was commissioned on"
     COVERED = "is covered"
     BLIND = "gives no returns"
+    SILENT = "gives no new image"
 
     @property
     def stops(self) -> bool:
-        """Whether nothing may move once a camera is found so."""
-        return self in (Condition.MOVED, Condition.CHANGED, Condition.COVERED, Condition.BLIND)
+        """Whether nothing may move once a camera is found so, some of them for a while."""
+        return self not in (Condition.STILL, Condition.UNSURE)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,12 +48,14 @@ class CameraHealth:
         condition: what its newest frame says; what tests have decided goes before.
         shift: by how much it seems to have moved; None: its reference is not in view.
         share_seen: of its reference, how much is in view and near where it should be.
+        share_hidden: of its reference, before how much there is something nearer, or no return; 1 where it is silent.
     """
 
     camera: str
     condition: Condition
     shift: Shift | None
     share_seen: float
+    share_hidden: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 STEADY_TURN_RAD = 0.0009
 STEADY_MOVE_M = 0.0015
 """No shift is known better than this, however many frames speak: what is steady in the reference stays in the mean. So
-large that 95 % of the knocks of benchmarks/calibration_drift.py lie within two sigmas."""
-_STEADY = np.diag([STEADY_TURN_RAD**2] * 3 + [STEADY_MOVE_M**2] * 3)
+large that 95 % of the knocks of `elbowroom bench calibration --part drift` lie within two sigmas."""
+STEADY_COVARIANCE = np.diag([STEADY_TURN_RAD**2] * 3 + [STEADY_MOVE_M**2] * 3)
 LARGE_TURN_DEG, LARGE_MOVE_MM = 2.0, 60.0
 """Beyond this the surfaces about the spots are others than those that were commissioned: sizes are rough."""
 
@@ -22,16 +22,24 @@ class Shift:
         turn_rad: rotation vector, shape (3,), its own axes [rad].
         move_m: shape (3,), its own axes [m].
         covariance: of both, shape (6, 6) [rad, m].
+        not_shown: motions that the view does not show: it may have moved so, too.
     """
 
     turn_rad: NDArray[np.float64]
     move_m: NDArray[np.float64]
     covariance: NDArray[np.float64]
+    not_shown: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, motion: NDArray[np.float64], covariance: NDArray[np.float64]) -> "Shift":
-        """From the six numbers of the kernels, copied; never surer than `STEADY_TURN_RAD` and `STEADY_MOVE_M`."""
-        return cls(motion[:3].copy(), motion[3:].copy(), covariance + _STEADY)
+    def of(
+        cls,
+        motion: NDArray[np.float64],
+        covariance: NDArray[np.float64],
+        steady: NDArray[np.float64] = STEADY_COVARIANCE,
+        not_shown: tuple[str, ...] = (),
+    ) -> "Shift":
+        """From the six numbers of the kernels, copied; never surer than what is steady in the reference."""
+        return cls(motion[:3].copy(), motion[3:].copy(), covariance + steady, not_shown)
 
     @property
     def turn_deg(self) -> float:
@@ -75,9 +83,10 @@ class Shift:
             move = f"moved by {self.move_mm:.0f} ± {2 * self.move_sigma_mm:.0f} mm"
         turn_is_large = bool(np.linalg.norm(self.turn_rad) > turn_rad / 2)
         move_is_large = bool(np.linalg.norm(self.move_m) > move_m / 2)
-        if turn_is_large == move_is_large:
-            return f"{turn} and {move}"
-        return turn if turn_is_large else move
+        said = f"{turn} and {move}" if turn_is_large == move_is_large else turn if turn_is_large else move
+        if not self.not_shown:
+            return said
+        return f"{said}, which may be a part of it: its view does not show {', '.join(self.not_shown)}"
 
 
 def _along(vector: NDArray[np.float64], covariance: NDArray[np.float64]) -> float:

@@ -6,10 +6,11 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.parallel import default_threads, spread
 from elbowroom.machine import Machine
 from elbowroom.monitor.body_watch import BodyWatch
-from elbowroom.monitor.camera_watch import CameraWatch, Tolerance
+from elbowroom.monitor.camera_watch import CameraWatch
 from elbowroom.monitor.health import CameraHealth, Condition, Health
 from elbowroom.monitor.reference import CameraReference, require_references
 from elbowroom.monitor.shift import Shift
+from elbowroom.monitor.tolerance import Tolerance
 from elbowroom.sensing import DepthFrame, JointRecord
 
 Joints = Mapping[str, float] | JointRecord
@@ -101,7 +102,7 @@ class Watch:
         shares = [turn[first::threads] for first in range(threads)]
         heard = {health.camera: health for part in spread(hear, shares, threads) for health in part}
         return tuple(
-            heard[name] if name in heard else watch.newest if name in newest else watch.hear(None, now_ns)
+            heard[name] if name in heard else watch.pass_over(newest.get(name), now_ns)
             for watch in self._watches
             for name in [watch.camera.name]
         )

@@ -14,7 +14,13 @@ from elbowroom.motion._kernels_volume import cell_of, counted, gap, leaves, meet
 ROUNDING_M = 1e-9
 """Added to every radius, so that rounding never makes a ball smaller than it is [m]."""
 
-EXACT_UP_TO = 6.0
+QUICK_BELOW = 0.499
+"""Balls of smaller radius meet none but the eight voxels about the nearest corner [voxel edges]."""
+
+TOGETHER = 64
+"""So many samples are placed at once."""
+
+EXACT_UP_TO = 2.0
 """Larger balls are tested against blocks of 64 voxels alone [voxel edges]."""
 
 SURFACE, OUTSIDE, BLIND, UNSEEN, NOTHING = 0, 1, 2, 3, 4
@@ -158,14 +164,53 @@ def _near_samples(placed, skin, speeds, half, volume, cells, asked, near):
 
 
 @njit
-def _members(skin, clusters, samples):
-    """All samples of some clusters; how many."""
+def _near_members(placed, skin, speeds, half, volume, cells, clusters, near):
+    """The same for all samples of some clusters.
+
+    A ball smaller than a voxel meets none but the eight voxels about the corner nearest to its centre: one look at
+    what is known of that corner settles most of them.
+    """
+    link, points, start, stop, cover = skin.link, skin.points, skin.start, skin.stop, skin.cover
+    words, corners = volume.words, volume.corners
+    at = np.empty((3, TOGETHER), dtype=np.int32)
     count = 0
     for cluster in clusters:
-        for sample in range(skin.start[cluster], skin.stop[cluster]):
-            samples[count] = sample
-            count += 1
+        r = cover + speeds[cluster] * half + ROUNDING_M
+        small = r < QUICK_BELOW * cells.edge
+        for first in range(start[cluster], stop[cluster], TOGETHER):
+            last = min(first + TOGETHER, stop[cluster])
+            if small:
+                _corners_of(placed, link[cluster], points, first, last, cells, at)
+            for sample in range(first, last):
+                n = sample - first
+                if small and at[0, n] >= 0:
+                    word = word_of(at[0, n], at[1, n], at[2, n], cells.cubes_y, cells.cubes_z)
+                    if not corners[word] & bit_of(at[0, n], at[1, n], at[2, n]):
+                        continue
+                x, y, z = _placed(placed, link[cluster], points, sample)
+                if meets_voxel(words, cells, x, y, z, r):
+                    near[count] = sample
+                    count += 1
     return count
+
+
+@njit(error_model="numpy")
+def _corners_of(placed, link, points, first, last, cells, at):
+    """The voxels' corners nearest to a link's points: (3, points) int32, -1 for one on the grid's border or beyond."""
+    scale = 1.0 / cells.edge
+    for axis in range(3):
+        corner = cells.x0 if axis == 0 else cells.y0 if axis == 1 else cells.z0
+        end = np.float64(cells.nx if axis == 0 else cells.ny if axis == 1 else cells.nz)
+        a, b = placed[link, axis, 0] * scale, placed[link, axis, 1] * scale
+        c, d = placed[link, axis, 2] * scale, (placed[link, axis, 3] - corner) * scale + 0.5
+        for n in range(last - first):
+            u = np.uint64(first + n)
+            place = a * points[u, 0] + b * points[u, 1] + c * points[u, 2] + d
+            # comparisons with what is not a number are false
+            at[axis, np.uint64(n)] = np.int32(place if (place >= 1.0) & (place < end) else -1.0)
+    for n in range(last - first):
+        u = np.uint64(n)
+        at[0, u] = at[0, u] if (at[1, u] >= 0) & (at[2, u] >= 0) else -1
 
 
 @njit
@@ -280,8 +325,9 @@ def first_block(
         if row <= 0:
             asked, near = clusters[depth, :before], clusters[depth + 1]
             left = _near_clusters(placed[0], skin, speeds, half, volume, cells, asked, near)
-            before = _members(skin, near[:left], samples[0]) if row == 0 else 0
-        if row >= 0:
+            if row == 0:
+                left = _near_members(placed[0], skin, speeds, half, volume, cells, near[:left], samples[1])
+        else:
             asked, near = samples[row, :before], samples[row + 1]
             left = _near_samples(placed[0], skin, speeds, half, volume, cells, asked, near)
         if left > 0 and depth == depth_limit:

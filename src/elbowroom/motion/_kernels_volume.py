@@ -9,9 +9,11 @@ from elbowroom.geometry._kernels import bit_of, word_of
 
 
 class Volume(NamedTuple):
-    """What is blocked, one bit a voxel; whether any of each 16-voxel cube is; what the blocked voxels are."""
+    """What is blocked, one bit a voxel; whether any of the eight voxels is that meet at a voxel's least corner; whether
+    any of each 16-voxel cube is; what the blocked voxels are."""
 
     words: np.ndarray
+    corners: np.ndarray
     cubes: np.ndarray
     surface: np.ndarray
     blind: np.ndarray
@@ -34,6 +36,39 @@ def block(free, cells, words, cubes):
             words[cube * 64 + w] = blocked
             some |= blocked
         cubes[cube] = some != 0
+
+
+@njit(cache=True, nogil=True)
+def gather_corners(words, cells, scratch, corners):
+    """Fills a plane: whether any of the eight voxels about each voxel's least corner is set; `scratch` is a third."""
+    across_y, across_x = cells.cubes_z * 64, cells.cubes_y * cells.cubes_z * 64
+    _with_previous(words, 1, 0x1111111111111111, 1, 61, 0, 1, cells.cubes_z, corners)
+    _with_previous(corners, 4, 0x000F000F000F000F, 4, across_y - 12, 2, cells.cubes_z, cells.cubes_y, scratch)
+    _with_previous(
+        scratch, 16, 0xFFFF, 16, across_x - 48, 4, cells.cubes_y * cells.cubes_z, cells.cubes_x, corners
+    )
+
+
+@njit
+def _with_previous(words, step, low, near, far, digit, stride, count, out):
+    """Each voxel's bit or that of its lower neighbour along one axis.
+
+    Args:
+        step: from a bit of a word to that of the next voxel.
+        low: the bits of the word's first voxels.
+        near, far: from a word to the next one, within a cube and into the next cube.
+        digit: where two bits of a word's number tell the block within the cube.
+        stride, count: from a cube's number to the next one's, and how many there are.
+    """
+    last = np.uint64(low) << np.uint64(3 * step)
+    shift, over = np.uint64(step), np.uint64(3 * step)
+    for word in range(words.size):
+        either = words[word] | ((words[word] & ~last) << shift)
+        if (word >> digit) & 3:
+            either |= (words[word - near] & last) >> over
+        elif (word >> 6) // stride % count:
+            either |= (words[word - far] & last) >> over
+        out[word] = either
 
 
 @njit

@@ -9,14 +9,15 @@ from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.machine import Machine
 from elbowroom.machine._kernels import FIXED, SLIDES
 from elbowroom.motion._kernels import Skin, bound_speeds, first_block
-from elbowroom.motion._kernels_volume import Volume, block
+from elbowroom.motion._kernels_volume import Volume, block, gather_corners
 from elbowroom.motion.course import Way
 from elbowroom.reconstruct.free_space import FreeSpace
 
 FINEST_STEP_IN_VOXELS = 1 / 16
 """The first block is found to within a travel in which no point moves farther than this [voxel edges]."""
-SAMPLE_HALVINGS = 4
-"""Single samples are looked at in the last so many halvings (from one voxel on), clusters before."""
+SAMPLE_HALVINGS = 3
+"""Single samples are looked at in the last so many halvings, clusters before: from half a voxel on, where the balls
+about samples are no larger than a voxel and one look at a corner settles most of them."""
 MOST_HALVINGS = 40
 """No interval is cut more often: a travel of 10^12 finest steps."""
 
@@ -34,8 +35,11 @@ def volume_of(space: FreeSpace) -> Volume:
     """The blocked voxels of a space as the kernels take them."""
     words = np.empty_like(space.free_words)
     cubes = np.empty(words.size // 64, dtype=np.bool_)
-    block(space.free_words, bits.lattice(space.grid), words, cubes)
-    return Volume(words, cubes, space.surface_words, space.blind_words, space.disputed_words)
+    cells = bits.lattice(space.grid)
+    block(space.free_words, cells, words, cubes)
+    corners = np.empty_like(words)
+    gather_corners(words, cells, np.empty_like(words), corners)
+    return Volume(words, corners, cubes, space.surface_words, space.blind_words, space.disputed_words)
 
 
 def cluster_speeds(

@@ -51,7 +51,8 @@ class Views(NamedTuple):
     offset (n, 2, 3, 64) float32: from child 0 to each child of a block (0) or cube (1), in camera axes, x times fx and
     y times fy. windows: over what pixels free. texel_first (n,): where each camera's level 0 begins in trust_texels,
     what its pixels free, and in doubt_texels, what they measured of anything but the machine; tile_first (n,) the same
-    of level 2, tiles of 4 x 4 pixels.
+    of level 2, tiles of 4 x 4 pixels. doubt_squares (3, tiles): the least of 2 x 2, 4 x 4 and 8 x 8 of doubt_tiles, the
+    tile itself first; of no size where nothing asks for them.
     """
 
     numbers: np.ndarray
@@ -64,6 +65,7 @@ class Views(NamedTuple):
     tile_first: np.ndarray
     trust_tiles: np.ndarray
     doubt_tiles: np.ndarray
+    doubt_squares: np.ndarray
 
 
 @uncounted(cache=True, error_model="numpy")

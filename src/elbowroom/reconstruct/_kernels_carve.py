@@ -202,8 +202,9 @@ def _dispute(c, word, unsure, partly, reach, views, said, scratch):
         # one dispute is enough, unless they are counted
         asked = unsure if said.complete else unsure & ~planes[DISPUTED, word]
         disputed = contested(
-            views.numbers, c, views.tile_first[c], views.doubt_tiles, asked, partly, reach, scratch.floats
-        )
+            views.numbers, c, views.tile_first[c], views.doubt_tiles, views.doubt_squares,
+            asked, partly, reach, scratch.floats,
+        )  # fmt: skip
     surface, blind = measured_at_centre(
         views.numbers, c, views.texel_first[c], views.doubt_texels, views.tile_first[c], views.doubt_tiles,
         unsure, planes[SURFACE, word], partly, scratch.floats, scratch.ints, scratch.flags, scratch.flag_words,

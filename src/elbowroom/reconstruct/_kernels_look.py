@@ -163,7 +163,7 @@ def sort_out(numbers, c, scale_edge, first, trust_texels, doubt_texels, unsure, 
 
 
 @uncounted(cache=True)
-def contested(numbers, c, tile_first, doubt_tiles, unsure, partly, reach, floats):
+def contested(numbers, c, tile_first, doubt_tiles, doubt_squares, unsure, partly, reach, floats):
     """Of the unsure boxes those that unexplained pixels dispute.
 
     Asked are all tiles that hold a pixel within `reach` of a box's centre pixel.
@@ -182,13 +182,30 @@ def contested(numbers, c, tile_first, doubt_tiles, unsure, partly, reach, floats
             continue
         u, v = int(floats[U + lane]), int(floats[V + lane])
         first, last = max(u - reach, 0) >> 2, min(u + reach, width - 1) >> 2
-        both = NEUTRAL
-        for row in range(max(v - reach, 0) >> 2, (min(v + reach, height - 1) >> 2) + 1):
-            for tile in range(tile_first + row * across + first, tile_first + row * across + last + 1):
-                both = both_least(both, doubt_tiles[tile])
+        top, bottom = max(v - reach, 0) >> 2, min(v + reach, height - 1) >> 2
+        both = least_of_tiles(doubt_tiles, doubt_squares, tile_first, across, top, bottom, first, last)
         greatest = np.uint32(NO_RETURN) - (both & np.uint32(0xFFFF))
         past = np.float32(both >> np.uint32(16)) * quantum > floats[FAR + lane]
         hidden = greatest < NO_RETURN and np.float32(greatest) * quantum < floats[NEAR + lane]
         if not (past or hidden):
             disputed |= bit
     return disputed
+
+
+@uncounted(cache=True)
+def least_of_tiles(tiles, squares, tile_first, across, top, bottom, first, last):
+    """The least of a rectangle of tiles: of the squares that cover it, which may overlap."""
+    both = NEUTRAL
+    narrow = min(bottom - top, last - first) + 1
+    level = (narrow >= 2) + (narrow >= 4) + (narrow >= 8)
+    edge = 1 << level
+    row = top
+    while row <= bottom:
+        begin = tile_first + min(row, bottom - edge + 1) * across
+        column = first
+        while column <= last:
+            tile = begin + min(column, last - edge + 1)
+            both = both_least(both, squares[level - 1, tile] if level else tiles[tile])
+            column += edge
+        row += edge
+    return both

@@ -16,6 +16,8 @@ NO_RETURN = 65535
 FAR_CLIP = 65534
 NEXT_TO_NOTHING_M = 1e-3
 NEUTRAL = np.uint32(0xFFFFFFFF)
+RUN = 64
+"""Pixels of a row that are looked over before they are worked on."""
 REACH = 2
 """Texels that a window reaches to every side."""
 
@@ -191,16 +193,20 @@ def both_least(a, b):
 def halve(fine, coarse):
     """The next level of texels: each is the least of 2 x 2, of fewer at an odd image's edge."""
     rows, columns = fine.shape
+    halves = fine.view(np.uint16)
+    # two rows into one, both halves of a texel side by side, then pairs of texels, which lie in one word
+    least = np.empty((columns + 1) // 2 * 2, dtype=np.uint32)
+    least_halves, pairs = least.view(np.uint16), least.view(np.uint64)
     for v in range(coarse.shape[0]):
-        upper = fine[2 * v]
-        lower = fine[min(2 * v + 1, rows - 1)]
-        out = coarse[v]
-        for u in range(columns // 2):
-            out[u] = both_least(
-                both_least(upper[2 * u], upper[2 * u + 1]), both_least(lower[2 * u], lower[2 * u + 1])
-            )
+        upper, lower, out = halves[2 * v], halves[min(2 * v + 1, rows - 1)], coarse[v]
+        for n in range(2 * columns):
+            u = np.uint64(n)
+            least_halves[u] = min(upper[u], lower[u])
+        for n in range(columns // 2):
+            u = np.uint64(n)
+            out[u] = both_least(np.uint32(pairs[u]), np.uint32(pairs[u] >> np.uint64(32)))
         if columns % 2:
-            out[coarse.shape[1] - 1] = both_least(upper[columns - 1], lower[columns - 1])
+            out[coarse.shape[1] - 1] = least[columns - 1]
 
 
 @njit(cache=True, nogil=True)
@@ -235,28 +241,67 @@ def windows_of(texels, across, windows):
 
 
 @njit(cache=True, nogil=True)
-def _any_of(row):
-    """Whether anything of a row is not zero."""
-    most, least = np.float32(0.0), np.float32(0.0)
-    for n in range(row.size):
-        u = np.uint64(n)
-        most, least = max(most, row[u]), min(least, row[u])
-    return most > least
+def squares_of(tiles, edge, squares):
+    """The least of `edge` x `edge` texels from each on, of fewer at the lower and right edge.
+
+    Args:
+        tiles: (rows, columns) uint32: the least of half as many either way, or single texels.
+        edge: 2 or more, a power of two.
+        squares: (rows, columns) uint32, written.
+    """
+    rows, columns = tiles.shape
+    half = edge // 2
+    for v in range(rows):
+        here, below, out = tiles[v], tiles[min(v + half, rows - 1)], squares[v]
+        for n in range(columns):
+            u = np.uint64(n)
+            out[u] = both_least(here[u], below[u])
+        # in place from the left: what lies to the right is still as it was
+        for n in range(columns - half):
+            u = np.uint64(n)
+            out[u] = both_least(out[u], out[u + np.uint64(half)])
+
+
+@njit(cache=True, nogil=True)
+def _any_of(row, start, stop):
+    """Whether any bit of a part of a row is set."""
+    some = np.uint32(0)
+    for n in range(start, stop):
+        some |= row[np.uint64(n)]
+    return some != 0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def mark_explained(model_m, margin, quantum, trust, doubt):
     """Pixels that see the machine, as `machine.explain` tells: `NEUTRAL` in `doubt`; in `trust`, those with a depth of
-    the model are free up to it, and hidden behind it.
+    the model are free up to it, and hidden behind it. Says whether there are any.
     """
+    columns = model_m.shape[1]
+    # as `_free_to_model`, in float32; numbers of their own, or the compiler cannot tell that they never change below
+    constant, linear, square = np.float32(margin[0]), np.float32(margin[1]), np.float32(margin[2])
+    beyond_square, offset = np.float32(margin[3]), np.float32(margin[4])
+    per_metre, most, nothing = np.float32(1.0 / quantum), np.float32(FAR_CLIP), np.float32(-NEXT_TO_NOTHING_M)
+    zero, one, two, infinite = np.float32(0.0), np.float32(1.0), np.float32(2.0), np.float32(np.inf)
+    as_bits, found = model_m.view(np.uint32), False
     for v in range(model_m.shape[0]):
-        if not _any_of(model_m[v]):
-            continue
-        for u in range(model_m.shape[1]):
-            depth = model_m[v, u]
-            if depth > 0.0 or depth < -NEXT_TO_NOTHING_M:
-                doubt[v, u] = NEUTRAL
-            if 0.0 < depth < np.inf:
-                least = _free_to_model(depth, margin, quantum)
-                greatest = np.uint32(min(depth / quantum + 2.0, float(FAR_CLIP)))
-                trust[v, u] = (least << np.uint32(16)) | (np.uint32(NO_RETURN) - greatest)
+        model, trusted, doubted = model_m[v], trust[v], doubt[v]
+        for start in range(0, columns, RUN):
+            stop = min(start + RUN, columns)
+            if not _any_of(as_bits[v], start, stop):
+                continue
+            found = True
+            # without branches, for many pixels at once
+            for n in range(start, stop):
+                u = np.uint64(n)
+                depth = model[u]
+                frees = (depth > zero) & (depth < infinite)
+                within = depth if frees else one
+                beyond = max(within - offset, zero)
+                wide = constant + within * (linear + within * square) + beyond_square * beyond * beyond
+                least = np.int32(min(max((within + wide) * per_metre - one, zero), most))
+                greatest = np.int32(min(within * per_metre + two, most))
+                texel = np.uint32((least << np.int32(16)) | (np.int32(NO_RETURN) - greatest))
+                trusted[u] = texel if frees else trusted[u]
+                is_machine = (depth > zero) | (depth < nothing)
+                doubted[u] = NEUTRAL if is_machine else doubted[u]
+    return found

@@ -20,6 +20,8 @@ from elbowroom.reconstruct.images import Image, RoomImages
 
 TILE_LEVEL = 2
 """The level whose texels the pixel test passes over at once: 4 x 4 pixels."""
+SQUARES = 3
+"""Of tiles of doubt, squares of 2, 4 and 8 either way are kept."""
 SPARE_M = 0.5
 """Depth beyond the grid's farthest corner that is still told apart."""
 STEP = Margin(sigmas=3.0)
@@ -51,6 +53,7 @@ class _Buffers:
     doubt_texels: NDArray[np.uint32]
     trust_tiles: NDArray[np.uint32]
     doubt_tiles: NDArray[np.uint32]
+    doubt_squares: NDArray[np.uint32]
     windows: NDArray[np.uint32]
 
 
@@ -80,7 +83,8 @@ class Layout:
         windows = int(self.levels[-1, -1, 0] + 1) if self.cameras else 0
         trust = [np.zeros(size, dtype=np.uint32) for size in (texels, int(self.tile_first[-1]))]
         doubt = [np.zeros_like(array) for array in trust] if split else trust
-        return _Buffers(trust[0], doubt[0], trust[1], doubt[1], np.zeros(windows, dtype=np.uint32))
+        squares = np.zeros((SQUARES if split else 0, len(trust[1])), dtype=np.uint32)
+        return _Buffers(trust[0], doubt[0], trust[1], doubt[1], squares, np.zeros(windows, dtype=np.uint32))
 
     def give_back(self, buffers: _Buffers) -> None:
         """Returns buffers for the next carve."""
@@ -198,6 +202,7 @@ def fill(
         _levels(layout, c, trust, buffers.trust_tiles, buffers.windows)
         if split:
             _levels(layout, c, doubt, buffers.doubt_tiles, None)
+            _squares(layout, c, buffers)
 
     spread(build, range(len(layout.cameras)), threads)
     views = Views(
@@ -211,8 +216,20 @@ def fill(
         layout.tile_first,
         buffers.trust_tiles,
         buffers.doubt_tiles,
+        buffers.doubt_squares,
     )
     return views, buffers
+
+
+def _squares(layout: Layout, c: int, buffers: _Buffers) -> None:
+    """Squares of one camera's tiles of doubt."""
+    here = slice(layout.tile_first[c], layout.tile_first[c + 1])
+    shape = layout.shapes[c][TILE_LEVEL]
+    smaller = buffers.doubt_tiles[here].reshape(shape)
+    for level in range(SQUARES):
+        squares = buffers.doubt_squares[level, here].reshape(shape)
+        pyramid.squares_of(smaller, 2 << level, squares)
+        smaller = squares
 
 
 def _texels(
@@ -230,11 +247,9 @@ def _texels(
     low, high = np.float32(camera.min_depth_m), np.float32(camera.max_depth_m)
     least_m, greatest_m = images.least_m[camera.name], images.greatest_m[camera.name]
     pyramid.texels_of_frame(least_m, greatest_m, low, high, np.float32(quantum), doubt)
-    explained = model_m is not None and bool(model_m.any())
     if trust is not doubt:
         trust[:] = doubt
-    if explained:
-        pyramid.mark_explained(model_m, polynomial, quantum, trust, doubt)
+    explained = model_m is not None and pyramid.mark_explained(model_m, polynomial, quantum, trust, doubt)
     if camera.flying_pixels:
         model = model_m if explained else np.zeros((0, 0), dtype=np.float32)
         pitch = 1.0 / min(camera.intrinsics.fx, camera.intrinsics.fy)

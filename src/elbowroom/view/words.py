@@ -84,13 +84,14 @@ def counts_text(levels: list[Level]) -> str:
 def health_text(health: Health | None) -> str:
     """How cameras and machine are, in one line.
 
-    "watch: 20 of 21 cameras stand still, 1 unsure; most off: cam07 by 0.02°, 1 mm; machine off by 2 mm (c_arc)"
+    "watch: 20 of 21 cameras stand still, 1 hidden (cam03 83 %); most off: cam07 by 0.02°, 1 mm; machine off by 2 mm
+    (c_arc)"
     """
     if health is None:
         return "watch: none, a camera that is knocked goes unnoticed"
-    others = [(c, health.count(c)) for c in Condition if c is not Condition.STILL and health.count(c)]
+    others = [c for c in Condition if c is not Condition.STILL and health.count(c)]
     parts = [f"{health.count(Condition.STILL)} of {len(health.cameras)} cameras stand still"]
-    parts += [f"{count} {condition.name.lower()}" for condition, count in others]
+    parts += [_condition_text(health, condition) for condition in others]
     text = "watch: " + ", ".join(parts)
     worst = health.worst
     if worst is not None and worst.shift is not None:
@@ -100,3 +101,14 @@ def health_text(health: Health | None) -> str:
         link = max(told, key=lambda link: link.off_m)
         text += f"; machine off by {link.off_m * 1e3:.0f} mm ({link.link})"
     return text
+
+
+def _condition_text(health: Health, condition: Condition) -> str:
+    """How many cameras are in a condition; which, and how much of their view is hidden, where it is hidden or gone."""
+    text = f"{health.count(condition)} {condition.name.lower()}"
+    if condition in (Condition.UNSURE, Condition.MOVED, Condition.CHANGED):
+        return text
+    those = [camera for camera in health.cameras if camera.condition is condition]
+    if condition is Condition.SILENT:
+        return f"{text} ({', '.join(camera.camera for camera in those)})"
+    return f"{text} ({', '.join(f'{camera.camera} {100 * camera.share_hidden:.0f} %' for camera in those)})"

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.board import Board
+from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.extrinsics.adjustment import Solution
 from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, spread
 from elbowroom.errors import CalibrationError

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.board_view import BoardView
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.extrinsics.seen_plane import SeenPlane, seen_plane
 from elbowroom.calibrate.lens import directions, project
 from elbowroom.calibrate.rigid import cross_matrix, exp
-from elbowroom.calibrate.seen_plane import SeenPlane, seen_plane
 from elbowroom.errors import CalibrationError, ElbowroomError
 from elbowroom.geometry import DepthCamera
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.board_view import BoardView
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.calibrated_camera import CalibratedCamera
 from elbowroom.calibrate.extrinsics.adjustment import Solution, State, adjust, camera_from_board
 from elbowroom.calibrate.extrinsics.anchor import Anchor, CameraAnchor, world_from_base
@@ -20,7 +20,7 @@ from elbowroom.calibrate.extrinsics.disagreement import (
 )
 from elbowroom.calibrate.extrinsics.graph import first_solution, require_one_piece, shared_poses
 from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, corner_rows, seen_boards
-from elbowroom.calibrate.seen_plane import rays_of
+from elbowroom.calibrate.extrinsics.seen_plane import rays_of
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.board_view import BoardView
+from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.geometry import DepthCamera
 
 CELLS = 3

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.board_view import BoardView
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.lens import directions, project
 from elbowroom.geometry import DepthCamera, Intrinsics
 

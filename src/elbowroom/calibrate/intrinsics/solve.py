@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.board import Board
-from elbowroom.calibrate.board_view import BoardView
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.intrinsics.coverage import advice, tilt_deg
 from elbowroom.calibrate.intrinsics.lens_model import PINHOLE, LensModel
 from elbowroom.calibrate.opencv import opencv

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.board import Board
+from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.simulated.hand_poses import Shown, floor_pose, hand_poses, shown
 from elbowroom.calibrate.simulated.start import TrueCamera, moved
 from elbowroom.calibrate.simulated.writer import INFRARED_FOLDER, CaptureWriter

@@ -1,0 +1,24 @@
+"""Results as Markdown tables, the figure that is due beside the measured one."""
+
+from result_tables.calibration import calibration_tables
+from result_tables.cells import Row, any_tables
+from result_tables.drift import drift_tables
+from result_tables.placement import placement_tables, sweep_tables
+from result_tables.space import room_tables, sevenscenes_tables
+from result_tables.speed import bench_tables
+from result_tables.verdicts import alone_tables, poses_tables, travel_tables
+
+__all__ = [
+    "Row",
+    "alone_tables",
+    "any_tables",
+    "bench_tables",
+    "calibration_tables",
+    "drift_tables",
+    "placement_tables",
+    "poses_tables",
+    "room_tables",
+    "sevenscenes_tables",
+    "sweep_tables",
+    "travel_tables",
+]

@@ -1,0 +1,76 @@
+"""Times and memory of the cycle, due figures beside them."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from result_tables.cells import Cell, Row, centimetres, is_full_room, of, same, table
+
+STAGE = "cycle/"
+"""Cases that begin so are stages of the cycle."""
+KIND = ("voxel_size_m", "detail", "noise")
+"""What tells one cycle from another."""
+MEDIAN_MS = {
+    ("carve", 0.05, "footprint"): 25.0,
+    ("carve", 0.02, "footprint"): 130.0,
+    ("cycle", 0.05, "footprint"): 45.0,
+    ("cycle", 0.02, "footprint"): 180.0,
+    ("cycle", 0.05, "pixel"): 140.0,
+    ("cycle", 0.02, "pixel"): 480.0,
+}
+"""Due [ms], by case, edge of a voxel and detail."""
+
+
+def _due_ms(row: Row) -> tuple[str, float] | None:
+    figure = MEDIAN_MS.get((row.get("case"), row.get("voxel_size_m"), row.get("detail")))
+    return None if figure is None or not is_full_room(row) else ("≤", figure)
+
+
+def _due_memory(row: Row) -> tuple[str, float] | None:
+    return ("≤", 600.0) if row.get("voxel_size_m") == 0.02 and is_full_room(row) else None
+
+
+def bench_tables(rows: Sequence[Row]) -> list[str]:
+    """Times, then the stages of a cycle."""
+    whole = [row for row in rows if "/" not in str(row.get("case"))]
+    lines = table(
+        whole,
+        {
+            **same("case"),
+            "voxel": centimetres,
+            "cameras": lambda row: f"{row.get('cameras')} x {row.get('width')}x{row.get('height')}",
+            **same("detail", "noise", "threads"),
+            "median ms": of("median_ms", 1, due=_due_ms),
+            "99 % ms": of("p99_ms", 1),
+            "worst ms": of("max_ms", 1),
+            "peak MB": of("peak_rss_mb", 0, due=_due_memory),
+            "ratio": of("ratio", 2),
+        },
+    )
+    lines += _against_octomap(rows)
+    stages = _stages(row for row in rows if str(row.get("case")).startswith(STAGE))
+    return [*lines, "", "Stages of the cycle, medians:", "", *stages] if stages else lines
+
+
+def _against_octomap(rows: Sequence[Row]) -> list[str]:
+    lines = []
+    for row in rows:
+        if times := row.get("times_slower_than_carve"):
+            met = "" if times >= 500 else ": missed"
+            lines += [
+                "",
+                f"OctoMap takes {times:.0f} times as long as carve on the same images (due ≥ 500{met}).",
+            ]
+    return lines
+
+
+def _stages(rows: Iterable[Row]) -> list[str]:
+    """A line for each kind of cycle, a column for each stage; nothing of no rows."""
+    kinds: dict[tuple[Any, ...], dict[str, Any]] = {}
+    for row in rows:
+        kind = {key: row[key] for key in KIND}
+        line = kinds.setdefault(tuple(kind.values()), kind)
+        line[row["case"].removeprefix(STAGE)] = row["median_ms"]
+    names = dict.fromkeys(name for line in kinds.values() for name in line if name not in KIND)
+    columns: dict[str, Cell] = {"voxel": centimetres, **same("detail", "noise")}
+    columns |= {f"{name} ms": of(name, 1) for name in names}
+    return table(kinds.values(), columns) if kinds else []

@@ -1,0 +1,51 @@
+"""Verdicts and free travel beside the truth."""
+
+from collections.abc import Sequence
+
+from result_tables.cells import Row, at_least, at_most, centimetres, of, same, table
+
+
+def _summaries(rows: Sequence[Row]) -> list[Row]:
+    return [row for row in rows if row.get("kind") == "summary"]
+
+
+def alone_tables(rows: Sequence[Row]) -> list[str]:
+    """Levels of all verdicts, by voxel size."""
+    return table(
+        _summaries(rows),
+        {
+            "voxel": centimetres,
+            **same("detail", "poses", "verdicts", "stop", "decelerate", "inform", "clear"),
+            "clear %": of("clear_pct", 2, due=at_least(100.0)),
+        },
+    )
+
+
+def poses_tables(rows: Sequence[Row]) -> list[str]:
+    """Verdicts beside the truth."""
+    return table(
+        _summaries(rows),
+        {
+            "voxel": centimetres,
+            **same("detail", "poses", "verdicts"),
+            "milder than the truth": of("milder", due=at_most(0)),
+            "truly clear": of("truly_clear"),
+            "of these stop %": of("stop_where_clear_pct", 2, due=at_most(10.0)),
+            "the very level of the truth %": of("same_level_pct", 2),
+        },
+    )
+
+
+def travel_tables(rows: Sequence[Row]) -> list[str]:
+    """Free travel beside the truth."""
+    return table(
+        _summaries(rows),
+        {
+            "voxel": centimetres,
+            **same("poses"),
+            "more than the truth": of("more_than_truth", due=at_most(0)),
+            "something is touched": of("touching"),
+            "median shortfall, voxels": of("median_shortfall_voxels", 2, due=at_most(1.5)),
+            "greatest shortfall, voxels": of("greatest_shortfall_voxels", 2),
+        },
+    )

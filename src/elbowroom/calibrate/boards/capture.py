@@ -1,0 +1,215 @@
+"""A capture of a board on disk: the images of each pose, and what is seen of the board in them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image as Pictures
+
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.colour import carried_to_depth
+from elbowroom.calibrate.boards.cut_out import cut_out_view
+from elbowroom.calibrate.boards.printed import printed_view
+from elbowroom.calibrate.boards.trouble import Fault, Trouble
+from elbowroom.errors import CalibrationError, FrameError
+from elbowroom.geometry import DepthCamera, Intrinsics, nearest_rigid
+from elbowroom.geometry.parallel import spread
+from elbowroom.site import Site
+from elbowroom.site.calibration_entry import CaptureImagesEntry
+from elbowroom.site.images import Image, images_of_cameras
+from elbowroom.site.paths import existing_folder, inside
+from elbowroom.site.recording_entry import StampedFolder
+
+LOOKED_AT_AGAIN = 24
+"""Images in which a board of another size is looked for where none shows the right one."""
+Seen = BoardView | Trouble
+
+
+@dataclass(frozen=True, slots=True)
+class Sightings:
+    """What a capture shows.
+
+    Args:
+        board: that was looked for.
+        views: what was seen of it.
+        troubles: images that gave no view, and why.
+        poses: how many poses there are.
+    """
+
+    board: Board
+    views: tuple[BoardView, ...]
+    troubles: tuple[Trouble, ...]
+    poses: int
+
+
+def board_of(site: Site) -> Board:
+    """The board that a site describes.
+
+    Raises:
+        CalibrationError: it describes none.
+    """
+    entry = site.entry.calibration
+    if entry is None or entry.board is None:
+        raise CalibrationError(
+            f"{site.path}: calibration.board: missing; say columns, rows, square_m and kind of the board"
+        )
+    board = entry.board
+    return Board(
+        board.columns,
+        board.rows,
+        board.square_m,
+        board.kind,
+        board.border_m,
+        board.is_marked,
+        board.thickness_m,
+    )
+
+
+def images_by_pose(site: Site) -> list[list[Image]]:
+    """The depth images of each pose of the board, unread, by time; every camera may lack some.
+
+    Frames within the recording's `max_skew_ms` are of one pose; frames without times are by order.
+
+    Raises:
+        SiteError: no recording, or not laid out as the site says.
+    """
+    by_camera = images_of_cameras(site)
+    recording = site.entry.recording
+    if not isinstance(recording, StampedFolder):
+        return [list(group) for group in zip(*by_camera.values(), strict=True)]
+    skew_ns = round(recording.max_skew_ms * 1e6)
+    poses: list[list[Image]] = []
+    begun = None
+    for image in sorted((i for row in by_camera.values() for i in row), key=lambda i: i.stamp_ns or 0):
+        stamp = image.stamp_ns or 0
+        if begun is None or stamp - begun > skew_ns:
+            poses.append([])
+            begun = stamp
+        poses[-1].append(image)
+    return poses
+
+
+def sightings(
+    site: Site, on_image: Callable[[int, int], None] = lambda done, of: None, threads: int | None = None
+) -> Sightings:
+    """Looks for the board in all images.
+
+    Args:
+        site: with a board and a recording.
+        on_image: is told how many images of how many are done.
+        threads: None: one a core.
+
+    Raises:
+        CalibrationError: no board, no images, OpenCV is not installed, or the board is not seen at all.
+        FrameError: an image is not what its camera delivers.
+    """
+    board, poses = board_of(site), images_by_pose(site)
+    work = [(image, number) for number, images in enumerate(poses) for image in images]
+    if not work:
+        raise CalibrationError(f"{site.path}: recording: no images; make a capture first")
+    done: list[int] = []
+
+    def one(item: tuple[Image, int]) -> Seen:
+        seen = seen_in(site, board, *item)
+        done.append(1)
+        on_image(len(done), len(work))
+        return seen
+
+    found = spread(one, work, threads)
+    views = tuple(seen for seen in found if isinstance(seen, BoardView))
+    troubles = tuple(seen for seen in found if isinstance(seen, Trouble))
+    if not views:
+        few = [work[n] for n in np.linspace(0, len(work) - 1, min(len(work), LOOKED_AT_AGAIN)).astype(int)]
+        closer = spread(lambda item: seen_in(site, board, *item, other_sizes=True), few, threads)
+        sizes = [seen for seen in closer if isinstance(seen, Trouble) and seen.fault is Fault.WRONG_SIZE]
+        troubles = tuple(sizes) or troubles
+        raise CalibrationError(
+            f"{site.path}: {len(work)} images and none shows the board; {_commonest(troubles)}"
+        )
+    return Sightings(board, views, troubles, len(poses))
+
+
+def _commonest(troubles: tuple[Trouble, ...]) -> str:
+    """The fault that most images have, with an example of it."""
+    counts = [trouble.fault for trouble in troubles]
+    fault = max(set(counts), key=counts.count)
+    example = next(trouble for trouble in troubles if trouble.fault is fault)
+    return f"most often: {fault.value}, such as {example}"
+
+
+def seen_in(site: Site, board: Board, image: Image, pose: int, *, other_sizes: bool = False) -> Seen:
+    """What one image shows of the board.
+
+    Args:
+        site: whose key `calibration` says in which images to look.
+        board: the board.
+        image: the depth image, unread; infrared and colour images are named like it.
+        pose: number of the board's pose.
+        other_sizes: as of `cut_out_view`.
+    """
+    entry = site.entry.calibration
+    frame = image.read()
+    if entry is None or entry.images.folder is None:
+        return cut_out_view(image.camera, board, frame.depth_m, pose, image.stamp_ns, other_sizes=other_sizes)
+    path = picture_path(site, entry.images, image, pose)
+    lens = entry.images.lenses.get(image.camera.name)
+    if lens is None:
+        grey = read_grey(path, image.camera)
+        depth = frame.depth_m if entry.images.kind == "infrared" else None
+        return printed_view(image.camera, board, grey, depth, pose, image.stamp_ns)
+    k = Intrinsics(lens.fx, lens.fy, lens.cx, lens.cy, lens.distortion)
+    colour = DepthCamera(image.camera.name, lens.width, lens.height, np.eye(4), k)
+    seen = printed_view(colour, board, read_grey(path, colour), None, pose, image.stamp_ns)
+    if isinstance(seen, Trouble):
+        return seen
+    where = nearest_rigid(
+        lens.colour_from_depth, f"camera {colour.name}: colour_from_depth", CalibrationError
+    )
+    return carried_to_depth(seen, colour, where, board, image.camera, frame.depth_m)
+
+
+def picture_path(site: Site, images: CaptureImagesEntry, image: Image, pose: int) -> Path:
+    """The infrared or colour picture that belongs to a depth image.
+
+    Raises:
+        SiteError: the folder is not there.
+        CalibrationError: fewer pictures are listed than there are depth images.
+    """
+    folder = existing_folder(images.folder or "", site.path.parent)
+    listed = images.files.get(image.camera.name)
+    if listed is None:
+        return folder / image.camera.name / image.path.name
+    if pose >= len(listed):
+        raise CalibrationError(
+            f"{site.path}: calibration.images.files: {len(listed)} pictures of camera {image.camera.name}, "
+            f"but it has a depth image of pose {pose}"
+        )
+    return folder / inside(folder, listed[pose])
+
+
+def read_grey(path: Path, camera: DepthCamera) -> NDArray[np.uint8]:
+    """An infrared or colour image as grey values of 8 bits, shape (h, w).
+
+    Raises:
+        FrameError: missing, damaged, or of another size than the camera's.
+    """
+    if not path.is_file():
+        raise FrameError(f"{path}: no such file; each depth image needs a picture of the same name")
+    try:
+        with Pictures.open(path, formats=("PNG", "JPEG")) as picture:
+            if picture.size != (camera.width, camera.height):
+                raise FrameError(
+                    f"{path}: {picture.width} x {picture.height} pixels, "
+                    f"its camera has {camera.width} x {camera.height}"
+                )
+            if picture.mode.startswith("I"):
+                deep = np.asarray(picture).astype(float)
+                return np.asarray(255 * deep / max(deep.max(), 1.0), dtype=np.uint8)
+            return np.asarray(picture.convert("L"))
+    except (OSError, SyntaxError, ValueError) as error:
+        if isinstance(error, FrameError):
+            raise
+        raise FrameError(f"{path}: truncated or damaged picture ({error}); record or copy it again") from None
