@@ -161,10 +161,22 @@ true cameras. *seconds*: detection in all images and solution, two cores.
         "Whether covariances hold the truth",
         """
 Corners and depth points of known cameras, projected, with noise, and in every second draw with a hand that shakes and
-errors that a whole view shares. *mean square*: of errors in their covariance, 6 if it is exact. Besides, the recording
+errors that a whole view shares. *mean square*: of errors in their covariance, 6 if it is exact. *margin held*: share of
+cameras of which the true pose displaces nothing they see by more than their margin. Besides, the recording
 with a board: share of co-visible depth pixels that agree within 5 cm, its two cameras' poses found from the board.
 """,
         "elbowroom bench calibration --part real --part coverage",
+        tables.calibration_tables,
+    ),
+    Section(
+        "calibration_images.json",
+        "Boards in rendered images",
+        """
+Boards rendered before a camera, found in its images. *common*: by how much all corners of a view are off
+together, *within*: each about that, root mean squares over views; *bias*: mean over views, and its standard deviation.
+*inside*: share of true poses in the stated 95 % region by one view alone. *mean square*: 6 if it is exact.
+""",
+        "elbowroom bench calibration --part images",
         tables.calibration_tables,
     ),
     Section(

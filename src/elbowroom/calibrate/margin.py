@@ -1,27 +1,39 @@
 """What a pose's covariance makes of the carve margin: lateral pixels, and metres at range.
 
-A point x that a camera measures lies, because of the pose's error (w, t) in the camera's frame, at x + w × x + t. That
-is linear in the error, so over the ellipsoid e^T S^-1 e <= k^2 each displacement a^T e is at most k sqrt(a^T S a). With
-k^2 the quantile of chi-square with 6 degrees of freedom, all displacements of all pixels at all depths stay within
-their bounds at once, with the stated confidence (Scheffé's method).
+A point x that a camera measures lies, because of the pose's error e = (w, t) in the camera's frame, at x + w × x + t.
+So each displacement is linear in the error: a^T e. The margin is made of the largest standard deviations, times the
+one factor k with which, at the stated confidence, *all* displacements of all pixels at all depths stay within their
+bounds at once: the quantile of the greatest of them. Errors are r L d with the direction d even on the sphere, r^2
+chi-square with 6 degrees of freedom and L L^T the covariance, so
+
+    P(all within k) = mean over d of F((k / g(d))^2),   g(d) = max over a of |a^T L d| / bound of a
+
+with F the chi-square distribution. g is at most 1, so k is at most that of Scheffé's method, F(k^2) = confidence,
+which bounds every a^T e there could be, not only those that a camera has.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+from scipy.optimize import brentq
+from scipy.stats import chi2, norm, qmc
 
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import Margin
 
+Array = NDArray[np.float64]
 CONFIDENCE = 0.95
 """That nothing a camera sees is displaced by more than its margin."""
 NEAR_M = 1.0
 """A shift of the camera is more pixels the nearer a thing is: the lateral margin holds from here on [m]."""
-GRID = (33, 25)
+GRID = (17, 13)
 """Places of the image, along u and v, borders included, at which displacements are bounded."""
+DIRECTIONS_LOG2 = 10
+"""Of as many directions of the error, as a power of two, the factor is found: to half a per cent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,12 +84,42 @@ def pose_margin(
     near = max(NEAR_M, camera.min_depth_m) if near_m is None else near_m
     if not near > 0:
         raise CalibrationError(f"near_m is {near}, must be above 0")
-    times = float(np.sqrt(chi2.ppf(confidence, 6)))
+    rows = _displacements(camera, near)
+    values, vectors = np.linalg.eigh(covariance)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    lateral, bias, linear = (_greatest(one @ root) for one in rows)
+    times = _factor(rows, root, (lateral, bias, linear), confidence)
+    return PoseMargin(lateral_px=times * lateral, bias_m=times * bias, range_linear=times * linear)
+
+
+def is_within(camera: DepthCamera, error: Array, margin: PoseMargin, near_m: float = NEAR_M) -> bool:
+    """Whether an error of the pose displaces nothing that the camera sees by more than a margin.
+
+    Args:
+        camera: with its intrinsics.
+        error: rotation vector [rad] and translation [m] in the camera's frame, shape (6,).
+        margin: as of `pose_margin`.
+        near_m: depth from which the lateral bound holds [m].
+    """
+    bounds = (margin.lateral_px, margin.bias_m, margin.range_linear)
+    rows = _displacements(camera, near_m)
+    return all(bool((np.abs(one @ error) <= bound).all()) for one, bound in zip(rows, bounds, strict=True))
+
+
+class _Displacements(NamedTuple):
+    """Rows a of which a^T e is a displacement, each of shape (n, 6): lateral [px], along the ray [m], and per metre."""
+
+    lateral: Array
+    bias: Array
+    linear: Array
+
+
+def _displacements(camera: DepthCamera, near_m: float) -> _Displacements:
     k = camera.intrinsics
     u = np.linspace(-0.5, camera.width - 0.5, GRID[0])
     v = np.linspace(-0.5, camera.height - 0.5, GRID[1])
     x, y = (a.ravel() for a in np.meshgrid((u - k.cx) / k.fx, (v - k.cy) / k.fy))
-    ones, zeros = np.ones_like(x), np.zeros_like(x)
+    ones, zeros, none = np.ones_like(x), np.zeros_like(x), np.zeros((len(x), 3))
     # by depth: w × (x, y, 1); and t over depth
     turned = np.stack(
         [
@@ -87,28 +129,48 @@ def pose_margin(
         ]
     )
     moved = np.broadcast_to(np.eye(3)[:, None, :], turned.shape)
-
-    def lateral(inverse_depth: float) -> float:
+    lateral = []
+    # what is affine in 1 / depth is greatest at one of the ends: there, or far away
+    for inverse_depth in (0.0, 1 / near_m):
         shift = np.concatenate([turned, moved * inverse_depth], axis=2)
-        along_u = k.fx * (shift[0] - x[:, None] * shift[2])
-        along_v = k.fy * (shift[1] - y[:, None] * shift[2])
-        return max(_greatest(along_u, covariance), _greatest(along_v, covariance))
-
+        lateral.append(k.fx * (shift[0] - x[:, None] * shift[2]))
+        lateral.append(k.fy * (shift[1] - y[:, None] * shift[2]))
     if camera.depth_kind == "radial":
         # the distance from the centre does not change when the camera turns
         rays = np.stack([x, y, ones], axis=1) / np.sqrt(1 + x * x + y * y)[:, None]
-        bias, linear = _greatest(rays, covariance[3:, 3:]), 0.0
+        bias, linear = np.concatenate([none, rays], axis=1), np.zeros((1, 6))
     else:
-        bias = float(np.sqrt(max(covariance[5, 5], 0.0)))
-        linear = _greatest(turned[2], covariance[:3, :3])
-    # a norm of something affine in 1 / depth is greatest at one of the ends: there, or far away
-    return PoseMargin(
-        lateral_px=times * max(lateral(0.0), lateral(1 / near)),
-        bias_m=times * bias,
-        range_linear=times * linear,
-    )
+        bias, linear = np.eye(6)[5:], np.concatenate([turned[2], none], axis=1)
+    return _Displacements(np.concatenate(lateral), bias, linear)
 
 
-def _greatest(rows: NDArray[np.float64], covariance: NDArray[np.float64]) -> float:
-    """The greatest standard deviation of a^T e over the rows a, shape (n, k)."""
-    return float(np.sqrt(np.maximum(np.einsum("ni,ij,nj->n", rows, covariance, rows), 0.0)).max())
+def _greatest(rows: Array) -> float:
+    """The greatest standard deviation over rows a^T L, shape (n, 6)."""
+    return float(np.linalg.norm(rows, axis=1).max())
+
+
+def _factor(
+    rows: _Displacements, root: Array, sigmas: tuple[float, float, float], confidence: float
+) -> float:
+    """By how much the largest standard deviations are to be multiplied."""
+    most = np.zeros(2**DIRECTIONS_LOG2)
+    for one, sigma in zip(rows, sigmas, strict=True):
+        if sigma > 0:
+            most = np.maximum(most, np.abs(_directions() @ (one @ root).T).max(axis=1) / sigma)
+    if not most.any():
+        return 0.0
+    scheffe = float(np.sqrt(chi2.ppf(confidence, 6)))
+    squares = np.maximum(most, 1e-9) ** 2
+
+    def short(times: float) -> float:
+        return float(chi2.cdf(times**2 / squares, 6).mean()) - confidence
+
+    return scheffe if short(scheffe) <= 0 else float(brentq(short, 0.0, scheffe))
+
+
+@lru_cache(maxsize=1)
+def _directions() -> Array:
+    """Even over the sphere of six dimensions and always the same, shape (n, 6)."""
+    even = qmc.Sobol(6, rng=np.random.default_rng(6)).random_base2(DIRECTIONS_LOG2)
+    normal = norm.ppf(np.clip(even, 1e-12, 1 - 1e-12))
+    return np.asarray(normal / np.linalg.norm(normal, axis=1, keepdims=True), dtype=np.float64)

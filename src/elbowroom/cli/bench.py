@@ -27,7 +27,8 @@ def bench(
     part: Annotated[
         list[str] | None,
         typer.Option(
-            help="calibration: only real, coverage, captures, intrinsics, machine, refine or drift; may be repeated."
+            help="calibration: only real, coverage, images, captures, intrinsics, machine, refine or drift; "
+            "may be repeated."
         ),
     ] = None,
     json: JsonFile = None,
