@@ -135,6 +135,7 @@ def test_text_that_is_no_site_is_one_line(folder, text, expected):
 
 def test_missing_and_endless_files(folder):
     assert "no such file; `elbowroom site new room.yaml`" in refusal(folder.path / "room.yaml")
+    assert "is a folder; name the site file, such as" in refusal(folder.path)
     assert "at most 1,000,000 are read" in refusal(folder.write("# " + "x" * 1_000_000))
     (folder.path / "binary.yaml").write_bytes(b"\xff\xfe\xff")
     assert "not YAML in UTF-8" in refusal(folder.path / "binary.yaml")

@@ -28,6 +28,6 @@ calibrate_app.command(
 calibrate_app.command(
     epilog="Example: elbowroom calibrate commission my_room.yaml --out my_room_watched.yaml"
 )(commission)
-calibrate_app.command(epilog="Example: elbowroom calibrate intrinsics capture --out intrinsics.yaml")(
-    intrinsics
-)
+calibrate_app.command(
+    epilog="Example: elbowroom calibrate intrinsics capture --out intrinsics.yaml --report report"
+)(intrinsics)

@@ -3,15 +3,13 @@
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console
 
-from elbowroom.calibrate.boards.capture import Sightings, images_by_pose, sightings
+from elbowroom.calibrate.boards.capture import Sightings, sightings
 from elbowroom.calibrate.extrinsics.report import report_sections
 from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
 from elbowroom.calibrate.extrinsics.solve import Extrinsics, solve_extrinsics
-from elbowroom.calibrate.pictures import grey_depth
+from elbowroom.cli.calibrate_images import PoseImages
 from elbowroom.cli.calibrate_result import with_margins, write_page, write_result
 from elbowroom.cli.calibrate_site import site_path
 from elbowroom.cli.json_output import json_rows
@@ -57,7 +55,7 @@ def run_extrinsics(
         f"{len(found.world_from_board)} poses of the board"
     )
     if report is not None:
-        images = _Images(site)
+        images = PoseImages(site)
         sections = report_sections(found, rows, troubles, images.grey)
         write_page(
             report,
@@ -111,30 +109,3 @@ def summary_row(site: Site, found: Extrinsics, seen: Sightings, seconds: dict[st
         "troubles": [str(trouble) for trouble in seen.troubles],
         "seconds": seconds,
     }
-
-
-class _Images:
-    """Pictures to draw on: depth as grey.
-
-    Args:
-        site: whose recording they are.
-    """
-
-    def __init__(self, site: Site) -> None:
-        self.by_view = {
-            (image.camera.name, pose): image
-            for pose, images in enumerate(images_by_pose(site))
-            for image in images
-        }
-
-    def grey(self, camera: str, pose: int) -> NDArray[np.uint8] | None:
-        """The depth image of a camera at a pose as grey."""
-        image = self.by_view.get((camera, pose))
-        if image is None:
-            return None
-        depth = image.read().depth_m
-        known = depth[depth > 0]
-        if not len(known):
-            return None
-        near, far = (float(v) for v in np.percentile(known, (2, 98)))
-        return grey_depth(depth, near, far)

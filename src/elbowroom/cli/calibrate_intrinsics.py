@@ -4,13 +4,14 @@ from typing import Annotated, Literal
 
 import typer
 
-from elbowroom.cli.calibrate_options import OutSite, SiteOrFolder
+from elbowroom.cli.calibrate_options import OutSite, ReportFolder, SiteOrFolder
 from elbowroom.cli.options import JsonFile
 
 
 def intrinsics(
     site: SiteOrFolder,
     out: OutSite,
+    report: ReportFolder = None,
     camera: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME", help="Only this camera; may be given more than once. Default: all."),
@@ -27,4 +28,4 @@ def intrinsics(
     """
     from elbowroom.cli.calibrate_intrinsics_run import run_intrinsics
 
-    run_intrinsics(site, out, tuple(camera or ()), int(distortion), json)
+    run_intrinsics(site, out, report, tuple(camera or ()), int(distortion), json)

@@ -10,6 +10,9 @@ from rich.table import Table
 
 from elbowroom.calibrate.boards.capture import Sightings, sightings
 from elbowroom.calibrate.intrinsics import FoundIntrinsics, cells_seen, solve_intrinsics
+from elbowroom.calibrate.intrinsics.report import report_sections
+from elbowroom.cli.calibrate_images import PoseImages
+from elbowroom.cli.calibrate_result import write_page
 from elbowroom.cli.calibrate_site import site_path
 from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
@@ -23,9 +26,14 @@ SIGNIFICANT = 2.0
 
 
 def run_intrinsics(
-    given: Path, out: Path, names: Sequence[str], coefficients: int, json_file: Path | None
+    given: Path,
+    out: Path,
+    report: Path | None,
+    names: Sequence[str],
+    coefficients: int,
+    json_file: Path | None,
 ) -> None:
-    """Detects, solves camera by camera, writes the new site file, prints what was found.
+    """Detects, solves camera by camera, writes the new site file and the page, prints what was found.
 
     Raises:
         CalibrationError: a camera whose intrinsics cannot be had from this capture; no file is written.
@@ -47,6 +55,18 @@ def run_intrinsics(
     _show(found)
     print(f"views     {len(seen.views)} of {len(seen.views) + len(seen.troubles)} images")
     print(f"site      {out}")
+    if report is not None:
+        write_page(
+            report,
+            f"Intrinsics of {site.name}",
+            "How the cameras see, from a board that each of them saw.",
+            report_sections(
+                found,
+                seen.board.corners_in_board,
+                [str(trouble) for trouble in seen.troubles],
+                PoseImages(site).grey,
+            ),
+        )
 
 
 def _chosen(site: Site, names: Sequence[str]) -> list[DepthCamera]:

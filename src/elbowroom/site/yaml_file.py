@@ -52,8 +52,10 @@ def read_yaml(path: Path) -> dict[str, Any]:
         path: the file, UTF-8, at most `MAX_YAML_BYTES` long.
 
     Raises:
-        SiteError: missing, too long, no YAML, an alias, a key that is there twice, or no mapping; one line.
+        SiteError: missing, a folder, too long, no YAML, an alias, a key that is there twice, or no mapping; one line.
     """
+    if path.is_dir():
+        raise SiteError(f"{path}: is a folder; name the site file, such as {path / 'site.yaml'}")
     if not path.is_file():
         raise SiteError(f"{path}: no such file; `elbowroom site new {path.name}` writes one to start from")
     size = path.stat().st_size

@@ -53,7 +53,17 @@ def test_a_capture_with_near_poses_gives_intrinsics(tmp_path):
     site, truth = Site.load(out / "site.yaml"), read_truth(out)["cameras"]["cam00"]
     assert row["images"] == len(images_of_cameras(site)["cam00"])
     new = tmp_path / "new.yaml"
-    assert call("intrinsics", out, "--distortion", 0, "--out", new, "--json", rows).exit_code == 0
+    page = tmp_path / "report"
+    done = call("intrinsics", out, "--distortion", 0, "--out", new, "--json", rows, "--report", page)
+    assert done.exit_code == 0
+    text = (page / "report.html").read_text()
+    for words in (
+        "Lenses and depth",
+        "Residuals per camera",
+        "corners over all",
+        "circles where corners should be",
+    ):
+        assert words in text
     k = Site.load(new).cameras()[0].intrinsics
     found = json.loads(rows.read_text())["rows"][0]
     assert abs(k.fx - truth["fx"]) < 4 * found["sigma"][0]

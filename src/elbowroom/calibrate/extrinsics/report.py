@@ -1,22 +1,28 @@
 """The page of `elbowroom calibrate extrinsics`: residuals, reprojection, coverage, the graph, what is weak."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.calibrate.board_report import (
+    ImageOf,
+    Reprojected,
+    camera_pictures,
+    histograms,
+    rms,
+    what_next,
+)
 from elbowroom.calibrate.change import change_table
 from elbowroom.calibrate.extrinsics.seen_board import SeenBoard
 from elbowroom.calibrate.extrinsics.solve import Extrinsics
 from elbowroom.calibrate.lens import project
-from elbowroom.calibrate.pictures import camera_graph, coverage, histogram, reprojection
+from elbowroom.calibrate.pictures import camera_graph
 from elbowroom.geometry import invert_rigid
 from elbowroom.view.blocks import Block, Picture, Table, Words
 
 Array = NDArray[np.float64]
-ImageOf = Callable[[str, int], NDArray[np.uint8] | None]
-"""The grey image of a camera at a pose, shape (h, w); None: there is none to show."""
 
 
 def report_sections(
@@ -40,7 +46,7 @@ def report_sections(
             "with the site's own sensor margins in them."
         ),
         change_table(rows),
-        _next(found),
+        what_next([note for camera in found.cameras for note in camera.notes]),
     ]
     sections = [
         ("What was found", overview),
@@ -52,13 +58,6 @@ def report_sections(
         lines = [(text,) for text in troubles]
         sections.append(("Images without a usable view", [Table("", ("what was wrong",), lines)]))
     return sections
-
-
-def _next(found: Extrinsics) -> Block:
-    notes = [note for camera in found.cameras for note in camera.notes]
-    if not notes:
-        return Words("Nothing is weak: no need to capture more.")
-    return Table("What to capture next", ("what is weak, and what helps",), [(note,) for note in notes])
 
 
 def _graph(found: Extrinsics) -> Block:
@@ -93,10 +92,10 @@ def _residuals(found: Extrinsics, by_camera: Mapping[str, Sequence[SeenBoard]]) 
             (
                 name,
                 str(len(px)),
-                f"{_rms(px):.3f}",
+                f"{rms(px):.3f}",
                 f"{px.max():.2f}",
                 str(len(m)),
-                f"{_rms(m) * 1e3:.2f}" if len(m) else "-",
+                f"{rms(m) * 1e3:.2f}" if len(m) else "-",
                 f"{np.median(m) * 1e3:+.2f}" if len(m) else "-",
                 f"{found.depth_bias_m[name] * 1e3:+.1f}" if name in found.depth_bias_m else "-",
                 f"{found.depth_scale[name] * 100:+.2f}" if name in found.depth_scale else "-",
@@ -125,12 +124,10 @@ def _residuals(found: Extrinsics, by_camera: Mapping[str, Sequence[SeenBoard]]) 
 
 
 def _histograms(found: Extrinsics) -> list[Block]:
-    px = np.concatenate([one.residuals_px for one in found.cameras])
-    m = np.concatenate([one.residuals_m for one in found.cameras])
-    blocks: list[Block] = [Picture(histogram(px, "px"), "Corners: distance seen to projected", 220)]
-    if len(m):
-        blocks.append(Picture(histogram(m * 1e3, "mm"), "Depth: measured less the board's", 220))
-    return blocks
+    return histograms(
+        np.concatenate([one.residuals_px for one in found.cameras]),
+        np.concatenate([one.residuals_m for one in found.cameras]),
+    )
 
 
 def _cameras(
@@ -138,31 +135,11 @@ def _cameras(
 ) -> list[Block]:
     blocks: list[Block] = []
     for one in found.cameras:
-        camera, own = one.camera, by_camera[one.camera.name]
-        blocks.append(
-            Words(f"*{camera.name}*: " + (" ".join(f"{note}." for note in one.notes) or "nothing is weak."))
-        )
-        blocks.append(
-            Picture(
-                coverage(camera.width, camera.height, [view.view.corners_px for view in own]),
-                f"{camera.name}: corners over all {len(own)} poses",
-                200,
-            )
-        )
-        off = [_rms(_distances(view, found)) for view in own]
-        shown = {int(np.argmax(off)): "worst", int(np.argsort(off)[len(off) // 2]): "middling"}
-        for number, words in sorted(shown.items(), key=lambda item: item[1]):
-            view = own[number]
-            grey = image_of(camera.name, view.view.pose)
-            if grey is not None:
-                blocks.append(
-                    Picture(
-                        reprojection(grey, view.view.corners_px, _projected(view, found)),
-                        f"{camera.name}, pose {view.view.pose} ({words}, {off[number]:.2f} px rms): circles where "
-                        "corners should be, lines 20 times as long as they are off",
-                        480,
-                    )
-                )
+        views = [
+            Reprojected(view.view.pose, view.view.corners_px, _projected(view, found))
+            for view in by_camera[one.camera.name]
+        ]
+        blocks += camera_pictures(one.camera, one.notes, views, image_of)
     return blocks
 
 
@@ -170,11 +147,3 @@ def _projected(one: SeenBoard, found: Extrinsics) -> Array:
     camera = next(c.camera for c in found.cameras if c.camera.name == one.view.camera)
     pose = invert_rigid(camera.world_from_camera) @ found.world_from_board[one.view.pose]
     return project(camera.intrinsics, one.corners @ pose[:3, :3].T + pose[:3, 3])[0]
-
-
-def _distances(one: SeenBoard, found: Extrinsics) -> Array:
-    return np.asarray(np.linalg.norm(_projected(one, found) - one.view.corners_px, axis=1))
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0
