@@ -15,6 +15,7 @@ def calibration_tables(rows: Sequence[Row]) -> list[str]:
     return lines
 
 
+ACCURACY = ("worst_mm", "worst_deg", "median_mm", "median_deg")
 CALIBRATION_COLUMNS = {
     "extrinsics": (
         "case",
@@ -23,10 +24,7 @@ CALIBRATION_COLUMNS = {
         "cameras",
         "poses",
         "views",
-        "worst_mm",
-        "worst_deg",
-        "median_mm",
-        "median_deg",
+        *ACCURACY,
         "inside_pct",
         "seconds",
     ),
@@ -58,10 +56,7 @@ CALIBRATION_COLUMNS = {
     "machine": (
         "cameras",
         "poses",
-        "worst_mm",
-        "worst_deg",
-        "median_mm",
-        "median_deg",
+        *ACCURACY,
         "inside_pct",
         "seconds",
     ),
