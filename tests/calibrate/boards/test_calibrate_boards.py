@@ -1,5 +1,7 @@
 """Boards found in simulated images, compared with where they truly are."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,6 +15,7 @@ from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.sensing.distortion import distorted
 from elbowroom.simulate import Moment, Solid, render
 from elbowroom.simulate.board_plate import plate_mesh
+from elbowroom.simulate.furniture import shell
 from elbowroom.simulate.infrared import infrared_image
 from elbowroom.simulate.shapes import box, join
 
@@ -156,3 +159,17 @@ def test_a_camera_behind_the_board_sees_its_back() -> None:
     assert shown(camera(), CUT_OUT, held(CUT_OUT, 1.6, (0, 0, 0))).front
     assert not shown(camera(), CUT_OUT, held(CUT_OUT, 1.6, (180, 0, 0))).front
     assert not shown(camera(), CUT_OUT, held(CUT_OUT, -1.6, (0, 0, 0))).any_part
+
+
+@pytest.mark.parametrize("seed", [8, 55, 68])
+def test_a_slanted_back_in_a_tiny_image_is_no_face(seed: int) -> None:
+    """Squares of 2.3 pixels, whose edges fit and whose mark seems to be there: it was read as a face once."""
+    world_from_camera, world_from_board = np.eye(4), np.eye(4)
+    world_from_camera[:3, :3] = Rotation.from_euler("xyz", (-122.7, 0.0, -100.8), degrees=True).as_matrix()
+    world_from_board[:3, :3] = Rotation.from_euler("xyz", (-110.4, -5.2, 6.1), degrees=True).as_matrix()
+    world_from_camera[:3, 3], world_from_board[:3, 3] = (-1.99, 0.379, 2.4), (-0.948, -0.36, 2.069)
+    tiny = replace(camera(64, 48, "tof", "radial"), name="cam10", world_from_camera=world_from_camera)
+    assert not shown(tiny, COARSE, world_from_board).front
+    moment = Moment(1.0, (*shell(), Solid("board", plate_mesh(COARSE), world_from_board)), {})
+    depth = render([tiny], moment, seed=seed)[0].depth_m
+    assert isinstance(cut_out_view(tiny, COARSE, depth, 13), Trouble)
