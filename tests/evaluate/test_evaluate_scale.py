@@ -1,5 +1,7 @@
 """The scale model: its motions beside the truth, and which voxels of their ways are in view."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -17,6 +19,7 @@ from elbowroom.evaluate.scale import PART, SENSORS, judge_pose
 from elbowroom.evaluate.scale_model import (
     PLACES_M,
     VOXEL_M,
+    VOXEL_SIZES_M,
     kinect,
     model_grid,
     model_machine,
@@ -40,7 +43,7 @@ def view_of(*solids):
 
 @pytest.fixture(scope="module")
 def rows():
-    return judge_pose(1, VOXEL_M, False).rows
+    return judge_pose(1, VOXEL_SIZES_M, False).rows
 
 
 def test_no_motion_goes_farther_than_the_truth(rows):
@@ -51,17 +54,20 @@ def test_no_motion_goes_farther_than_the_truth(rows):
 
 def test_every_motion_is_judged_by_every_sensor_and_its_view_is_the_same_for_all(rows):
     motions = {row["motion"] for row in rows}
-    assert len(rows) == len(motions) * len(SENSORS)
-    for motion in motions:
-        assert len({(row["in_view"], row["travel_in_view"]) for row in rows if row["motion"] == motion}) == 1
+    assert len(rows) == len(motions) * len(SENSORS) * len(VOXEL_SIZES_M)
+    for motion, edge in itertools.product(motions, VOXEL_SIZES_M):
+        mine = [row for row in rows if (row["motion"], row["voxel_size_m"]) == (motion, edge)]
+        assert len({(row["in_view"], row["travel_in_view"]) for row in mine}) == 1
 
 
 def test_summary_adds_up_and_answers_what_was_due(rows):
     assert isinstance(PART, Part)
     summaries = PART.summary(rows)
-    assert [(row["noise"], row["losses"]) for row in summaries] == list(SENSORS)
+    of = ("voxel_size_m", "noise", "losses")
+    kinds = [(edge, *sensor) for edge in sorted(VOXEL_SIZES_M) for sensor in SENSORS]
+    assert [tuple(row[name] for name in of) for row in summaries] == kinds
     for row in summaries:
-        mine = [r for r in rows if (r["noise"], r["losses"]) == (row["noise"], row["losses"])]
+        mine = [r for r in rows if all(r[name] == row[name] for name in of)]
         assert row["motions"] == len(mine)
         assert row["in_view"] == sum(r["in_view"] for r in mine)
         assert row["worst_short_mm"] == max(r["short_mm"] for r in mine)
@@ -76,10 +82,10 @@ def test_a_pose_is_the_same_each_time_and_its_motions_reach_five_braking_distanc
     assert all(0 < contact.travel < motion.looked_at for motion, contact in met.items())
 
 
-def test_tasks_are_one_for_each_pose_and_take_a_voxel_size_at_full_scale():
-    tasks = PART.tasks(Settings(voxel_sizes_m=(0.05,)))
+def test_tasks_are_one_for_each_pose_and_take_voxel_sizes_at_full_scale():
+    tasks = PART.tasks(Settings(voxel_sizes_m=(0.05, 0.02)))
     assert len({task.name for task in tasks}) == len(tasks)
-    assert all(task.arguments["voxel_size_m"] == pytest.approx(0.01) for task in tasks)
+    assert all(task.arguments["voxel_sizes_m"] == pytest.approx([0.01, 0.004]) for task in tasks)
 
 
 def test_nothing_hides_a_voxel_in_the_open_and_a_wall_hides_what_lies_behind_it():

@@ -27,8 +27,12 @@ FACTOR = 0.2
 OBJECTS = ("table", "mattress", "table controls", "doctor")
 LABORATORY = ("floor", "walls", "ceiling")
 """Solids that are not of the model."""
-VOXEL_M = 0.004
-"""Edge of a voxel: 2 cm at full size [m]."""
+VOXEL_M = 0.0025
+"""Edge of a voxel in what is due: 1.25 cm at full size [m]."""
+VOXEL_SIZES_M = (VOXEL_M, 0.004)
+"""All that are measured [m]."""
+PICTURE_VOXEL_M = 0.004
+"""Edge of a voxel in the picture, which shows the whole grid [m]."""
 POSES = 24
 CLEAR_M = 0.008
 """Between the machine and everything else at the start [m of the model]."""

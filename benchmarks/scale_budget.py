@@ -1,0 +1,78 @@
+"""Where the scale model's free travel is lost: millimetres for each cause, over the ways in view, by size of voxel.
+
+    python benchmarks/scale_budget.py 4 3 2.5
+
+Each column adds one cause to those before it, and says how far free travel ends before the truth, median / worst:
+*voxels* are those that the true objects touch, in an else open space; *view* ends where the first voxel is that no
+camera sees all of, by exact rays; *pixels* are exact images, *margin* the same with three sigmas of a Kinect allowed
+for, *noise* images with that noise.
+"""
+
+import sys
+
+import numpy as np
+
+from elbowroom.evaluate.scale import EXPLAIN_M, NEAR_VOXELS, noisy_frames
+from elbowroom.evaluate.scale_model import (
+    POSES,
+    kinects,
+    model_grid,
+    model_machine,
+    model_pose,
+    model_solids,
+)
+from elbowroom.evaluate.scene import WELL_KNOWN
+from elbowroom.evaluate.way_view import WayView
+from elbowroom.motion import blocks_in_reach, check_motions
+from elbowroom.reconstruct import FreeSpace, reconstruct
+from elbowroom.simulate import Moment, true_occupancy
+from elbowroom.simulate.machine_solids import link_solids
+
+CAUSES = ("voxels", "view", "pixels", "margin", "noise")
+
+
+def shortfalls(pose: int, voxel_size_m: float) -> list[list[float]]:
+    """For each motion of a pose, how much its travel ends before the truth by each of `CAUSES` [mm]."""
+    machine, grid = model_machine(), model_grid(voxel_size_m)
+    joints, met = model_pose(pose)
+    motions = list(met)
+    moment = Moment(1.0, model_solids() + link_solids(machine, joints), joints)
+    occupied = true_occupancy(grid, moment).occupied
+    spaces = [FreeSpace.from_occupied(grid, occupied).without(machine, joints)]
+    focus = blocks_in_reach(grid, machine, joints, motions)
+    for allowed, noise in ((False, False), (True, False), (True, True)):
+        frames = noisy_frames(kinects(noise), moment, pose)
+        spaces.append(
+            reconstruct(
+                grid,
+                kinects(allowed),
+                frames,
+                machine=machine,
+                joints=joints,
+                margin=WELL_KNOWN,
+                explain_tolerance_m=EXPLAIN_M,
+                focus=focus,
+            )
+        )
+    travels = [[v.free_travel for v in check_motions(space, machine, joints, motions)] for space in spaces]
+    view = WayView(machine, moment, grid)
+    seen = [
+        view.travel_in_view(view.way(motion, contact.travel), kinects(False), contact.travel)
+        for motion, contact in met.items()
+    ]
+    rows = zip(met.values(), travels[0], seen, *travels[1:], strict=True)
+    return [[1000 * (c.travel - travel) * c.speed for travel in row] for c, *row in rows]
+
+
+def main(voxel_sizes_mm: list[float]) -> None:
+    """Prints a line for each size of voxel."""
+    print("voxel [mm]  ways in view  " + "  ".join(f"{name:>12}" for name in CAUSES))
+    for edge in voxel_sizes_mm:
+        rows = np.array([row for pose in range(POSES) for row in shortfalls(pose, edge / 1000)])
+        mine = rows[rows[:, CAUSES.index("view")] <= NEAR_VOXELS * edge]
+        cells = [f"{np.median(column):5.1f} /{column.max():5.1f}" for column in mine.T]
+        print(f"{edge:10g}  {len(mine):5} of {len(rows):2}  " + "  ".join(cells), flush=True)
+
+
+if __name__ == "__main__":
+    main([float(size) for size in sys.argv[1:]])
