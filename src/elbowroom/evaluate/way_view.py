@@ -102,7 +102,8 @@ class WayView:
             triangles_now = placed((number + 0.5) * step)
             touch_surface(triangles_now, grid.lower_m, grid.voxel_size_m, -grown_m, touched, number + 2)
         index = np.argwhere(touched > 1)
-        return Way(grid.lower_m + (index + 0.5) * grid.voxel_size_m, (touched[tuple(index.T)] - 2) * step)
+        first = touched[tuple(index.T)].astype(np.float64) - 2
+        return Way(grid.lower_m + (index + 0.5) * grid.voxel_size_m, first * step)
 
     def seen_by(self, camera: DepthCamera, centres: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Which voxels one camera sees all of: in its image and range, nothing in them or before them.
