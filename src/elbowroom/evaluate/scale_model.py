@@ -27,9 +27,9 @@ FACTOR = 0.2
 OBJECTS = ("table", "mattress", "table controls", "doctor")
 LABORATORY = ("floor", "walls", "ceiling")
 """Solids that are not of the model."""
-VOXEL_M = 0.0025
-"""Edge of a voxel in what is due: 1.25 cm at full size [m]."""
-VOXEL_SIZES_M = (VOXEL_M, 0.004)
+VOXEL_M = 0.004
+"""Edge of a voxel in what is due: 2 cm at full size [m]."""
+VOXEL_SIZES_M = (VOXEL_M,)
 """All that are measured [m]."""
 PICTURE_VOXEL_M = 0.004
 """Edge of a voxel in the picture, which shows the whole grid [m]."""
@@ -38,7 +38,7 @@ CLEAR_M = 0.008
 """Between the machine and everything else at the start [m of the model]."""
 AIM_M = (0.0, 0.0, 0.22)
 """What the Kinects look at: the middle of the C."""
-PLACES_M = ((0.45, -0.77, 0.12), (-0.83, -0.3, 0.03), (0.13, 0.75, 0.7), (-0.44, 0.76, 0.03))
+PLACES_M = ((-0.14, 0.78, 0.12), (0.4, -0.69, 0.12), (0.13, 0.75, 0.7), (-0.83, -0.3, 0.03))
 """Where they stand: `benchmarks/scale_cameras.py` found it, by exact rays to the ways of the motions judged [m]."""
 BLUE, GREEN, RED = (0.05, 0.15, 0.75), (0.05, 0.5, 0.12), (0.75, 0.04, 0.04)
 GREY = (0.75, 0.75, 0.72)
