@@ -14,6 +14,7 @@ import numpy as np
 
 from elbowroom.evaluate.scale import EXPLAIN_M, NEAR_VOXELS, noisy_frames
 from elbowroom.evaluate.scale_model import (
+    BODY_GROWTH_M,
     POSES,
     kinects,
     model_grid,
@@ -51,11 +52,12 @@ def shortfalls(pose: int, voxel_size_m: float) -> list[list[float]]:
                 joints=joints,
                 margin=WELL_KNOWN,
                 explain_tolerance_m=EXPLAIN_M,
+                body_growth_m=BODY_GROWTH_M,
                 focus=focus,
             )
         )
     travels = [[v.free_travel for v in check_motions(space, machine, joints, motions)] for space in spaces]
-    view = WayView(machine, moment, grid)
+    view = WayView(machine, moment, grid, BODY_GROWTH_M)
     seen = [
         view.travel_in_view(view.way(motion, contact.travel), kinects(False), contact.travel)
         for motion, contact in met.items()

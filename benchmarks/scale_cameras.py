@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from elbowroom.evaluate.scale import NEAR_VOXELS
 from elbowroom.evaluate.scale_model import (
     AIM_M,
+    BODY_GROWTH_M,
     LABORATORY,
     POSES,
     VOXEL_M,
@@ -81,7 +82,9 @@ def seen_ways(places: NDArray[np.float64], voxel_size_m: float) -> list[SeenWay]
     found = []
     for pose in range(POSES):
         joints, met = model_pose(pose)
-        view = WayView(machine, Moment(0.0, solids + link_solids(machine, joints), joints), grid)
+        view = WayView(
+            machine, Moment(0.0, solids + link_solids(machine, joints), joints), grid, BODY_GROWTH_M
+        )
         for motion, contact in met.items():
             length = contact.travel - NEAR_VOXELS * voxel_size_m / contact.speed
             way = view.way(motion, length)

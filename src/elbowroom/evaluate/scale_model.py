@@ -31,6 +31,8 @@ VOXEL_M = 0.004
 """Edge of a voxel in what is due: 2 cm at full size [m]."""
 VOXEL_SIZES_M = (VOXEL_M,)
 """All that are measured [m]."""
+BODY_GROWTH_M = 0.002
+"""By how much the body is grown where it is taken out: the usual centimetre of voxels of 2 cm, at 1:5 [m]."""
 PICTURE_VOXEL_M = 0.004
 """Edge of a voxel in the picture, which shows the whole grid [m]."""
 POSES = 24

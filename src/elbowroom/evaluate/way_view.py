@@ -52,11 +52,14 @@ class WayView:
         machine: whose motions.
         moment: its joints, its links and all other solids.
         grid: the voxels.
+        body_growth_m: by how much the body is grown that covers voxels [m]; None: half a voxel.
     """
 
-    def __init__(self, machine: Machine, moment: Moment, grid: VoxelGrid) -> None:
+    def __init__(
+        self, machine: Machine, moment: Moment, grid: VoxelGrid, body_growth_m: float | None = None
+    ) -> None:
         self._machine, self._joints, self._grid = machine, moment.joints, grid
-        self._body = bits.unpack(body_words(machine, moment.joints, grid), grid)
+        self._body = bits.unpack(body_words(machine, moment.joints, grid, body_growth_m), grid)
         self._occupied = true_occupancy(grid, moment).occupied
         self._scene = EmbreeScene()
         firsts = np.cumsum([0] + [len(solid.mesh.vertices) for solid in moment.solids])
