@@ -28,6 +28,8 @@ BEFORE_M = 2e-4
 """What is hit this little before a place hides it no more than rounding does [m]."""
 STEP_IN_VOXELS = 1 / 8
 """At most so far any point of the moving links goes between two looks at where they are."""
+PIECES = 64
+"""In so many pieces the length of a point's path is measured; voxels are grown by what they then move in a step."""
 ROUNDING_M = 1e-9
 """By this much more voxels are grown, so that rounding misses none [m]."""
 
@@ -95,8 +97,9 @@ class WayView:
         def moved_m(travel: float) -> float:
             return float(np.linalg.norm(placed(travel) - placed(0.0), axis=2).max())
 
-        # half a turn is longer than its chord by half of pi
-        steps = int(np.ceil(np.pi / 2 * moved_m(length) / (STEP_IN_VOXELS * grid.voxel_size_m)))
+        # in pieces, since a chord is shorter than its arc
+        path_m = PIECES * moved_m(length / PIECES)
+        steps = int(np.ceil(path_m / (STEP_IN_VOXELS * grid.voxel_size_m)))
         step = length / steps
         # each step is looked at in its middle, with voxels grown by how far anything moves in half of it
         grown_m = moved_m(step / 2) + ROUNDING_M
