@@ -14,8 +14,8 @@ import numpy as np
 
 from elbowroom.evaluate.scale import EXPLAIN_M, NEAR_VOXELS, noisy_frames
 from elbowroom.evaluate.scale_model import (
-    BODY_GROWTH_M,
     POSES,
+    body_growth,
     kinects,
     model_grid,
     model_machine,
@@ -52,12 +52,12 @@ def shortfalls(pose: int, voxel_size_m: float) -> list[list[float]]:
                 joints=joints,
                 margin=WELL_KNOWN,
                 explain_tolerance_m=EXPLAIN_M,
-                body_growth_m=BODY_GROWTH_M,
+                body_growth_m=body_growth(voxel_size_m),
                 focus=focus,
             )
         )
     travels = [[v.free_travel for v in check_motions(space, machine, joints, motions)] for space in spaces]
-    view = WayView(machine, moment, grid, BODY_GROWTH_M)
+    view = WayView(machine, moment, grid, body_growth(voxel_size_m))
     seen = [
         view.travel_in_view(view.way(motion, contact.travel), kinects(False), contact.travel)
         for motion, contact in met.items()

@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 from elbowroom.evaluate.exact import Contact, load_coal
 from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.scale_model import (
-    BODY_GROWTH_M,
     FACTOR,
     PICTURE_VOXEL_M,
     POSES,
     VOXEL_SIZES_M,
+    body_growth,
     coloured_picture,
     kinects,
     model_grid,
@@ -86,7 +86,7 @@ def _judged(
     pose: int, met: Mapping[Motion, Contact], moment: Moment, voxel_size_m: float
 ) -> list[dict[str, Any]]:
     machine, grid, motions = model_machine(), model_grid(voxel_size_m), list(met)
-    view = WayView(machine, moment, grid, BODY_GROWTH_M)
+    view = WayView(machine, moment, grid, body_growth(voxel_size_m))
     in_view = {
         motion: view.travel_in_view(view.way(motion, contact.travel), kinects(False), contact.travel)
         for motion, contact in met.items()
@@ -129,7 +129,7 @@ def _space(
         joints=moment.joints,
         margin=WELL_KNOWN,
         explain_tolerance_m=EXPLAIN_M,
-        body_growth_m=BODY_GROWTH_M,
+        body_growth_m=body_growth(grid.voxel_size_m),
         focus=focus,
     )
 
