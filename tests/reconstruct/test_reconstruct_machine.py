@@ -202,5 +202,5 @@ def test_the_body_is_taken_out_by_the_growth_that_is_given_but_for_what_else_was
 
 def test_a_growth_below_a_quarter_voxel_is_refused(arm):
     grid = machines.room(0.1)
-    with pytest.raises(MachineError, match="growth_m is 0.02"):
+    with pytest.raises(MachineError, match=r"growth_m is 0\.02"):
         reconstruct(grid, ring(grid), [], machine=arm, joints=HOME, body_growth_m=0.02)

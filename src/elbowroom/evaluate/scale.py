@@ -7,8 +7,10 @@ in millimetres of the model. The thesis restricts its scene to what four Kinects
 says, by exact rays and not by verdicts, whether its way is *in view*: each voxel that the moving links come to touch,
 up to two voxels before the contact, is wholly seen by one camera, but for what the body covers. Where it is not, free
 travel has to end at the first voxel that no camera sees all of; how much earlier it ends is *short of the view*. The
-cameras were placed for these motions by the same rays. *Noise* is sigma(z) of Kinect v1; *and losses* adds to it what
-the simulated time-of-flight sensors suffer: mixed pixels at edges, and pixels without a return.
+cameras were placed for these motions by the same rays (`benchmarks/scale_cameras.py`), for the smaller voxels. With
+these the body is grown by more than half a voxel, so that it takes the same space as with the larger ones. *Noise* is
+sigma(z) of Kinect v1; *and losses* adds to it what the simulated time-of-flight sensors suffer: mixed pixels at edges,
+and pixels without a return.
 """
 
 from collections.abc import Mapping, Sequence

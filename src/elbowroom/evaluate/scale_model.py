@@ -52,8 +52,8 @@ def model_grid(voxel_size_m: float) -> VoxelGrid:
 def body_growth(voxel_size_m: float) -> float:
     """By how much the body is grown where it is taken out [m]: half a voxel of 4 mm, and more with smaller ones.
 
-    So it takes the same space whatever the voxels (within 1 %, from 2 to 4 mm), and with the diagonal of a voxel no more
-    than the 9 mm that voxels of 4 mm reach.
+    So it takes the same space whatever the voxels (within 1 %, from 2 to 4 mm), and what it frees beside itself
+    reaches no farther than with voxels of 4 mm: growth and a voxel's diagonal are at most 9 mm.
     """
     return max(voxel_size_m / 2, 0.002 + (0.004 - voxel_size_m) * 2 / 3)
 
