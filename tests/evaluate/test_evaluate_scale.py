@@ -9,7 +9,8 @@ import elbowroom as er
 from elbowroom.evaluate.due import due_table
 from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.task import Settings
-from elbowroom.geometry import looking_at
+from elbowroom.geometry import bits, looking_at
+from elbowroom.machine import body_words
 from elbowroom.simulate import Moment, Solid
 from elbowroom.simulate.machine_solids import link_solids
 from elbowroom.simulate.shapes import box, join
@@ -18,8 +19,8 @@ pytest.importorskip("coal", reason="coal is not installed; exact mesh distance i
 from elbowroom.evaluate.scale import PART, SENSORS, judge_pose
 from elbowroom.evaluate.scale_model import (
     PLACES_M,
-    VOXEL_M,
     VOXEL_SIZES_M,
+    body_growth,
     kinect,
     model_grid,
     model_machine,
@@ -28,6 +29,7 @@ from elbowroom.evaluate.scale_model import (
 )
 from elbowroom.evaluate.way_view import WayView
 
+EDGE_M = 0.004
 JOINTS = {"long": 0.0, "larm": 0.0, "propeller": 0.0, "carc": 0.0}
 
 
@@ -38,7 +40,7 @@ def wall(lower, upper):
 def view_of(*solids):
     machine = model_machine()
     moment = Moment(0.0, (*solids, *link_solids(machine, JOINTS)), JOINTS)
-    return WayView(machine, moment, model_grid(VOXEL_M))
+    return WayView(machine, moment, model_grid(EDGE_M))
 
 
 @pytest.fixture(scope="module")
@@ -140,3 +142,16 @@ def test_more_cameras_never_see_less_of_a_way_and_none_see_nothing():
     cameras = [kinect(str(n), place, False) for n, place in enumerate(PLACES_M)]
     travels = [view.travel_in_view(way, cameras[:count], 0.1) for count in range(len(cameras) + 1)]
     assert travels == sorted(travels) and travels[0] == way.travel.min() and travels[-1] <= 0.1
+
+
+def test_the_body_takes_the_same_space_whatever_the_voxels_and_reaches_no_farther():
+    # turned against the voxels, or faces along them count whole layers
+    joints, space = model_pose(5)[0], {}
+    assert body_growth(EDGE_M) == pytest.approx(EDGE_M / 2)
+    for edge in VOXEL_SIZES_M:
+        assert body_growth(edge) >= edge / 2
+        assert body_growth(edge) + np.sqrt(3) * edge <= body_growth(EDGE_M) + np.sqrt(3) * EDGE_M + 1e-9
+        grid = model_grid(edge)
+        body = body_words(model_machine(), joints, grid, body_growth(edge))
+        space[edge] = bits.unpack(body, grid).sum() * edge**3
+    assert all(volume == pytest.approx(space[EDGE_M], rel=0.01) for volume in space.values())
