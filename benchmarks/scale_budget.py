@@ -24,6 +24,8 @@ from elbowroom.evaluate.scale_model import (
 )
 from elbowroom.evaluate.scene import WELL_KNOWN
 from elbowroom.evaluate.way_view import WayView
+from elbowroom.geometry import bits
+from elbowroom.machine import body_words
 from elbowroom.motion import blocks_in_reach, check_motions
 from elbowroom.reconstruct import FreeSpace, reconstruct
 from elbowroom.simulate import Moment, true_occupancy
@@ -39,7 +41,8 @@ def shortfalls(pose: int, voxel_size_m: float) -> list[list[float]]:
     motions = list(met)
     moment = Moment(1.0, model_solids() + link_solids(machine, joints), joints)
     occupied = true_occupancy(grid, moment).occupied
-    spaces = [FreeSpace.from_occupied(grid, occupied).without(machine, joints)]
+    body = bits.unpack(body_words(machine, joints, grid, body_growth(voxel_size_m)), grid)
+    spaces = [FreeSpace.from_occupied(grid, occupied & ~body)]
     focus = blocks_in_reach(grid, machine, joints, motions)
     for allowed, noise in ((False, False), (True, False), (True, True)):
         frames = noisy_frames(kinects(noise), moment, pose)
