@@ -1,17 +1,20 @@
 """Where the scale model's free travel is lost: millimetres for each cause, over the ways in view, by size of voxel.
 
-    python benchmarks/scale_budget.py 4 3 2.5
+    python benchmarks/scale_budget.py
 
-Each column adds one cause to those before it, and says how far free travel ends before the truth, median / worst:
+Writes benchmarks/results/scale_budget.json, which docs/evaluation.md shows; takes some five minutes. Each column adds one cause to those before it, and says how far free travel ends before the truth, median / worst:
 *voxels* are those that the true objects touch, in an else open space; *view* ends where the first voxel is that no
 camera sees all of, by exact rays; *pixels* are exact images, *margin* the same with three sigmas of a Kinect allowed
 for, *noise* images with that noise.
 """
 
+import json
 import sys
+from pathlib import Path
 
 import numpy as np
 
+from elbowroom.cli.json_output import meta
 from elbowroom.evaluate.scale import EXPLAIN_M, NEAR_VOXELS, noisy_frames
 from elbowroom.evaluate.scale_model import (
     POSES,
@@ -31,6 +34,8 @@ from elbowroom.reconstruct import FreeSpace, reconstruct
 from elbowroom.simulate import Moment, true_occupancy
 from elbowroom.simulate.machine_solids import link_solids
 
+RESULT = Path(__file__).resolve().parent / "results" / "scale_budget.json"
+VOXEL_SIZES_M = (0.0025, 0.003, 0.004)
 CAUSES = ("voxels", "view", "pixels", "margin", "noise")
 
 
@@ -69,15 +74,18 @@ def shortfalls(pose: int, voxel_size_m: float) -> list[list[float]]:
     return [[1000 * (c.travel - travel) * c.speed for travel in row] for c, *row in rows]
 
 
-def main(voxel_sizes_mm: list[float]) -> None:
-    """Prints a line for each size of voxel."""
-    print("voxel [mm]  ways in view  " + "  ".join(f"{name:>12}" for name in CAUSES))
-    for edge in voxel_sizes_mm:
-        rows = np.array([row for pose in range(POSES) for row in shortfalls(pose, edge / 1000)])
-        mine = rows[rows[:, CAUSES.index("view")] <= NEAR_VOXELS * edge]
-        cells = [f"{np.median(column):5.1f} /{column.max():5.1f}" for column in mine.T]
-        print(f"{edge:10g}  {len(mine):5} of {len(rows):2}  " + "  ".join(cells), flush=True)
+def main() -> None:
+    """A row for each size of voxel, written as soon as it is there."""
+    said, done = meta() | {"command": "python benchmarks/scale_budget.py"}, []
+    for edge in VOXEL_SIZES_M:
+        rows = np.array([row for pose in range(POSES) for row in shortfalls(pose, edge)])
+        mine = rows[rows[:, CAUSES.index("view")] <= 1000 * NEAR_VOXELS * edge]
+        pairs = [[round(float(np.median(column)), 2), round(float(column.max()), 2)] for column in mine.T]
+        short_mm = dict(zip(CAUSES, pairs, strict=True))
+        done.append({"voxel_size_m": edge, "motions": len(rows), "in_view": len(mine), "short_mm": short_mm})
+        print(json.dumps(done[-1]), file=sys.stderr)
+        RESULT.write_text(json.dumps({"meta": said, "rows": done}, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main([float(size) for size in sys.argv[1:]])
+    main()
