@@ -194,7 +194,11 @@ def fill(
         trust = buffers.trust_texels[here].reshape(shape)
         doubt = buffers.doubt_texels[here].reshape(shape)
         if camera.name in images.least_m:
-            numbers[c, box.SPLIT] = _texels(layout, c, images, model_depth.get(camera.name), trust, doubt)
+            least_m, greatest_m = images.least_m[camera.name], images.greatest_m[camera.name]
+            model_m = model_depth.get(camera.name)
+            numbers[c, box.SPLIT] = texels_of(
+                camera, numbers[c], least_m, greatest_m, model_m, trust, doubt
+            )
         else:
             numbers[c, box.BLANK] = 1
             trust[:] = 0
@@ -232,20 +236,30 @@ def _squares(layout: Layout, c: int, buffers: _Buffers) -> None:
         smaller = squares
 
 
-def _texels(
-    layout: Layout,
-    c: int,
-    images: RoomImages,
+def texels_of(
+    camera: DepthCamera,
+    numbers: NDArray[np.float64],
+    least_m: Image,
+    greatest_m: Image,
     model_m: Image | None,
     trust: NDArray[np.uint32],
     doubt: NDArray[np.uint32],
 ) -> bool:
-    """Level 0 of one camera: what its pixels free, and what they measured; whether the machine explains any of them."""
-    camera = layout.cameras[c]
-    polynomial = layout.numbers[c, box.MARGIN : box.MARGIN + 5]
-    quantum = layout.numbers[c, box.QUANTUM]
+    """Level 0 of one camera: what its pixels free, and what they measured.
+
+    Args:
+        camera: whose pixels.
+        numbers: its row of `Views.numbers`.
+        least_m, greatest_m: bounds of depth per pixel, all of the image or a part of it [m].
+        model_m: up to where the machine explains each pixel [m], 0 where it does not; None: it explains nothing.
+        trust, doubt: of the same shape, written; may be one array where nothing is explained and no pixels fly.
+
+    Returns:
+        Whether the machine explains any of them.
+    """
+    polynomial = numbers[box.MARGIN : box.MARGIN + 5]
+    quantum = numbers[box.QUANTUM]
     low, high = np.float32(camera.min_depth_m), np.float32(camera.max_depth_m)
-    least_m, greatest_m = images.least_m[camera.name], images.greatest_m[camera.name]
     pyramid.texels_of_frame(least_m, greatest_m, low, high, np.float32(quantum), doubt)
     if trust is not doubt:
         trust[:] = doubt
