@@ -36,7 +36,8 @@ def check_motion(
     The swept body is that of the checked links which the motion moves. The machine's own voxels should have
     been taken out of the space (`reconstruct` does it; `FreeSpace.without`); a body that stands in blocked
     space has a free travel of 0. What lies outside the grid is blocked. Joint limits cap the free travel, not
-    the level.
+    the level. A voxel in the way that is unseen, because no one camera sees all of it, is looked at again in parts if
+    the space has its frames (`reconstruct.parts`).
 
     Args:
         space: the free space.
@@ -133,15 +134,9 @@ class _Scene:
 
     def verdict(self, motion: Motion | JointPath, way: Way) -> Verdict:
         speeds = cluster_speeds(self.machine, self.skin, self.world_from_link, way)
-        space, volume = self.space, self.volume
-        for looks in range(MOST_LOOKS + 1):
-            block = find_block(self.machine, self.skin, speeds, way, volume, space.grid)
-            if block is None:
-                return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE)
-            if looks == MOST_LOOKS or not self._is_free_in_parts(block):
-                break
-            space = _with_free(space, block)
-            volume = volume_of(space)
+        block = self._first_block(speeds, way)
+        if block is None:
+            return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE)
         return Verdict(
             motion,
             Level.at(block.travel, motion.braking_distance),
@@ -151,6 +146,17 @@ class _Scene:
             tuple(block.place_in_world.tolist()),
             CAUSES[block.kind],
         )
+
+    def _first_block(self, speeds: NDArray[np.float64], way: Way) -> Block | None:
+        """The first block on a way that is not free in parts, or the last of those that are looked at."""
+        space, volume = self.space, self.volume
+        for looks in range(MOST_LOOKS + 1):
+            block = find_block(self.machine, self.skin, speeds, way, volume, space.grid)
+            if block is None or looks == MOST_LOOKS or not self._is_free_in_parts(block):
+                break
+            space = _with_free(space, block)
+            volume = volume_of(space)
+        return block
 
     def _is_free_in_parts(self, block: Block) -> bool:
         """Whether a block is a voxel that nobody disputes and that is free part by part."""

@@ -196,9 +196,7 @@ def fill(
         if camera.name in images.least_m:
             least_m, greatest_m = images.least_m[camera.name], images.greatest_m[camera.name]
             model_m = model_depth.get(camera.name)
-            numbers[c, box.SPLIT] = texels_of(
-                camera, numbers[c], least_m, greatest_m, model_m, trust, doubt
-            )
+            numbers[c, box.SPLIT] = texels_of(camera, numbers[c], least_m, greatest_m, model_m, trust, doubt)
         else:
             numbers[c, box.BLANK] = 1
             trust[:] = 0
