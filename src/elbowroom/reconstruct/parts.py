@@ -11,7 +11,7 @@ from elbowroom.reconstruct import _kernels_pyramid as pyramid
 from elbowroom.reconstruct._kernels_pixel import PIXEL_FLOATS, settle_word
 from elbowroom.reconstruct.free_space import FreeSpace, Source
 from elbowroom.reconstruct.images import Image, RoomImages
-from elbowroom.reconstruct.views import TILE_LEVEL, layout_of, texels_of
+from elbowroom.reconstruct.views import layout_of, texels_of
 
 PARTS = 4
 """Along each axis a voxel is cut into so many parts: 64 in all, the bits of one word."""
@@ -176,8 +176,7 @@ def _span(at: NDArray[np.float64], beyond: float, size: int) -> slice:
 
 def _tiles(texels: NDArray[np.uint32]) -> NDArray[np.uint32]:
     """The least of 4 x 4 texels each, in one row."""
-    for _ in range(TILE_LEVEL):
-        coarse = np.empty((-(-texels.shape[0] // 2), -(-texels.shape[1] // 2)), dtype=np.uint32)
-        pyramid.halve(texels, coarse)
-        texels = coarse
-    return texels.reshape(-1)
+    rows, columns = texels.shape
+    tiles = np.empty((-(-rows // 4), -(-columns // 4)), dtype=np.uint32)
+    pyramid.fill_tiles(texels, 0, rows, 0, columns, tiles)
+    return tiles.reshape(-1)
