@@ -211,10 +211,10 @@ def _bound_returns(view, v, depth, start, stop, sigmas, pose, cells, spans, boxe
 @uncounted(error_model="numpy")
 def _same_box(boxes, u, other):
     """Whether two pixels of a row have the same box."""
+    same = True
     for n in range(6):
-        if boxes[n, u] != boxes[n, other]:
-            return False
-    return True
+        same &= boxes[n, u] == boxes[n, other]
+    return same
 
 
 @uncounted(error_model="numpy")
