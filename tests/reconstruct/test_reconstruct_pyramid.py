@@ -8,6 +8,7 @@ from reference.reconstruct_pyramid import NO_RETURN, bounds_of, packed
 
 SHAPES = [(1, 1), (1, 7), (6, 1), (2, 2), (5, 3), (9, 16), (23, 18)]
 NO_MODEL = np.zeros((0, 0), dtype=np.float32)
+NO_TEXELS = np.zeros((0, 0), dtype=np.uint32)
 NO_MARGIN = np.zeros(5)
 
 
@@ -22,7 +23,9 @@ def test_texels_bound_a_depth_by_at_most_three_quanta():
     quantum = np.float32(8e-5)
     depth = np.random.default_rng(0).uniform(0.001, 5.2, (40, 50)).astype(np.float32)
     texels = np.zeros(depth.shape, dtype=np.uint32)
-    kernels.texels_of_frame(depth, depth, np.float32(0), np.float32(np.inf), quantum, texels)
+    kernels.texels_of_frame(
+        depth, depth, np.float32(0), np.float32(np.inf), quantum, NO_MODEL, NO_MARGIN, texels, NO_TEXELS
+    )
     least, greatest = bounds_of(texels)
     exact = depth.astype(float) / float(quantum)
     assert ((exact - 3 < least) & (least <= exact)).all()
@@ -33,7 +36,17 @@ def test_texels_bound_a_depth_by_at_most_three_quanta():
 def test_what_is_no_depth_within_range_is_no_return(depth):
     image = np.full((2, 3), depth, dtype=np.float32)
     texels = np.ones(image.shape, dtype=np.uint32)
-    kernels.texels_of_frame(image, image, np.float32(0.2), np.float32(4.0), np.float32(1e-4), texels)
+    kernels.texels_of_frame(
+        image,
+        image,
+        np.float32(0.2),
+        np.float32(4.0),
+        np.float32(1e-4),
+        NO_MODEL,
+        NO_MARGIN,
+        texels,
+        NO_TEXELS,
+    )
     least, greatest = bounds_of(texels)
     assert (least == 0).all()
     assert (greatest == NO_RETURN).all()
@@ -42,7 +55,17 @@ def test_what_is_no_depth_within_range_is_no_return(depth):
 def test_a_depth_beyond_what_can_be_counted_is_far_and_not_missing():
     image = np.array([[1e6]], dtype=np.float32)
     texels = np.zeros(image.shape, dtype=np.uint32)
-    kernels.texels_of_frame(image, image, np.float32(0), np.float32(np.inf), np.float32(1e-4), texels)
+    kernels.texels_of_frame(
+        image,
+        image,
+        np.float32(0),
+        np.float32(np.inf),
+        np.float32(1e-4),
+        NO_MODEL,
+        NO_MARGIN,
+        texels,
+        NO_TEXELS,
+    )
     least, greatest = bounds_of(texels)
     assert 65000 < least[0, 0] <= greatest[0, 0] < NO_RETURN
 
@@ -151,6 +174,50 @@ def test_an_explained_pixel_is_free_up_to_the_model_and_silent():
     up_to = bounds_of(trust)[0][0, 4:] * quantum - (0.01 + 0.002 * model[0, 4:])
     assert (up_to <= model[0, 4:]).all()
     np.testing.assert_allclose(up_to, model[0, 4:], atol=3 * quantum)
+
+
+@pytest.mark.parametrize("shape", [*SHAPES, (31, 40)])
+def test_tiles_of_a_rectangle_are_the_least_of_their_texels_and_others_stay(shape):
+    rng = np.random.default_rng(7)
+    texels = random_texels(shape, 6)
+    least, greatest = naive.level(*bounds_of(texels), 2)
+    for _ in range(20):
+        top, left = rng.integers(0, shape[0]), rng.integers(0, shape[1])
+        bottom, right = rng.integers(top, shape[0]) + 1, rng.integers(left, shape[1]) + 1
+        tiles = np.full(least.shape, 7, dtype=np.uint32)
+        kernels.fill_tiles(texels, top, bottom, left, right, tiles)
+        asked = np.zeros(least.shape, dtype=bool)
+        asked[top // 4 : -(-bottom // 4), left // 4 : -(-right // 4)] = True
+        np.testing.assert_array_equal(bounds_of(tiles)[0][asked], least[asked])
+        np.testing.assert_array_equal(bounds_of(tiles)[1][asked], greatest[asked])
+        assert (tiles[~asked] == 7).all()
+    tiles = np.full(least.shape, 7, dtype=np.uint32)
+    kernels.fill_tiles(texels, 0, 0, 0, shape[1], tiles)
+    assert (tiles == 7).all()
+
+
+def test_doubt_differs_from_trust_within_the_rectangle_alone():
+    rng = np.random.default_rng(8)
+    depth = rng.uniform(1.0, 4.0, (50, 200)).astype(np.float32)
+    quantum, margin = np.float32(1e-4), np.array([0.01, 0.0, 0.0, 0.0, 0.0])
+    for _ in range(10):
+        model = np.zeros_like(depth)
+        v, u = rng.integers(0, 50, 3), rng.integers(0, 200, 3)
+        model[v, u] = depth[v, u]
+        trust, doubt = (np.zeros(depth.shape, dtype=np.uint32) for _ in range(2))
+        top, bottom, left, right = kernels.texels_of_frame(
+            depth, depth, np.float32(0), np.float32(np.inf), quantum, model, margin, trust, doubt
+        )
+        differs = trust != doubt
+        assert differs[v, u].all()
+        differs[top:bottom, left:right] = False
+        assert not differs.any()
+        plain = np.zeros_like(trust)
+        kernels.texels_of_frame(
+            depth, depth, np.float32(0), np.float32(np.inf), quantum, NO_MODEL, NO_MARGIN, plain, NO_TEXELS
+        )
+        np.testing.assert_array_equal(plain[model == 0], trust[model == 0])
+        np.testing.assert_array_equal(plain[model == 0], doubt[model == 0])
 
 
 @pytest.mark.parametrize("shape", [*SHAPES, (31, 40)])

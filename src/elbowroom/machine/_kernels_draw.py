@@ -216,9 +216,12 @@ def _fill(ua, va, ia, ub, vb, ib, uc, vc, ic, view, inverse, first, last):
             continue
         first[row], last[row] = min(first[row], x0), max(last[row], x1)
         start = ia + down * (row - va) - along * ua
-        for x in range(x0, x1 + 1):
-            value = np.float32(min(max(start + along * x, least), most))
-            inverse[row, x] = max(inverse[row, x], value)
+        line = inverse[row]
+        # unsigned indices and small numbers, or the compiler does one pixel at a time
+        for n in range(x0, x1 + 1):
+            x = np.uint64(n)
+            value = np.float32(min(max(start + along * np.float64(np.int32(n)), least), most))
+            line[x] = max(line[x], value)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -127,8 +127,9 @@ def mark_row_of_tiles(view, depth, model, row, around, limits, found, spans, box
     eight = found.view(np.uint64)
     for v in range(row * TILE, min(row * TILE + TILE, view.height)):
         _find(depth[v], model[v], least, most, left, right, found)
-        # tiles start at whole words of eight pixels
-        done = left
+        # tiles start at whole words of eight pixels; the last pixel whose box was seen to be set: neighbours mostly
+        # have the same box
+        done, known = left, np.int64(-1)
         for n in range(left // 8, (right + 7) // 8):
             if eight[n] == 0:
                 continue
@@ -138,12 +139,12 @@ def mark_row_of_tiles(view, depth, model, row, around, limits, found, spans, box
                     done = min(done + 8, right)
                 _bound_returns(view, v, depth[v], 8 * n, done, sigmas, pose, cells, spans, boxes)
             for u in range(8 * n, min(8 * n + 8, right)):
-                # the voxels first: neighbours mostly lie in the same ones
-                if (
-                    found[u] != 0
-                    and not _all_set(boxes, u, cells.cubes_y, cells.cubes_z, words)
-                    and has_support(view, depth, model, u, v)
-                ):
+                if found[u] == 0 or (known >= 0 and _same_box(boxes, u, known)):
+                    continue
+                # the voxels first: most are set already
+                if _all_set(boxes, u, cells.cubes_y, cells.cubes_z, words):
+                    known = u
+                elif has_support(view, depth, model, u, v):
                     _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words)
 
 
@@ -205,6 +206,15 @@ def _bound_returns(view, v, depth, start, stop, sigmas, pose, cells, spans, boxe
             # held near the grid before they become whole numbers
             boxes[2 * axis, u] = np.int32(min(max(low, zero), end))
             boxes[2 * axis + 1, u] = np.int32(max(min(high, end - one), -one))
+
+
+@uncounted(error_model="numpy")
+def _same_box(boxes, u, other):
+    """Whether two pixels of a row have the same box."""
+    same = True
+    for n in range(6):
+        same &= boxes[n, u] == boxes[n, other]
+    return same
 
 
 @uncounted(error_model="numpy")

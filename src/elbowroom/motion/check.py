@@ -1,13 +1,14 @@
 """How far may the machine go? Free space and motions in, verdicts out."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import MachineError
+from elbowroom.geometry import bits
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
 from elbowroom.motion._kernels import Skin
@@ -16,12 +17,15 @@ from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.course import Way, way_of
 from elbowroom.motion.motion import JointPath, Motion
 from elbowroom.motion.skin import skin_of
-from elbowroom.motion.sweep import cluster_speeds, find_block, volume_of
+from elbowroom.motion.sweep import Block, cluster_speeds, find_block, volume_of
 from elbowroom.motion.verdict import Cause, Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
+from elbowroom.reconstruct.parts import is_free_in_parts
 
 CAUSES = (Cause.SURFACE, Cause.OUTSIDE_GRID, Cause.BLIND, Cause.UNSEEN)
 """Of a block, by the numbers that the kernel gives them."""
+MOST_LOOKS = 8
+"""Of so many voxels in the way of one motion it is asked whether they are free in parts."""
 
 
 def check_motion(
@@ -32,7 +36,8 @@ def check_motion(
     The swept body is that of the checked links which the motion moves. The machine's own voxels should have
     been taken out of the space (`reconstruct` does it; `FreeSpace.without`); a body that stands in blocked
     space has a free travel of 0. What lies outside the grid is blocked. Joint limits cap the free travel, not
-    the level.
+    the level. A voxel in the way that is unseen, because no one camera sees all of it, is looked at again in parts if
+    the space has its frames (`reconstruct.parts`).
 
     Args:
         space: the free space.
@@ -115,6 +120,7 @@ class _Scene:
     skin: Skin
     volume: Volume
     world_from_link: NDArray[np.float64]
+    looked_at: dict[tuple[int, int, int], bool] = field(default_factory=dict)
 
     @classmethod
     def of(cls, space: FreeSpace, machine: Machine, start: NDArray[np.float64]) -> Self:
@@ -128,7 +134,7 @@ class _Scene:
 
     def verdict(self, motion: Motion | JointPath, way: Way) -> Verdict:
         speeds = cluster_speeds(self.machine, self.skin, self.world_from_link, way)
-        block = find_block(self.machine, self.skin, speeds, way, self.volume, self.space.grid)
+        block = self._first_block(speeds, way)
         if block is None:
             return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE)
         return Verdict(
@@ -140,3 +146,37 @@ class _Scene:
             tuple(block.place_in_world.tolist()),
             CAUSES[block.kind],
         )
+
+    def _first_block(self, speeds: NDArray[np.float64], way: Way) -> Block | None:
+        """The first block on a way that is not free in parts, or the last of those that are looked at."""
+        space, volume = self.space, self.volume
+        for looks in range(MOST_LOOKS + 1):
+            block = find_block(self.machine, self.skin, speeds, way, volume, space.grid)
+            if block is None or looks == MOST_LOOKS or not self._is_free_in_parts(block):
+                break
+            space = _with_free(space, block)
+            volume = volume_of(space)
+        return block
+
+    def _is_free_in_parts(self, block: Block) -> bool:
+        """Whether a block is a voxel that nobody disputes and that is free part by part."""
+        if CAUSES[block.kind] is not Cause.UNSEEN or self.space.source is None:
+            return False
+        index = _index_of(block, self.space)
+        if index not in self.looked_at:
+            self.looked_at[index] = is_free_in_parts(self.space, index)
+        return self.looked_at[index]
+
+
+def _with_free(space: FreeSpace, block: Block) -> FreeSpace:
+    """The space with the voxel of a block made free."""
+    cells = bits.lattice(space.grid)
+    i, j, k = _index_of(block, space)
+    free = space.free_words.copy()
+    free[bits.word_of(i, j, k, cells.cubes_y, cells.cubes_z)] |= bits.bit_of(i, j, k)
+    return replace(space, free_words=free)
+
+
+def _index_of(block: Block, space: FreeSpace) -> tuple[int, int, int]:
+    i, j, k = (int(n) for n in space.grid.index_of(block.place_in_world))
+    return i, j, k

@@ -113,16 +113,16 @@ def measured_at_centre(
     if partly:
         unsure &= in_front
     rest &= unsure & ~known
+    # without branches, so that the looks of many lanes are under way at once
     while rest:
         lane = np.int64(trailing_zeros(rest))
-        bit = np.uint64(1) << np.uint64(lane)
-        rest &= ~bit
+        rest &= rest - np.uint64(1)
         texel = doubt_texels[first + int(floats[V + lane]) * width + int(floats[U + lane])]
         greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
-        if texel == NEUTRAL or greatest == NO_RETURN:
-            continue
-        if floats[NEAR + lane] <= greatest * quantum <= floats[FAR + lane]:
-            surface |= bit
+        depth = greatest * quantum
+        holds = (floats[NEAR + lane] <= depth) & (depth <= floats[FAR + lane])
+        holds &= (texel != NEUTRAL) & (greatest != np.uint32(NO_RETURN))
+        surface |= np.uint64(holds) << np.uint64(lane)
     return surface, lost & unsure
 
 

@@ -30,23 +30,49 @@ def margin_at(depth, m):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def texels_of_frame(least_m, greatest_m, low, high, quantum, texels):
-    """Level 0: each pixel's bounds in quanta; no return where a depth is not a number within [low, high]."""
+def texels_of_frame(least_m, greatest_m, low, high, quantum, model_m, margin, trust, doubt):
+    """Level 0: each pixel's bounds in quanta; no return where a depth is not a number within [low, high].
+
+    Pixels that see the machine are marked (`_mark_row`). Arrays by pixel, (rows, columns).
+
+    Args:
+        least_m, greatest_m: bounds of depth [m].
+        low, high: range of the camera [m].
+        quantum: of the camera [m].
+        model_m: as `machine.explain` gives it [m], or of no size: nothing is explained.
+        margin: of depth, as of `margin_at`.
+        trust, doubt: written; doubt may be of no size where nothing is explained.
+
+    Returns:
+        First row, one past the last, first column and one past the last of a rectangle about all marked pixels.
+    """
     rows, columns = least_m.shape
+    top, bottom, left, right = rows, 0, columns, 0
+    for v in range(rows):
+        _texels_of_row(least_m[v], greatest_m[v], low, high, quantum, trust[v])
+        if doubt.shape[0]:
+            doubt[v] = trust[v]
+        if model_m.shape[0]:
+            start, stop = _mark_row(model_m[v], margin, quantum, trust[v], doubt[v])
+            if start < stop:
+                top, bottom, left, right = min(top, v), v + 1, min(left, start), max(right, stop)
+    return top, bottom, left, right
+
+
+@njit(nogil=True, error_model="numpy")
+def _texels_of_row(least_m, greatest_m, low, high, quantum, texels):
     per_metre = np.float32(1.0 / quantum)
     clip = np.float32(FAR_CLIP - 2)
     one, zero = np.float32(1), np.float32(0)
-    for v in range(rows):
-        for u in range(columns):
-            near, far = least_m[v, u], greatest_m[v, u]
-            # comparisons with NaN are false, so NaN is no return
-            valid = (near > zero) & (near >= low) & (far <= high) & (far >= near) & (far < np.inf)
-            # the product is off by less than a quantum, so one quantum more is surely on the safe side
-            least = np.int32(max(min(near * per_metre, clip) - one, zero) if valid else zero)
-            greatest = np.int32(
-                min(far * per_metre, clip) + np.float32(2) if valid else np.float32(NO_RETURN)
-            )
-            texels[v, u] = np.uint32((least << np.int32(16)) | (np.int32(NO_RETURN) - greatest))
+    for n in range(least_m.size):
+        u = np.uint64(n)
+        near, far = least_m[u], greatest_m[u]
+        # comparisons with NaN are false, so NaN is no return
+        valid = (near > zero) & (near >= low) & (far <= high) & (far >= near) & (far < np.inf)
+        # the product is off by less than a quantum, so one quantum more is surely on the safe side
+        least = np.int32(max(min(near * per_metre, clip) - one, zero) if valid else zero)
+        greatest = np.int32(min(far * per_metre, clip) + np.float32(2) if valid else np.float32(NO_RETURN))
+        texels[u] = np.uint32((least << np.int32(16)) | (np.int32(NO_RETURN) - greatest))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -271,37 +297,103 @@ def _any_of(row, start, stop):
     return some != 0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True)
 def mark_explained(model_m, margin, quantum, trust, doubt):
-    """Pixels that see the machine, as `machine.explain` tells: `NEUTRAL` in `doubt`; in `trust`, those with a depth of
-    the model are free up to it, and hidden behind it. Says whether there are any.
+    """Marks the pixels of an image that see the machine (`_mark_row`)."""
+    for v in range(model_m.shape[0]):
+        _mark_row(model_m[v], margin, quantum, trust[v], doubt[v])
+
+
+@njit(nogil=True, error_model="numpy")
+def _mark_row(model, margin, quantum, trust, doubt):
+    """Pixels of a row that see the machine, as `machine.explain` tells: `NEUTRAL` in `doubt`; in `trust`, those with a
+    depth of the model are free up to it, and hidden behind it. First column and one past the last of runs with any.
     """
-    columns = model_m.shape[1]
+    columns = model.size
     # as `_free_to_model`, in float32; numbers of their own, or the compiler cannot tell that they never change below
     constant, linear, square = np.float32(margin[0]), np.float32(margin[1]), np.float32(margin[2])
     beyond_square, offset = np.float32(margin[3]), np.float32(margin[4])
     per_metre, most, nothing = np.float32(1.0 / quantum), np.float32(FAR_CLIP), np.float32(-NEXT_TO_NOTHING_M)
     zero, one, two, infinite = np.float32(0.0), np.float32(1.0), np.float32(2.0), np.float32(np.inf)
-    as_bits, found = model_m.view(np.uint32), False
-    for v in range(model_m.shape[0]):
-        model, trusted, doubted = model_m[v], trust[v], doubt[v]
-        for start in range(0, columns, RUN):
-            stop = min(start + RUN, columns)
-            if not _any_of(as_bits[v], start, stop):
-                continue
-            found = True
-            # without branches, for many pixels at once
-            for n in range(start, stop):
+    as_bits = model.view(np.uint32)
+    left, right = columns, 0
+    for start in range(0, columns, RUN):
+        stop = min(start + RUN, columns)
+        if not _any_of(as_bits, start, stop):
+            continue
+        left, right = min(left, start), stop
+        # without branches, for many pixels at once
+        for n in range(start, stop):
+            u = np.uint64(n)
+            depth = model[u]
+            frees = (depth > zero) & (depth < infinite)
+            within = depth if frees else one
+            beyond = max(within - offset, zero)
+            wide = constant + within * (linear + within * square) + beyond_square * beyond * beyond
+            least = np.int32(min(max((within + wide) * per_metre - one, zero), most))
+            greatest = np.int32(min(within * per_metre + two, most))
+            texel = np.uint32((least << np.int32(16)) | (np.int32(NO_RETURN) - greatest))
+            trust[u] = texel if frees else trust[u]
+            is_machine = (depth > zero) | (depth < nothing)
+            doubt[u] = NEUTRAL if is_machine else doubt[u]
+    return left, right
+
+
+@njit(cache=True, nogil=True)
+def fill_levels(texels, lowest, firsts, tile_level, tiles, windows):
+    """All levels of one camera: its tiles, and its windows from level `lowest` on.
+
+    Args:
+        texels: (rows, columns) of level 0.
+        firsts: (levels,) where each level begins in `windows`.
+        tile_level: whose texels are the tiles.
+        tiles: (tiles,), written.
+        windows: of all cameras, written.
+    """
+    fine = texels
+    for level in range(firsts.size):
+        if level:
+            coarse = np.empty(((fine.shape[0] + 1) // 2, (fine.shape[1] + 1) // 2), dtype=np.uint32)
+            halve(fine, coarse)
+            fine = coarse
+        rows, columns = fine.shape
+        if level == tile_level:
+            tiles[:] = fine.reshape(rows * columns)
+        if level >= lowest:
+            out = windows[firsts[level] : firsts[level] + rows * columns].reshape((rows, columns))
+            across = np.empty((rows, 2 * columns), dtype=np.uint16)
+            windows_of(fine.view(np.uint16), across, out.view(np.uint16))
+
+
+@njit(cache=True, nogil=True)
+def fill_tiles(texels, top, bottom, left, right, tiles):
+    """Tiles of 4 x 4 texels that a rectangle meets, each the least of its texels; others are left as they are.
+
+    Args:
+        texels: (rows, columns).
+        top, bottom, left, right: first row, one past the last, first column, one past the last.
+        tiles: (rows / 4, columns / 4), rounded up, written.
+    """
+    if top >= bottom or left >= right:
+        return
+    rows, columns = texels.shape
+    begin, end = left // 4, (right + 3) // 4
+    stop = min(4 * end, columns)
+    # four rows into one, both halves of a texel side by side; beyond the image's edge nothing is less
+    least = np.full(4 * end, NEUTRAL, dtype=np.uint32)
+    least_halves, halves = least.view(np.uint16), texels.view(np.uint16)
+    for tile in range(top // 4, (bottom + 3) // 4):
+        first, out = halves[4 * tile], tiles[tile]
+        for n in range(8 * begin, 2 * stop):
+            u = np.uint64(n)
+            least_halves[u] = first[u]
+        for v in range(4 * tile + 1, min(4 * tile + 4, rows)):
+            row = halves[v]
+            for n in range(8 * begin, 2 * stop):
                 u = np.uint64(n)
-                depth = model[u]
-                frees = (depth > zero) & (depth < infinite)
-                within = depth if frees else one
-                beyond = max(within - offset, zero)
-                wide = constant + within * (linear + within * square) + beyond_square * beyond * beyond
-                least = np.int32(min(max((within + wide) * per_metre - one, zero), most))
-                greatest = np.int32(min(within * per_metre + two, most))
-                texel = np.uint32((least << np.int32(16)) | (np.int32(NO_RETURN) - greatest))
-                trusted[u] = texel if frees else trusted[u]
-                is_machine = (depth > zero) | (depth < nothing)
-                doubted[u] = NEUTRAL if is_machine else doubted[u]
-    return found
+                least_halves[u] = min(least_halves[u], row[u])
+        for n in range(begin, end):
+            u = np.uint64(4 * n)
+            one = both_least(least[u], least[u + np.uint64(1)])
+            other = both_least(least[u + np.uint64(2)], least[u + np.uint64(3)])
+            out[n] = both_least(one, other)

@@ -25,12 +25,14 @@ class Source:
         images: of the room's cameras.
         margin: of cameras without one of their own.
         detail: of the carve.
+        rule: of `resolve`.
         model_depth: by camera, what the machine explains [m].
     """
 
     images: RoomImages
     margin: Margin
     detail: str
+    rule: str
     model_depth: Mapping[str, NDArray[np.float32]]
 
 

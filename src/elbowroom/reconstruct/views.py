@@ -31,6 +31,12 @@ STEP_WITHOUT_NOISE = Margin(range_linear=0.005)
 Were it the margin of the carve, a wider margin would lower fewer pixels and so could add free space.
 """
 
+NO_IMAGE = np.zeros((0, 0), dtype=np.float32)
+NO_TEXELS = np.zeros((0, 0), dtype=np.uint32)
+Rectangle = tuple[int, int, int, int]
+"""First row, one past the last, first column, one past the last."""
+NOWHERE: Rectangle = (0, 0, 0, 0)
+
 
 def margin_polynomial(camera: DepthCamera, margin: Margin) -> NDArray[np.float64]:
     """k sigma(z) + bias + range error as (constant, linear, quadratic, quadratic beyond offset, offset)."""
@@ -192,17 +198,26 @@ def fill(
         here = slice(layout.texel_first[c], layout.texel_first[c + 1])
         shape = (camera.height, camera.width)
         trust = buffers.trust_texels[here].reshape(shape)
-        doubt = buffers.doubt_texels[here].reshape(shape)
+        doubt = buffers.doubt_texels[here].reshape(shape) if split else trust
+        apart = NOWHERE
         if camera.name in images.least_m:
-            numbers[c, box.SPLIT] = _texels(layout, c, images, model_depth.get(camera.name), trust, doubt)
+            least_m, greatest_m = images.least_m[camera.name], images.greatest_m[camera.name]
+            model_m = model_depth.get(camera.name)
+            explained, apart = texels_of(camera, numbers[c], least_m, greatest_m, model_m, trust, doubt)
+            numbers[c, box.SPLIT] = explained
         else:
             numbers[c, box.BLANK] = 1
             trust[:] = 0
             doubt[:] = 0
-        _levels(layout, c, trust, buffers.trust_tiles, buffers.windows)
+        tiles = slice(layout.tile_first[c], layout.tile_first[c + 1])
+        lowest = int(numbers[c, box.LOWEST])
+        trust_tiles = buffers.trust_tiles[tiles]
+        pyramid.fill_levels(trust, lowest, layout.levels[c, :, 0], TILE_LEVEL, trust_tiles, buffers.windows)
         if split:
-            _levels(layout, c, doubt, buffers.doubt_tiles, None)
-            _squares(layout, c, buffers)
+            doubt_tiles = buffers.doubt_tiles[tiles].reshape(layout.shapes[c][TILE_LEVEL])
+            doubt_tiles.reshape(-1)[:] = trust_tiles
+            pyramid.fill_tiles(doubt, *apart, doubt_tiles)
+            _squares(doubt_tiles, buffers.doubt_squares[:, tiles])
 
     spread(build, range(len(layout.cameras)), threads)
     views = Views(
@@ -221,66 +236,54 @@ def fill(
     return views, buffers
 
 
-def _squares(layout: Layout, c: int, buffers: _Buffers) -> None:
-    """Squares of one camera's tiles of doubt."""
-    here = slice(layout.tile_first[c], layout.tile_first[c + 1])
-    shape = layout.shapes[c][TILE_LEVEL]
-    smaller = buffers.doubt_tiles[here].reshape(shape)
+def _squares(tiles: NDArray[np.uint32], squares: NDArray[np.uint32]) -> None:
+    """Squares of one camera's tiles of doubt, shape (SQUARES, tiles)."""
+    smaller = tiles
     for level in range(SQUARES):
-        squares = buffers.doubt_squares[level, here].reshape(shape)
-        pyramid.squares_of(smaller, 2 << level, squares)
-        smaller = squares
+        larger = squares[level].reshape(tiles.shape)
+        pyramid.squares_of(smaller, 2 << level, larger)
+        smaller = larger
 
 
-def _texels(
-    layout: Layout,
-    c: int,
-    images: RoomImages,
+def texels_of(
+    camera: DepthCamera,
+    numbers: NDArray[np.float64],
+    least_m: Image,
+    greatest_m: Image,
     model_m: Image | None,
     trust: NDArray[np.uint32],
     doubt: NDArray[np.uint32],
-) -> bool:
-    """Level 0 of one camera: what its pixels free, and what they measured; whether the machine explains any of them."""
-    camera = layout.cameras[c]
-    polynomial = layout.numbers[c, box.MARGIN : box.MARGIN + 5]
-    quantum = layout.numbers[c, box.QUANTUM]
+) -> tuple[bool, Rectangle]:
+    """Level 0 of one camera: what its pixels free, and what they measured.
+
+    Args:
+        camera: whose pixels.
+        numbers: its row of `Views.numbers`.
+        least_m, greatest_m: bounds of depth per pixel, all of the image or a part of it [m].
+        model_m: up to where the machine explains each pixel [m], 0 where it does not; None: it explains nothing.
+        trust, doubt: of the same shape, written; may be one array where nothing is explained and no pixels fly.
+
+    Returns:
+        Whether the machine explains any pixels, and a rectangle outside of which both are the same.
+    """
+    polynomial = numbers[box.MARGIN : box.MARGIN + 5]
+    quantum = numbers[box.QUANTUM]
     low, high = np.float32(camera.min_depth_m), np.float32(camera.max_depth_m)
-    least_m, greatest_m = images.least_m[camera.name], images.greatest_m[camera.name]
-    pyramid.texels_of_frame(least_m, greatest_m, low, high, np.float32(quantum), doubt)
-    if trust is not doubt:
-        trust[:] = doubt
-    explained = model_m is not None and pyramid.mark_explained(model_m, polynomial, quantum, trust, doubt)
+    model = NO_IMAGE if model_m is None else model_m
+    # not one array by two names: the compiler could not tell, and would do one pixel at a time
+    other = NO_TEXELS if doubt is trust else doubt
+    apart = pyramid.texels_of_frame(
+        least_m, greatest_m, low, high, np.float32(quantum), model, polynomial, trust, other
+    )
+    explained = apart[0] < apart[1]
     if camera.flying_pixels:
-        model = model_m if explained else np.zeros((0, 0), dtype=np.float32)
+        if not explained:
+            model = NO_IMAGE
         pitch = 1.0 / min(camera.intrinsics.fx, camera.intrinsics.fy)
         step = margin_polynomial(camera, STEP if camera.noise is not None else STEP_WITHOUT_NOISE)
         passed = np.empty_like(trust)
         pyramid.pass_over_specks(trust, pitch, model, polynomial, quantum, passed)
         pyramid.lower_at_steps(passed, doubt, quantum, step, trust)
-        if explained:
-            pyramid.mark_explained(model_m, polynomial, quantum, trust, doubt)
-    return explained
-
-
-def _levels(
-    layout: Layout,
-    c: int,
-    texels: NDArray[np.uint32],
-    tiles: NDArray[np.uint32],
-    windows: NDArray[np.uint32] | None,
-) -> None:
-    """Tiles of one camera from its level 0, and its windows of all levels; None: only the tiles."""
-    fine = texels
-    for level, shape in enumerate(layout.shapes[c]):
-        if level:
-            coarse = np.empty(shape, dtype=np.uint32)
-            pyramid.halve(fine, coarse)
-            fine = coarse
-        if level == TILE_LEVEL:
-            tiles[layout.tile_first[c] : layout.tile_first[c + 1]] = fine.reshape(-1)
-            if windows is None:
-                return
-        if windows is not None and level >= layout.numbers[c, box.LOWEST]:
-            first = layout.levels[c, level, 0]
-            out = windows[first : first + shape[0] * shape[1]].reshape(shape).view(np.uint16)
-            pyramid.windows_of(fine.view(np.uint16), np.empty_like(out), out)
+        pyramid.mark_explained(model, polynomial, quantum, trust, doubt)
+        apart = (0, trust.shape[0], 0, trust.shape[1])
+    return explained, apart

@@ -1,0 +1,182 @@
+"""One voxel looked at again, in parts: what no one camera sees all of, several may see between them."""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.reconstruct import _kernels_box as box
+from elbowroom.reconstruct import _kernels_pyramid as pyramid
+from elbowroom.reconstruct._kernels_pixel import PIXEL_FLOATS, settle_word
+from elbowroom.reconstruct.free_space import FreeSpace, Source
+from elbowroom.reconstruct.images import Image, RoomImages
+from elbowroom.reconstruct.views import layout_of, texels_of
+
+PARTS = 4
+"""Along each axis a voxel is cut into so many parts: 64 in all, the bits of one word."""
+SPARE_PX = 6
+"""Of an image, so many pixels around those that meet the voxel are cut out as well: more than filters reach."""
+NEAREST_M = 1e-3
+"""A camera whose plane comes as near to the voxel as this is not asked [m]."""
+STEPS = np.stack(np.meshgrid(*[range(PARTS)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+"""From the first part to each, in parts, in the order of bits."""
+
+
+def is_free_in_parts(space: FreeSpace, index: tuple[int, int, int]) -> bool:
+    """Whether each of 64 parts of a voxel is seen through by some camera, where nobody disputes the voxel.
+
+    A part is seen through by the pixel test, as a voxel is. Who disputes a part disputes the voxel: so each part is
+    free by the rule `three`. An object that touches the voxel touches a part of it, so this frees nothing that smaller
+    voxels would not. Less evidence leaves fewer parts free, never more.
+
+    Args:
+        space: of detail `pixel` and rule `three`, with the frames it was made of (`FreeSpace.source`); else the
+            answer is no.
+        index: of the voxel, (i, j, k); unseen and not disputed.
+    """
+    source = space.source
+    if source is None or source.detail != "pixel" or source.rule != "three":
+        return False
+    edge = space.grid.voxel_size_m / PARTS
+    first = space.grid.lower_m + np.array(index) * space.grid.voxel_size_m + edge / 2
+    in_cameras = _in_cameras(source.images.cameras, first + STEPS * edge)
+    maybe = _centres_seen(source.images, in_cameras)
+    # first the camera that may see most
+    rows = np.argsort(-maybe.sum(axis=1), kind="stable")
+    seen = np.zeros(len(STEPS), dtype=np.bool_)
+    for position, row in enumerate(rows):
+        if not (seen | maybe[rows[position:]].any(axis=0)).all():
+            return False
+        seen |= _parts_seen(space.grid, source, row, first, edge, in_cameras[row])
+        if seen.all():
+            return True
+    return False
+
+
+def _in_cameras(cameras: tuple[DepthCamera, ...], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points in the axes of each camera, shape (cameras, 3, points) [m]."""
+    poses = _camera_from_world(cameras)
+    return poses[:, :3, :3] @ points.T + poses[:, :3, 3:]
+
+
+@lru_cache(maxsize=8)
+def _camera_from_world(cameras: tuple[DepthCamera, ...]) -> NDArray[np.float64]:
+    return np.array([camera.camera_from_world for camera in cameras]).reshape(-1, 4, 4)
+
+
+@lru_cache(maxsize=8)
+def _lenses(cameras: tuple[DepthCamera, ...]) -> NDArray[np.float64]:
+    """fx, fy, cx, cy, width and height of each camera, shape (cameras, 6, 1) [px]."""
+    lenses = [(c.intrinsics, c.width, c.height) for c in cameras]
+    return np.array([(k.fx, k.fy, k.cx, k.cy, w, h) for k, w, h in lenses]).reshape(-1, 6, 1)
+
+
+def _centres_seen(images: RoomImages, in_cameras: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """By camera and part, whether the pixel at the part's centre measured farther, shape (cameras, parts).
+
+    A camera sees through no part at whose centre it does not.
+    """
+    x, y, z = np.moveaxis(in_cameras, 1, 0)
+    fx, fy, cx, cy, width, height = np.moveaxis(_lenses(images.cameras), 1, 0)
+    depth = np.where(z > NEAREST_M, z, np.inf)
+    u, v = np.rint(fx * x / depth + cx), np.rint(fy * y / depth + cy)
+    inside = (z > NEAREST_M) & (u >= 0) & (u < width) & (v >= 0) & (v < height)
+    column, line = u.astype(np.intp), v.astype(np.intp)
+    away = np.linalg.norm(in_cameras, axis=1)
+    seen = np.zeros(z.shape, dtype=np.bool_)
+    for row in np.flatnonzero(inside.any(axis=1)):
+        camera, here = images.cameras[row], inside[row]
+        if camera.name in images.least_m:
+            far = z[row, here] if camera.depth_kind == "planar" else away[row, here]
+            seen[row, here] = images.least_m[camera.name][line[row, here], column[row, here]] > far
+    return seen
+
+
+def _parts_seen(
+    grid: VoxelGrid,
+    source: Source,
+    row: int,
+    first: NDArray[np.float64],
+    edge: float,
+    in_camera: NDArray[np.float64],
+) -> NDArray[np.bool_]:
+    """Which parts one camera sees through, shape (parts,).
+
+    Args:
+        grid, source: of the space.
+        row: of the camera.
+        first: centre of the first part, world frame [m].
+        edge: of a part [m].
+        in_camera: centres of all parts in its axes, shape (3, parts) [m].
+    """
+    camera = source.images.cameras[row]
+    if in_camera[2].min() <= 2 * edge + NEAREST_M:
+        return np.zeros(len(STEPS), dtype=np.bool_)
+    rows, columns = _window(camera, source, edge, in_camera)
+    numbers = layout_of(grid, source.images.cameras, source.margin).numbers[row : row + 1].copy()
+    numbers[0, box.LENS + 2] -= columns.start
+    numbers[0, box.LENS + 3] -= rows.start
+    numbers[0, box.SIZE : box.SIZE + 2] = columns.stop - columns.start, rows.stop - rows.start
+    turn = numbers[0, box.TURN : box.TURN + 12].reshape(4, 3)
+    turn[0] += turn[1] * columns.start + turn[2] * rows.start
+
+    def cut_out(image: Image) -> Image:
+        return np.ascontiguousarray(image[rows, columns])
+
+    model = source.model_depth.get(camera.name)
+    trust = np.empty((rows.stop - rows.start, columns.stop - columns.start), dtype=np.uint32)
+    doubt = np.empty_like(trust)
+    texels_of(
+        camera,
+        numbers[0],
+        cut_out(source.images.least_m[camera.name]),
+        cut_out(source.images.greatest_m[camera.name]),
+        None if model is None else cut_out(model),
+        trust,
+        doubt,
+    )
+    words = settle_word(
+        numbers,
+        0,
+        trust.reshape(-1),
+        doubt.reshape(-1),
+        0,
+        _tiles(trust),
+        _tiles(doubt),
+        0,
+        box.ALL,
+        *first,
+        edge,
+        np.empty(PIXEL_FLOATS),
+    )
+    return np.unpackbits(np.array(words[:1]).view(np.uint8), bitorder="little").view(np.bool_)
+
+
+def _window(
+    camera: DepthCamera, source: Source, edge: float, in_camera: NDArray[np.float64]
+) -> tuple[slice, slice]:
+    """Rows and columns of an image in which parts may be seen that lie before the camera."""
+    k = camera.intrinsics
+    x, y, z = in_camera
+    nearest = z.min() - edge
+    # half a part beyond the outermost centres, as it looks where the voxel is nearest
+    beyond = (camera.margin or source.margin).lateral_px + SPARE_PX
+    return (
+        _span(k.fy * y / z + k.cy, beyond + k.fy * edge / nearest, camera.height),
+        _span(k.fx * x / z + k.cx, beyond + k.fx * edge / nearest, camera.width),
+    )
+
+
+def _span(at: NDArray[np.float64], beyond: float, size: int) -> slice:
+    """The pixels about some places along one side of an image."""
+    first, last = int(np.floor(at.min() - beyond)), int(np.ceil(at.max() + beyond))
+    return slice(max(first, 0), min(last, size - 1) + 1)
+
+
+def _tiles(texels: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """The least of 4 x 4 texels each, in one row."""
+    rows, columns = texels.shape
+    tiles = np.empty((-(-rows // 4), -(-columns // 4)), dtype=np.uint32)
+    pyramid.fill_tiles(texels, 0, rows, 0, columns, tiles)
+    return tiles.reshape(-1)
