@@ -1,5 +1,7 @@
 """The scale model: its motions beside the truth, and which voxels of their ways are in view."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,8 @@ import elbowroom as er
 from elbowroom.evaluate.due import due_table
 from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.task import Settings
-from elbowroom.geometry import looking_at
+from elbowroom.geometry import bits, looking_at
+from elbowroom.machine import body_words
 from elbowroom.simulate import Moment, Solid
 from elbowroom.simulate.machine_solids import link_solids
 from elbowroom.simulate.shapes import box, join
@@ -16,7 +19,8 @@ pytest.importorskip("coal", reason="coal is not installed; exact mesh distance i
 from elbowroom.evaluate.scale import PART, SENSORS, judge_pose
 from elbowroom.evaluate.scale_model import (
     PLACES_M,
-    VOXEL_M,
+    VOXEL_SIZES_M,
+    body_growth,
     kinect,
     model_grid,
     model_machine,
@@ -25,6 +29,8 @@ from elbowroom.evaluate.scale_model import (
 )
 from elbowroom.evaluate.way_view import WayView
 
+EDGE_M = 0.004
+EDGES_M = (EDGE_M, 0.006)
 JOINTS = {"long": 0.0, "larm": 0.0, "propeller": 0.0, "carc": 0.0}
 
 
@@ -35,12 +41,12 @@ def wall(lower, upper):
 def view_of(*solids):
     machine = model_machine()
     moment = Moment(0.0, (*solids, *link_solids(machine, JOINTS)), JOINTS)
-    return WayView(machine, moment, model_grid(VOXEL_M))
+    return WayView(machine, moment, model_grid(EDGE_M))
 
 
 @pytest.fixture(scope="module")
 def rows():
-    return judge_pose(1, VOXEL_M, False).rows
+    return judge_pose(1, EDGES_M, False).rows
 
 
 def test_no_motion_goes_farther_than_the_truth(rows):
@@ -51,17 +57,20 @@ def test_no_motion_goes_farther_than_the_truth(rows):
 
 def test_every_motion_is_judged_by_every_sensor_and_its_view_is_the_same_for_all(rows):
     motions = {row["motion"] for row in rows}
-    assert len(rows) == len(motions) * len(SENSORS)
-    for motion in motions:
-        assert len({(row["in_view"], row["travel_in_view"]) for row in rows if row["motion"] == motion}) == 1
+    assert len(rows) == len(motions) * len(SENSORS) * len(EDGES_M)
+    for motion, edge in itertools.product(motions, EDGES_M):
+        mine = [row for row in rows if (row["motion"], row["voxel_size_m"]) == (motion, edge)]
+        assert len({(row["in_view"], row["travel_in_view"]) for row in mine}) == 1
 
 
 def test_summary_adds_up_and_answers_what_was_due(rows):
     assert isinstance(PART, Part)
     summaries = PART.summary(rows)
-    assert [(row["noise"], row["losses"]) for row in summaries] == list(SENSORS)
+    of = ("voxel_size_m", "noise", "losses")
+    kinds = [(edge, *sensor) for edge in EDGES_M for sensor in SENSORS]
+    assert [tuple(row[name] for name in of) for row in summaries] == kinds
     for row in summaries:
-        mine = [r for r in rows if (r["noise"], r["losses"]) == (row["noise"], row["losses"])]
+        mine = [r for r in rows if all(r[name] == row[name] for name in of)]
         assert row["motions"] == len(mine)
         assert row["in_view"] == sum(r["in_view"] for r in mine)
         assert row["worst_short_mm"] == max(r["short_mm"] for r in mine)
@@ -76,10 +85,10 @@ def test_a_pose_is_the_same_each_time_and_its_motions_reach_five_braking_distanc
     assert all(0 < contact.travel < motion.looked_at for motion, contact in met.items())
 
 
-def test_tasks_are_one_for_each_pose_and_take_a_voxel_size_at_full_scale():
-    tasks = PART.tasks(Settings(voxel_sizes_m=(0.05,)))
+def test_tasks_are_one_for_each_pose_and_take_voxel_sizes_at_full_scale():
+    tasks = PART.tasks(Settings(voxel_sizes_m=(0.05, 0.02)))
     assert len({task.name for task in tasks}) == len(tasks)
-    assert all(task.arguments["voxel_size_m"] == pytest.approx(0.01) for task in tasks)
+    assert all(task.arguments["voxel_sizes_m"] == pytest.approx([0.01, 0.004]) for task in tasks)
 
 
 def test_nothing_hides_a_voxel_in_the_open_and_a_wall_hides_what_lies_behind_it():
@@ -134,3 +143,16 @@ def test_more_cameras_never_see_less_of_a_way_and_none_see_nothing():
     cameras = [kinect(str(n), place, False) for n, place in enumerate(PLACES_M)]
     travels = [view.travel_in_view(way, cameras[:count], 0.1) for count in range(len(cameras) + 1)]
     assert travels == sorted(travels) and travels[0] == way.travel.min() and travels[-1] <= 0.1
+
+
+def test_the_body_takes_the_same_space_whatever_the_voxels_and_reaches_no_farther():
+    # turned against the voxels, or faces along them count whole layers
+    joints, space = model_pose(5)[0], {}
+    assert body_growth(EDGE_M) == pytest.approx(EDGE_M / 2)
+    for edge in VOXEL_SIZES_M:
+        assert body_growth(edge) >= edge / 2
+        assert body_growth(edge) + np.sqrt(3) * edge <= body_growth(EDGE_M) + np.sqrt(3) * EDGE_M + 1e-9
+        grid = model_grid(edge)
+        body = body_words(model_machine(), joints, grid, body_growth(edge))
+        space[edge] = bits.unpack(body, grid).sum() * edge**3
+    assert all(volume == pytest.approx(space[EDGE_M], rel=0.01) for volume in space.values())

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from elbowroom.errors import MachineError
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.machine import body_words
 from elbowroom.motion import check_motions, joint_motions
@@ -179,3 +180,27 @@ def test_the_arm_alone_may_move(arm, kind):
     assert space.free[body].all()
     nods = check_motions(space, arm, HOME, joint_motions(arm, {"slide": 0.1, "turn": 0.2, "nod": 0.2}, 0.2))
     assert all(verdict.free_travel > 0 for verdict in nods)
+
+
+@pytest.mark.parametrize("growth_m", [0.03, 0.05, 0.12])
+def test_the_body_is_taken_out_by_the_growth_that_is_given_but_for_what_else_was_seen_there(arm, growth_m):
+    grid = machines.room(0.1)
+    cameras = ring(grid, 6)
+    body = bits.unpack(body_words(arm, HOME, grid, growth_m), grid)
+    frames = [scenes.frame_of(camera, BODY) for camera in cameras]
+    space = reconstruct(grid, cameras, frames, machine=arm, joints=HOME, body_growth_m=growth_m)
+    np.testing.assert_array_equal(bits.unpack(space.body_words, grid), body)
+    # a hand 5 cm beside the arm
+    hand = np.array([0.33, 0.2, 0.5, 0.1])
+    scene = scenes.Scene(balls=np.vstack([BODY.balls, hand]), boxes=BODY.boxes)
+    frames = [scenes.frame_of(camera, scene) for camera in cameras]
+    space = reconstruct(grid, cameras, frames, machine=arm, joints=HOME, body_growth_m=growth_m)
+    touched = machines.touched_by_ball(grid, hand[:3], hand[3])
+    assert not (space.free & touched).any()
+    assert (body & touched).any() == (growth_m == 0.12)
+
+
+def test_a_growth_below_a_quarter_voxel_is_refused(arm):
+    grid = machines.room(0.1)
+    with pytest.raises(MachineError, match=r"growth_m is 0\.02"):
+        reconstruct(grid, ring(grid), [], machine=arm, joints=HOME, body_growth_m=0.02)

@@ -92,7 +92,8 @@ def _calibration(rows: Sequence[Row]) -> list[tuple[str, ...]]:
 def _scale(rows: Sequence[Row]) -> list[tuple[str, ...]]:
     lines = []
     summaries = [r for r in rows if r.get("kind") == "summary" and r.get("part") == "scale"]
-    for row in [r for r in summaries if r["noise"] and not r["losses"]]:
+    finest = min((r["voxel_size_m"] for r in summaries), default=0.0)
+    for row in [r for r in summaries if r["noise"] and not r["losses"] and r["voxel_size_m"] == finest]:
         name = f"scale model, noise: more than the truth, of {row['motions']}"
         lines.append(_at_most(name, "", 0, row["more_than_truth"]))
         for key, most in (("median", 5), ("worst", 12)):

@@ -7,21 +7,26 @@ in millimetres of the model. The thesis restricts its scene to what four Kinects
 says, by exact rays and not by verdicts, whether its way is *in view*: each voxel that the moving links come to touch,
 up to two voxels before the contact, is wholly seen by one camera, but for what the body covers. Where it is not, free
 travel has to end at the first voxel that no camera sees all of; how much earlier it ends is *short of the view*. The
-cameras were placed for these motions by the same rays. *Noise* is sigma(z) of Kinect v1; *and losses* adds to it what
-the simulated time-of-flight sensors suffer: mixed pixels at edges, and pixels without a return.
+cameras were placed for these motions by the same rays (`benchmarks/scale_cameras.py`), for the smaller voxels. With
+these the body is grown by more than half a voxel, so that it takes the same space as with the larger ones. *Noise* is
+sigma(z) of Kinect v1; *and losses* adds to it what the simulated time-of-flight sensors suffer: mixed pixels at edges,
+and pixels without a return.
 """
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.evaluate.exact import Contact, load_coal
 from elbowroom.evaluate.part import Part
 from elbowroom.evaluate.scale_model import (
     FACTOR,
+    PICTURE_VOXEL_M,
     POSES,
-    VOXEL_M,
+    VOXEL_SIZES_M,
+    body_growth,
     coloured_picture,
     kinects,
     model_grid,
@@ -32,9 +37,9 @@ from elbowroom.evaluate.scale_model import (
 from elbowroom.evaluate.scene import DECIMALS, SAME, WELL_KNOWN
 from elbowroom.evaluate.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.way_view import WayView
-from elbowroom.geometry import DepthCamera
-from elbowroom.motion import Verdict, blocks_in_reach, check_motions
-from elbowroom.reconstruct import reconstruct
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.motion import Motion, Verdict, blocks_in_reach, check_motions
+from elbowroom.reconstruct import FreeSpace, reconstruct
 from elbowroom.sensing import DepthFrame
 from elbowroom.simulate import Moment, render
 from elbowroom.simulate.machine_solids import link_solids
@@ -59,41 +64,42 @@ def tasks(settings: Settings) -> list[Task]:
         ElbowroomError: coal is not installed.
     """
     load_coal()
-    edge = settings.voxel_sizes_m[0] * FACTOR if settings.voxel_sizes_m else VOXEL_M
+    edges = [FACTOR * edge for edge in settings.voxel_sizes_m or ()] or list(VOXEL_SIZES_M)
     return [
-        Task("scale", f"pose{pose}", judge_pose, {"pose": pose, "voxel_size_m": edge, "picture": pose == 0})
+        Task("scale", f"pose{pose}", judge_pose, {"pose": pose, "voxel_sizes_m": edges, "picture": pose == 0})
         for pose in range(POSES)
     ]
 
 
-def judge_pose(pose: int, voxel_size_m: float, picture: bool) -> Outcome:
-    """The motions from one pose that truly end at an object, by each kind of sensor."""
-    machine, grid = model_machine(), model_grid(voxel_size_m)
+def judge_pose(pose: int, voxel_sizes_m: Sequence[float], picture: bool) -> Outcome:
+    """The motions from one pose that truly end at an object, by each size of voxel and kind of sensor."""
     joints, met = model_pose(pose)
-    motions = list(met)
-    moment = Moment(1.0, model_solids() + link_solids(machine, joints), joints)
-    view = WayView(machine, moment, grid)
+    moment = Moment(1.0, model_solids() + link_solids(model_machine(), joints), joints)
+    rows = [row for edge in voxel_sizes_m for row in _judged(pose, met, moment, edge)]
+    drawn: dict[str, bytes] = {}
+    if picture:
+        drawn["scale-model"] = coloured_picture(
+            _space(model_grid(PICTURE_VOXEL_M), moment, True, True, pose, None), moment
+        )
+    return Outcome(rows, drawn)
+
+
+def _judged(
+    pose: int, met: Mapping[Motion, Contact], moment: Moment, voxel_size_m: float
+) -> list[dict[str, Any]]:
+    machine, grid, motions = model_machine(), model_grid(voxel_size_m), list(met)
+    view = WayView(machine, moment, grid, body_growth(voxel_size_m))
     in_view = {
         motion: view.travel_in_view(view.way(motion, contact.travel), kinects(False), contact.travel)
         for motion, contact in met.items()
     }
-    # the picture wants all of the grid
-    focus = None if picture else blocks_in_reach(grid, machine, joints, motions)
+    focus = blocks_in_reach(grid, machine, moment.joints, motions)
     rows: list[dict[str, Any]] = []
-    drawn: dict[str, bytes] = {}
     for noise, losses in SENSORS:
-        views = kinects(noise)
-        space = reconstruct(
-            grid,
-            views,
-            _frames(views, moment, losses, pose),
-            machine=machine,
-            joints=joints,
-            margin=WELL_KNOWN,
-            explain_tolerance_m=EXPLAIN_M,
-            focus=focus,
-        )
-        for motion, verdict in zip(motions, check_motions(space, machine, joints, motions), strict=True):
+        space = _space(grid, moment, noise, losses, pose, focus)
+        for motion, verdict in zip(
+            motions, check_motions(space, machine, moment.joints, motions), strict=True
+        ):
             rows.append(
                 {
                     "kind": "travel",
@@ -109,15 +115,29 @@ def judge_pose(pose: int, voxel_size_m: float, picture: bool) -> Outcome:
                     **_compared(met[motion], verdict, in_view[motion], voxel_size_m),
                 }
             )
-        if picture and losses:
-            drawn["scale-model"] = coloured_picture(space, moment)
-    return Outcome(rows, drawn)
+    return rows
 
 
-def _frames(views: Sequence[DepthCamera], moment: Moment, losses: bool, seed: int) -> list[DepthFrame]:
-    """Exact images, with the noise of each camera's model, or with all that `render` does to them."""
-    if losses:
-        return render(views, moment, seed=seed)
+def _space(
+    grid: VoxelGrid, moment: Moment, noise: bool, losses: bool, seed: int, focus: NDArray[np.bool_] | None
+) -> FreeSpace:
+    """What four Kinects see to be free at a moment; focus None: in all of the grid."""
+    views = kinects(noise)
+    return reconstruct(
+        grid,
+        views,
+        render(views, moment, seed=seed) if losses else noisy_frames(views, moment, seed),
+        machine=model_machine(),
+        joints=moment.joints,
+        margin=WELL_KNOWN,
+        explain_tolerance_m=EXPLAIN_M,
+        body_growth_m=body_growth(grid.voxel_size_m),
+        focus=focus,
+    )
+
+
+def noisy_frames(views: Sequence[DepthCamera], moment: Moment, seed: int) -> list[DepthFrame]:
+    """Exact images, with the noise of each camera's model and none of what else `render` does to them."""
     frames = []
     for number, (camera, frame) in enumerate(zip(views, render(views, moment, noise=False), strict=True)):
         depth = frame.depth_m.astype(np.float64)
@@ -150,10 +170,12 @@ def _compared(
 
 
 def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """By sensor: travel beyond the truth, shortfall in millimetres of the model, of all motions and by view."""
+    """By voxel and sensor: travel beyond the truth, shortfall in millimetres of the model, by view and of all."""
     result = []
-    for noise, losses in dict.fromkeys((row["noise"], row["losses"]) for row in rows):
-        mine = [row for row in rows if (row["noise"], row["losses"]) == (noise, losses)]
+    kinds = dict.fromkeys((row["voxel_size_m"], row["noise"], row["losses"]) for row in rows)
+    for kind in sorted(kinds):
+        edge, noise, losses = kind
+        mine = [row for row in rows if (row["voxel_size_m"], row["noise"], row["losses"]) == kind]
         view = [row for row in mine if row["in_view"]]
         hidden = [row for row in mine if not row["in_view"]]
         result.append(
@@ -161,7 +183,7 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
                 "kind": "summary",
                 "noise": noise,
                 "losses": losses,
-                "voxel_size_m": mine[0]["voxel_size_m"],
+                "voxel_size_m": edge,
                 "motions": len(mine),
                 "in_view": len(view),
                 "more_than_truth": sum(row["more_than_truth"] for row in mine),

@@ -15,9 +15,10 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
-from elbowroom.machine import Machine, body_samples, body_words
+from elbowroom.machine import Machine, body_words
 from elbowroom.motion import Motion
 from elbowroom.simulate import Moment, true_occupancy
+from elbowroom.simulate._kernels import touch_surface
 
 PLACES = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)] + [[0, 0, 0]]) * 0.49
 """Of a voxel, where it is looked at, in edges from its centre: just within its corners, and its centre."""
@@ -25,8 +26,12 @@ SPARE_PX = 0.5
 """So much farther out, across the ray, a corner has to be in view: a pixel looks half a pixel to each side."""
 BEFORE_M = 2e-4
 """What is hit this little before a place hides it no more than rounding does [m]."""
-STEP_IN_VOXELS = 0.5
-"""So far the fastest point of the moving links goes between two looks at where they are."""
+STEP_IN_VOXELS = 1 / 8
+"""At most so far any point of the moving links goes between two looks at where they are."""
+PIECES = 64
+"""In so many pieces the length of a point's path is measured; voxels are grown by what they then move in a step."""
+ROUNDING_M = 1e-9
+"""By this much more voxels are grown, so that rounding misses none [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,11 +54,14 @@ class WayView:
         machine: whose motions.
         moment: its joints, its links and all other solids.
         grid: the voxels.
+        body_growth_m: by how much the body is grown that covers voxels [m]; None: half a voxel.
     """
 
-    def __init__(self, machine: Machine, moment: Moment, grid: VoxelGrid) -> None:
+    def __init__(
+        self, machine: Machine, moment: Moment, grid: VoxelGrid, body_growth_m: float | None = None
+    ) -> None:
         self._machine, self._joints, self._grid = machine, moment.joints, grid
-        self._body = bits.unpack(body_words(machine, moment.joints, grid), grid)
+        self._body = bits.unpack(body_words(machine, moment.joints, grid, body_growth_m), grid)
         self._occupied = true_occupancy(grid, moment).occupied
         self._scene = EmbreeScene()
         firsts = np.cumsum([0] + [len(solid.mesh.vertices) for solid in moment.solids])
@@ -66,45 +74,42 @@ class WayView:
         )
 
     def way(self, motion: Motion, length: float) -> Way:
-        """The voxels of a motion's way.
+        """The voxels of a motion's way: none is missed, and none lies beside it by more than a sixteenth of a voxel.
 
         Args:
             motion: joint and direction.
             length: how far it is followed [m or rad along the joint]; below zero there is no way.
         """
         machine, grid = self._machine, self._grid
-        samples = body_samples(machine, grid.voxel_size_m)
-        rows = [
-            row for row, link in enumerate(machine.links) if link.name in machine.moved_links(motion.joint)
-        ]
-        moving = np.isin(samples.point_link, rows)
-        points, link = samples.points[moving].astype(np.float64), samples.point_link[moving]
-        ends = [self._places(motion, travel, points, link) for travel in (0.0, max(length, 0.0))]
-        moved_m = float(np.linalg.norm(ends[1] - ends[0], axis=1).max())
-        steps = int(np.ceil(moved_m / (STEP_IN_VOXELS * grid.voxel_size_m))) + 1 if length > 0 else 0
-        seen_before = self._body.copy()
-        centres: list[NDArray[np.float64]] = []
-        travels: list[NDArray[np.float64]] = []
-        for travel in np.linspace(0.0, length, steps).tolist():
-            moved = self._places(motion, travel, points, link)
-            index = np.floor((moved - grid.lower_m) / grid.voxel_size_m).astype(np.int64)
-            index = index[((index >= 0) & (index < grid.shape)).all(axis=1)]
-            fresh = np.unique(index[~seen_before[tuple(index.T)]], axis=0)
-            seen_before[tuple(fresh.T)] = True
-            centres.append(grid.lower_m + (fresh + 0.5) * grid.voxel_size_m)
-            travels.append(np.full(len(fresh), travel))
-        if not centres:
+        moving = set(machine.moved_links(motion.joint)) & set(machine.checked_links)
+        rows = [row for row, link in enumerate(machine.links) if link.name in moving]
+        if length <= 0 or not rows:
             return Way(np.empty((0, 3)), np.empty(0))
-        return Way(np.concatenate(centres), np.concatenate(travels))
+        triangles = np.concatenate([machine.links[row].triangles for row in rows])
+        link = np.repeat(rows, [len(machine.links[row].faces) for row in rows])
 
-    def _places(
-        self, motion: Motion, travel: float, points: NDArray[np.float64], link: NDArray[np.int32]
-    ) -> NDArray[np.float64]:
-        """Points of links, shape (n, 3), after some travel, world frame [m]."""
-        here = {**self._joints, motion.joint: self._joints[motion.joint] + motion.direction * travel}
-        pose = self._machine.world_from_link_array(self._machine.positions(here)[None])[0, link]
-        moved: NDArray[np.float64] = np.einsum("nij,nj->ni", pose[:, :3, :3], points) + pose[:, :3, 3]
-        return moved
+        def placed(travel: float) -> NDArray[np.float64]:
+            here = {**self._joints, motion.joint: self._joints[motion.joint] + motion.direction * travel}
+            pose = machine.world_from_link_array(machine.positions(here)[None])[0, link]
+            moved: NDArray[np.float64] = np.einsum("nij,nkj->nki", pose[:, :3, :3], triangles)
+            return moved + pose[:, None, :3, 3]
+
+        def moved_m(travel: float) -> float:
+            return float(np.linalg.norm(placed(travel) - placed(0.0), axis=2).max())
+
+        # in pieces, since a chord is shorter than its arc
+        path_m = PIECES * moved_m(length / PIECES)
+        steps = int(np.ceil(path_m / (STEP_IN_VOXELS * grid.voxel_size_m)))
+        step = length / steps
+        # each step is looked at in its middle, with voxels grown by how far anything moves in half of it
+        grown_m = moved_m(step / 2) + ROUNDING_M
+        touched = self._body.astype(np.uint16)
+        for number in range(steps):
+            triangles_now = placed((number + 0.5) * step)
+            touch_surface(triangles_now, grid.lower_m, grid.voxel_size_m, -grown_m, touched, number + 2)
+        index = np.argwhere(touched > 1)
+        first = touched[tuple(index.T)].astype(np.float64) - 2
+        return Way(grid.lower_m + (index + 0.5) * grid.voxel_size_m, first * step)
 
     def seen_by(self, camera: DepthCamera, centres: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Which voxels one camera sees all of: in its image and range, nothing in them or before them.

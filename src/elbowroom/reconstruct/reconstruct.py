@@ -33,6 +33,7 @@ def reconstruct(
     now_ns: int | None = None,
     max_age_ns: int | None = None,
     explain_tolerance_m: float = 0.01,
+    body_growth_m: float | None = None,
     focus: NDArray[np.bool_] | None = None,
     threads: int | None = None,
     timer: Timer | None = None,
@@ -53,13 +54,15 @@ def reconstruct(
         now_ns: the time now [ns, the clock of the frames]; needed for an age limit.
         max_age_ns: frames older than this are not used [ns]; None: no limit.
         explain_tolerance_m: how near to the machine's model a return counts as the machine, besides its noise [m].
+        body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: half a
+            voxel.
         focus: blocks of 4 voxels that are looked at, of `motion.blocks_in_reach`; all others stay unseen. None: all.
         threads: None: all cores. The result does not depend on it.
         timer: called with the name of each stage, returns a context manager around it; None: nobody measures.
 
     Raises:
         CameraError, FrameError: two frames of one camera, a frame of an unknown camera or of another size.
-        MachineError: joints that are unknown, missing or out of their limits.
+        MachineError: joints that are unknown, missing or out of their limits, or a growth below a quarter voxel.
         InputError: an unknown rule or detail, a machine without joints, an age limit without the time.
     """
     stage = timer or _untimed
@@ -83,6 +86,7 @@ def reconstruct(
                 tolerance_m=explain_tolerance_m,
                 grid=grid,
                 threads=threads,
+                growth_m=body_growth_m,
             )
         model_depth, unexplained = explained.model_depth, explained.unexplained_words
     with stage("carve"):
@@ -106,6 +110,7 @@ def reconstruct(
             margin=margin,
             machine=machine,
             joints=here,
+            body_growth_m=body_growth_m,
             source=Source(images, margin or Margin(), detail, rule, model_depth or {}),
             threads=threads,
         )

@@ -72,6 +72,7 @@ def resolve(
     margin: Margin | None = None,
     machine: Machine | None = None,
     joints: Mapping[str, float] | None = None,
+    body_growth_m: float | None = None,
     source: Source | None = None,
     threads: int | None = None,
 ) -> FreeSpace:
@@ -86,11 +87,14 @@ def resolve(
         rule: how cameras that disagree are decided between. Only `three` and `majority` are lawful.
         detail, margin: as the evidence was carved with; used for cameras that gave none.
         machine, joints: whose body to take out, and where it is; both None: the bare room.
+        body_growth_m: by how much the body is grown, at least a quarter voxel [m]; None: half a voxel. Evidence of
+            returns that the machine does not explain must have been looked for with the same growth.
         source: where the evidence comes from, for `FreeSpace.explain`.
         threads: None: all cores.
 
     Raises:
         InputError: an unknown rule, or a machine without joints.
+        MachineError: impossible joints, or a growth below a quarter voxel.
         EvidenceError: the rule needs counts and the evidence has none.
     """
     complete = needs_complete(rule)
@@ -107,7 +111,7 @@ def resolve(
     if machine is not None:
         if joints is None:
             raise InputError("resolve: a machine without joints; give its joint positions by name")
-        body = body_words(machine, joints, evidence.grid, threads=threads) & ~evidence.unexplained
+        body = body_words(machine, joints, evidence.grid, body_growth_m, threads) & ~evidence.unexplained
         free = free | body
     blocked = ~free & bits.inside(evidence.grid)
     surface: Words = (evidence.surface | evidence.unexplained) & blocked

@@ -7,15 +7,17 @@ from numba import njit
 
 
 @njit(cache=True, nogil=True)
-def touch_surface(triangles, lower, edge, shrink, touched):
-    """Marks each voxel whose open box a triangle meets.
+def touch_surface(triangles, lower, edge, shrink, touched, mark=1):
+    """Marks each voxel whose open box a triangle meets, if it is not marked yet.
 
     Args:
         triangles: shape (m, 3, 3), world frame [m].
         lower: least corner of the array's first voxel, shape (3,) [m].
         edge: edge of a voxel [m].
-        shrink: boxes are smaller by this on each side, so that a face on a boundary touches nothing [m].
-        touched: bool, shape (nx, ny, nz), written.
+        shrink: boxes are smaller by this on each side, so that a face on a boundary touches nothing; below zero
+            they are larger, by less than a voxel [m].
+        touched: bool or whole numbers, shape (nx, ny, nz), 0 where not marked; written.
+        mark: what is written.
     """
     half = 0.5 * edge - shrink
     size = touched.shape
@@ -78,7 +80,7 @@ def touch_surface(triangles, lower, edge, shrink, touched):
                         for corner in range(3):
                             corners[corner, axis] = triangles[t, corner, axis] - centre
                     if triangle_meets_box(corners, half):
-                        touched[at[0], at[1], at[2]] = True
+                        touched[at[0], at[1], at[2]] = mark
 
 
 @njit(cache=True, nogil=True)
