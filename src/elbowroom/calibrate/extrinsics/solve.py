@@ -10,8 +10,15 @@ from numpy.typing import NDArray
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.calibrated_camera import CalibratedCamera
-from elbowroom.calibrate.extrinsics.adjustment import Solution, State, adjust, camera_from_board
-from elbowroom.calibrate.extrinsics.anchor import Anchor, CameraAnchor, world_from_base
+from elbowroom.calibrate.extrinsics.adjustment import Solution, adjust, camera_from_board
+from elbowroom.calibrate.extrinsics.anchor import (
+    Anchor,
+    BoardAnchor,
+    CameraAnchor,
+    PointsAnchor,
+    world_from_base,
+)
+from elbowroom.calibrate.extrinsics.contradiction import require_points_agree
 from elbowroom.calibrate.extrinsics.disagreement import (
     require_board_size,
     require_still,
@@ -19,8 +26,10 @@ from elbowroom.calibrate.extrinsics.disagreement import (
     weak_points,
 )
 from elbowroom.calibrate.extrinsics.graph import first_solution, require_one_piece, shared_poses
+from elbowroom.calibrate.extrinsics.known_points import KnownPoints
 from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, corner_rows, seen_boards
 from elbowroom.calibrate.extrinsics.seen_plane import rays_of
+from elbowroom.calibrate.extrinsics.unknowns import State
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
 
@@ -41,6 +50,7 @@ class Extrinsics:
         seen: all views, in which residuals are.
         shared: how many poses each two cameras saw together.
         view_weight: of each view in the end; below one: it fits the others badly.
+        points_off_m: how far each point of known place is probably from where it was measured [m], by name.
     """
 
     cameras: tuple[CalibratedCamera, ...]
@@ -53,6 +63,7 @@ class Extrinsics:
     seen: tuple[SeenBoard, ...]
     shared: Mapping[tuple[str, str], int]
     view_weight: Array
+    points_off_m: Mapping[str, float]
 
     def depth_errors(self) -> dict[str, tuple[float, float]]:
         """Bias [m] and scale of those cameras whose depth reads wrong by more than chance at 1 m or at 4 m."""
@@ -111,10 +122,13 @@ def solve_extrinsics(
         {name: np.zeros(2) for name, own in by_camera.items() if any(one.plane is not None for one in own)},
     )
     progress(f"{len(named)} cameras and {len(state.boards)} poses together")
-    solution = adjust(named, seen, state, anchor)
+    fixed_by = KnownPoints(anchor, named) if isinstance(anchor, PointsAnchor) else anchor
+    solution = adjust(seen, state, fixed_by)
     require_still(seen, solution, corners)
     require_tilts(seen, solution)
-    return _found(named, before or named, by_camera, seen, solution, anchor)
+    if isinstance(fixed_by, KnownPoints):
+        require_points_agree(fixed_by, solution)
+    return _found(named, before or named, by_camera, seen, solution, fixed_by)
 
 
 def _require_once(views: Sequence[BoardView]) -> None:
@@ -143,7 +157,7 @@ def _found(
     by_camera: Mapping[str, Sequence[SeenBoard]],
     seen: Sequence[SeenBoard],
     solution: Solution,
-    anchor: Anchor,
+    fixed_by: BoardAnchor | CameraAnchor | KnownPoints,
 ) -> Extrinsics:
     shared = shared_poses(seen)
     found = []
@@ -153,7 +167,7 @@ def _found(
         for (a, b), count in shared.items():
             if name in (a, b):
                 common[b if a == name else a] += count
-        held = isinstance(anchor, CameraAnchor) and anchor.camera == name
+        held = isinstance(fixed_by, CameraAnchor) and fixed_by.camera == name
         sure = np.sqrt([np.trace(covariance[3:, 3:]), np.trace(covariance[:3, :3])])
         found.append(
             CalibratedCamera(
@@ -179,6 +193,9 @@ def _found(
         seen=tuple(seen),
         shared=shared,
         view_weight=solution.variances.view,
+        points_off_m=fixed_by.off_m(solution.state, solution.index)
+        if isinstance(fixed_by, KnownPoints)
+        else {},
     )
 
 
