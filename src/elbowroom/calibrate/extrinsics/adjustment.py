@@ -2,8 +2,8 @@
 
 Unknown are a motion of each camera and of each pose of the board on the right of its pose, and of each camera with
 depth a bias and a scale error of its depth, which a prior keeps small. The pose that defines the world does not move.
-Where points measured in the world fix it, they come last: what views scatter by does not depend on where the world is,
-so it is estimated with one camera held, and a wrong place cannot make views look bad. Then all moves, points with it.
+Where points measured in the world fix it, they come last, when views are settled with any one camera held: what these
+scatter by does not depend on where the world is, and a wrong place cannot make good views look bad.
 
 Each view comes down to nine numbers: of its corners the six that depend on poses (by a QR decomposition), and the
 three of its plane. What they scatter by is estimated with the poses (`variances.py`), and views that fit badly all the
@@ -58,21 +58,15 @@ class Solution:
         return self.covariance[at, at]
 
 
-def adjust(
-    seen: Sequence[SeenBoard], state: State, fixed_by: BoardAnchor | CameraAnchor | KnownPoints
-) -> Solution:
-    """Solves for all poses at once.
+def adjust(seen: Sequence[SeenBoard], state: State, held: BoardAnchor | CameraAnchor) -> Solution:
+    """Solves for all poses at once, and for what views scatter by.
 
     Args:
         seen: all views.
-        state: where to begin, in the world's frame.
-        fixed_by: what fixes the world.
-
-    Raises:
-        CalibrationError: a point of known place lies behind a camera that sees it.
+        state: where to begin.
+        held: what does not move.
     """
-    known = fixed_by if isinstance(fixed_by, KnownPoints) else None
-    index = Index(state, CameraAnchor(seen[0].view.camera) if isinstance(fixed_by, KnownPoints) else fixed_by)
+    index = Index(state, held)
     variances = Variances.before(list(state.cameras), len(seen), _within(seen))
     state = _solved(seen, state, index, variances)
     for number in range(ROUNDS):
@@ -91,10 +85,37 @@ def adjust(
         state = _solved(seen, state, index, variances)
         if number and float(np.abs(step).max()) < 1e-6:
             break
-    if known is not None:
-        _require_in_front(known, state)
-        index = Index(state, None)
-        state = _solved(seen, state, index, variances, known)
+    return _solution(seen, state, index, variances)
+
+
+def fixed_by_points(seen: Sequence[SeenBoard], solution: Solution, known: KnownPoints) -> Solution:
+    """Solves once more, with nothing held and points of known place in it.
+
+    Args:
+        seen: all views.
+        solution: by views alone, in the world's frame as nearly as may be.
+        known: the points.
+
+    Raises:
+        CalibrationError: a point lies behind a camera that sees it.
+    """
+    behind = known.behind(solution.state)
+    if behind is not None:
+        raise CalibrationError(
+            f"point {behind[0]}: lies behind camera {behind[1]}, which is said to see it; check its world_m and seen_px"
+        )
+    index = Index(solution.state, None)
+    state = _solved(seen, solution.state, index, solution.variances, known)
+    return _solution(seen, state, index, solution.variances, known)
+
+
+def _solution(
+    seen: Sequence[SeenBoard],
+    state: State,
+    index: Index,
+    variances: Variances,
+    known: KnownPoints | None = None,
+) -> Solution:
     prior, pull, _ = _prior(state, index, known)
     normal, _, _ = _summed([_rows(one, state, index) for one in seen], variances, prior, pull)
     return Solution(state, _inverse(normal), index, variances)
@@ -141,14 +162,6 @@ def _solved(
         if done:
             break
     return state
-
-
-def _require_in_front(known: KnownPoints, state: State) -> None:
-    behind = known.behind(state)
-    if behind is not None:
-        raise CalibrationError(
-            f"point {behind[0]}: lies behind camera {behind[1]}, which is said to see it; check its world_m and seen_px"
-        )
 
 
 def _all_in_front(seen: Sequence[SeenBoard], state: State, known: KnownPoints | None) -> bool:

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.calibrated_camera import CalibratedCamera
-from elbowroom.calibrate.extrinsics.adjustment import Solution, adjust, camera_from_board
+from elbowroom.calibrate.extrinsics.adjustment import Solution, adjust, camera_from_board, fixed_by_points
 from elbowroom.calibrate.extrinsics.anchor import (
     Anchor,
-    BoardAnchor,
     CameraAnchor,
     PointsAnchor,
     world_from_base,
@@ -122,13 +121,15 @@ def solve_extrinsics(
         {name: np.zeros(2) for name, own in by_camera.items() if any(one.plane is not None for one in own)},
     )
     progress(f"{len(named)} cameras and {len(state.boards)} poses together")
-    fixed_by = KnownPoints(anchor, named) if isinstance(anchor, PointsAnchor) else anchor
-    solution = adjust(seen, state, fixed_by)
+    known = KnownPoints(anchor, named) if isinstance(anchor, PointsAnchor) else None
+    held = CameraAnchor(seen[0].view.camera) if isinstance(anchor, PointsAnchor) else anchor
+    solution = adjust(seen, state, held)
     require_still(seen, solution, corners)
     require_tilts(seen, solution)
-    if isinstance(fixed_by, KnownPoints):
-        require_points_agree(fixed_by, solution)
-    return _found(named, before or named, by_camera, seen, solution, fixed_by)
+    if known is not None:
+        solution = fixed_by_points(seen, solution, known)
+        require_points_agree(known, solution)
+    return _found(named, before or named, by_camera, seen, solution, known)
 
 
 def _require_once(views: Sequence[BoardView]) -> None:
@@ -157,7 +158,7 @@ def _found(
     by_camera: Mapping[str, Sequence[SeenBoard]],
     seen: Sequence[SeenBoard],
     solution: Solution,
-    fixed_by: BoardAnchor | CameraAnchor | KnownPoints,
+    known: KnownPoints | None,
 ) -> Extrinsics:
     shared = shared_poses(seen)
     found = []
@@ -167,7 +168,6 @@ def _found(
         for (a, b), count in shared.items():
             if name in (a, b):
                 common[b if a == name else a] += count
-        held = isinstance(fixed_by, CameraAnchor) and fixed_by.camera == name
         sure = np.sqrt([np.trace(covariance[3:, 3:]), np.trace(covariance[:3, :3])])
         found.append(
             CalibratedCamera(
@@ -177,7 +177,7 @@ def _found(
                 residuals_px=np.concatenate([corner_distances(one, solution.state) for one in own]),
                 residuals_m=np.concatenate([depth_distances(one, solution.state) for one in own]),
                 notes=()
-                if held
+                if name not in solution.index.cameras
                 else weak_points(name, own, common, float(sure[0]), float(np.degrees(sure[1]))),
             )
         )
@@ -193,9 +193,7 @@ def _found(
         seen=tuple(seen),
         shared=shared,
         view_weight=solution.variances.view,
-        points_off_m=fixed_by.off_m(solution.state, solution.index)
-        if isinstance(fixed_by, KnownPoints)
-        else {},
+        points_off_m={} if known is None else known.off_m(solution.state, solution.index),
     )
 
 
