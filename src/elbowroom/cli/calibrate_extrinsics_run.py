@@ -51,11 +51,13 @@ def run_extrinsics(
         )
         rows = write_result(site, found.cameras, cameras, out, "extrinsics", add)
         add(summary_row(site, found, seen, steps.seconds))
-    troubles = [str(trouble) for trouble in seen.troubles]
+    troubles = [str(trouble) for trouble in (*seen.troubles, *found.left_out)]
     print(
         f"views     {len(found.seen)} of {len(found.seen) + len(troubles)} images, "
         f"{len(found.world_from_board)} poses of the board"
     )
+    for trouble in found.left_out:
+        print(f"left out  {trouble}")
     if found.points_off_m:
         off_m = np.array(list(found.points_off_m.values()))
         print(
@@ -113,8 +115,8 @@ def summary_row(site: Site, found: Extrinsics, seen: Sightings, seconds: dict[st
         "cameras": len(found.cameras),
         "poses": len(found.world_from_board),
         "views": len(found.seen),
-        "images_without_view": len(seen.troubles),
-        "troubles": [str(trouble) for trouble in seen.troubles],
+        "images_without_view": len(seen.troubles) + len(found.left_out),
+        "troubles": [str(trouble) for trouble in (*seen.troubles, *found.left_out)],
         "points_off_m": dict(found.points_off_m),
         "seconds": seconds,
     }

@@ -41,7 +41,7 @@ def simulate(
         typer.Option(
             min=0,
             help="So many of the poses are on stands, where corners were measured to 2 mm, which fixes the world; 0: "
-            "one is on the floor. Default: 0; 64x48 images, which show no board on the floor: 3.",
+            "one is on the floor. Default: 0; 64x48 images, which show no board on the floor: 10.",
         ),
     ] = None,
     wrong_deg: Annotated[float, typer.Option(help="The site's poses are turned by so much [deg].")] = 3.0,

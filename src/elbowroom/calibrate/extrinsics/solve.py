@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.trouble import Fault, Trouble
 from elbowroom.calibrate.calibrated_camera import CalibratedCamera
 from elbowroom.calibrate.extrinsics.adjustment import Solution, adjust, camera_from_board, fixed_by_points
 from elbowroom.calibrate.extrinsics.anchor import (
@@ -26,6 +27,7 @@ from elbowroom.calibrate.extrinsics.disagreement import (
 )
 from elbowroom.calibrate.extrinsics.graph import first_solution, require_one_piece, shared_poses
 from elbowroom.calibrate.extrinsics.known_points import KnownPoints
+from elbowroom.calibrate.extrinsics.misread_backs import misread_backs
 from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, corner_rows, seen_boards
 from elbowroom.calibrate.extrinsics.seen_plane import rays_of
 from elbowroom.calibrate.extrinsics.unknowns import State
@@ -47,6 +49,7 @@ class Extrinsics:
         corner_factor, plane_factor: variance factors by camera: how many times the variance of what was seen is that
             which its sigmas promise.
         seen: all views, in which residuals are.
+        left_out: views that were not used, and why.
         shared: how many poses each two cameras saw together.
         view_weight: of each view in the end; below one: it fits the others badly.
         points_off_m: how far each point of known place is probably from where it was measured [m], by name.
@@ -60,6 +63,7 @@ class Extrinsics:
     corner_factor: Mapping[str, float]
     plane_factor: Mapping[str, float]
     seen: tuple[SeenBoard, ...]
+    left_out: tuple[Trouble, ...]
     shared: Mapping[tuple[str, str], int]
     view_weight: Array
     points_off_m: Mapping[str, float]
@@ -105,20 +109,21 @@ def solve_extrinsics(
     _require_once(views)
     progress("each view by itself")
     seen = seen_boards(named, board, views)
-    by_camera: dict[str, list[SeenBoard]] = {name: [] for name in named}
-    for one in seen:
-        by_camera[one.view.camera].append(one)
-    require_one_piece(list(named), seen)
-    _require_views(by_camera, least_views)
+    _require_views(named, seen, least_views)
     require_board_size(board, seen)
     progress("first solution")
     corners = board.corners_in_board
     base_from_camera, base_from_board = first_solution(list(named), seen, corners)
+    backs = misread_backs(seen, base_from_camera, base_from_board)
+    if backs:
+        seen = [one for one in seen if one not in backs]
+        _require_views(named, seen, least_views)
+        base_from_camera, base_from_board = first_solution(list(named), seen, corners)
     world = world_from_base(anchor, named, base_from_camera, base_from_board)
     state = State(
         {name: world @ base_from_camera[name] for name in named},
         {pose: world @ at for pose, at in base_from_board.items()},
-        {name: np.zeros(2) for name, own in by_camera.items() if any(one.plane is not None for one in own)},
+        {name: np.zeros(2) for name in named if any(one.plane is not None for one in _of(name, seen))},
     )
     progress(f"{len(named)} cameras and {len(state.boards)} poses together")
     known = KnownPoints(anchor, named) if isinstance(anchor, PointsAnchor) else None
@@ -129,7 +134,12 @@ def solve_extrinsics(
     if known is not None:
         solution = fixed_by_points(seen, solution, known)
         require_points_agree(known, solution)
-    return _found(named, before or named, by_camera, seen, solution, known)
+    left_out = tuple(Trouble(one.view.camera, one.view.pose, Fault.BACK_AS_FACE) for one in backs)
+    return _found(named, before or named, seen, left_out, solution, known)
+
+
+def _of(camera: str, seen: Sequence[SeenBoard]) -> list[SeenBoard]:
+    return [one for one in seen if one.view.camera == camera]
 
 
 def _require_once(views: Sequence[BoardView]) -> None:
@@ -142,8 +152,10 @@ def _require_once(views: Sequence[BoardView]) -> None:
         known.add((view.camera, view.pose))
 
 
-def _require_views(by_camera: Mapping[str, Sequence[SeenBoard]], least: int) -> None:
-    few = {name: len(own) for name, own in by_camera.items() if len(own) < least}
+def _require_views(cameras: Mapping[str, DepthCamera], seen: Sequence[SeenBoard], least: int) -> None:
+    require_one_piece(list(cameras), seen)
+    counts = {name: len(_of(name, seen)) for name in cameras}
+    few = {name: count for name, count in counts.items() if count < least}
     if few:
         words = ", ".join(f"{name} ({count})" for name, count in list(few.items())[:4])
         raise CalibrationError(
@@ -155,14 +167,15 @@ def _require_views(by_camera: Mapping[str, Sequence[SeenBoard]], least: int) -> 
 def _found(
     cameras: Mapping[str, DepthCamera],
     before: Mapping[str, DepthCamera],
-    by_camera: Mapping[str, Sequence[SeenBoard]],
     seen: Sequence[SeenBoard],
+    left_out: tuple[Trouble, ...],
     solution: Solution,
     known: KnownPoints | None,
 ) -> Extrinsics:
     shared = shared_poses(seen)
     found = []
-    for name, own in by_camera.items():
+    for name in cameras:
+        own = _of(name, seen)
         covariance = solution.of_camera(name)
         common: dict[str, int] = defaultdict(int)
         for (a, b), count in shared.items():
@@ -191,6 +204,7 @@ def _found(
         corner_factor=solution.variances.corner,
         plane_factor=solution.variances.plane,
         seen=tuple(seen),
+        left_out=left_out,
         shared=shared,
         view_weight=solution.variances.view,
         points_off_m={} if known is None else known.off_m(solution.state, solution.index),
