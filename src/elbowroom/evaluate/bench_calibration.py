@@ -99,6 +99,7 @@ def extrinsics_rows(
     captures: Path,
     parts: Sequence[str] = PARTS,
     *,
+    cases: Sequence[Case] = CASES,
     cameras: int = 21,
     poses: int = 40,
     draws: int = 100,
@@ -109,6 +110,7 @@ def extrinsics_rows(
         tell: told what is being done.
         captures: a folder for simulated captures; one that is there already is taken as it is.
         parts: of `PARTS`.
+        cases: captures to make.
         cameras, poses: of the captures.
         draws: for the coverage of the covariance.
 
@@ -122,7 +124,7 @@ def extrinsics_rows(
     if "images" in parts:
         tell("boards in rendered images")
         yield from board_image_rows()
-    for case in CASES if "captures" in parts else ():
+    for case in cases if "captures" in parts else ():
         site = capture(case, captures / case.name, cameras, poses, tell)
         tell(f"{case.name}: looking for the board, solving")
         begun = time.perf_counter()
