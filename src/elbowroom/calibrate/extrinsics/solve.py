@@ -27,7 +27,7 @@ from elbowroom.calibrate.extrinsics.disagreement import (
 )
 from elbowroom.calibrate.extrinsics.graph import first_solution, require_one_piece, shared_poses
 from elbowroom.calibrate.extrinsics.known_points import KnownPoints
-from elbowroom.calibrate.extrinsics.misread_backs import misread_backs
+from elbowroom.calibrate.extrinsics.misread import misread_views
 from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, corner_rows, seen_boards
 from elbowroom.calibrate.extrinsics.seen_plane import rays_of
 from elbowroom.calibrate.extrinsics.unknowns import State
@@ -114,9 +114,9 @@ def solve_extrinsics(
     progress("first solution")
     corners = board.corners_in_board
     base_from_camera, base_from_board = first_solution(list(named), seen, corners)
-    backs = misread_backs(seen, base_from_camera, base_from_board)
-    if backs:
-        seen = [one for one in seen if one not in backs]
+    misread = misread_views(seen, base_from_camera, base_from_board, corners)
+    if misread:
+        seen = [one for one in seen if all(one is not other for other, _ in misread)]
         _require_views(named, seen, least_views)
         base_from_camera, base_from_board = first_solution(list(named), seen, corners)
     world = world_from_base(anchor, named, base_from_camera, base_from_board)
@@ -134,7 +134,10 @@ def solve_extrinsics(
     if known is not None:
         solution = fixed_by_points(seen, solution, known)
         require_points_agree(known, solution)
-    left_out = tuple(Trouble(one.view.camera, one.view.pose, Fault.BACK_AS_FACE) for one in backs)
+    left_out = tuple(
+        Trouble(one.view.camera, one.view.pose, Fault.MISREAD, f"by {off_m * 1e3:.0f} mm")
+        for one, off_m in misread
+    )
     return _found(named, before or named, seen, left_out, solution, known)
 
 

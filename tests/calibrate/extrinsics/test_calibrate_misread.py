@@ -1,4 +1,4 @@
-"""A view that took the board's back for its face is left out where other cameras tell, and only there."""
+"""A view that misread the board, its back for its face, is left out where other cameras tell, and only there."""
 
 from dataclasses import replace
 
@@ -41,7 +41,7 @@ def test_it_is_left_out_and_told():
     found = solve_extrinsics(cameras, BOARD, [*views, misread], FLOOR)
     without = solve_extrinsics(cameras, BOARD, views, FLOOR)
     (trouble,) = found.left_out
-    assert (trouble.camera, trouble.pose, trouble.fault) == (BEHIND, POSE, Fault.BACK_AS_FACE)
+    assert (trouble.camera, trouble.pose, trouble.fault) == (BEHIND, POSE, Fault.MISREAD)
     assert not without.left_out and len(found.seen) == len(without.seen)
     for one, other in zip(found.cameras, without.cameras, strict=True):
         np.testing.assert_array_equal(one.camera.world_from_camera, other.camera.world_from_camera)
@@ -53,3 +53,13 @@ def test_with_one_witness_nobody_can_tell_and_the_pose_is_refused():
     views = [view for view in views if view.pose != POSE or view.camera == witness]
     with pytest.raises(CalibrationError, match=rf"pose {POSE}: .*--without-pose {POSE}"):
         solve_extrinsics(cameras, BOARD, [*views, misread], FLOOR)
+
+
+def test_a_camera_that_misreads_much_is_not_used_with_what_is_left():
+    cameras, views, _ = made()
+    half_turned = [
+        replace(view, corners_px=view.corners_px[::-1]) if view.camera == "cam-1" and view.pose % 2 else view
+        for view in views
+    ]
+    with pytest.raises(CalibrationError, match="cam-1"):
+        solve_extrinsics(cameras, BOARD, half_turned, FLOOR)
