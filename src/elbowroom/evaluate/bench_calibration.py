@@ -14,7 +14,7 @@ from scipy.stats import chi2
 from elbowroom.calibrate import Board, CalibratedCamera
 from elbowroom.calibrate.boards.capture import sightings
 from elbowroom.calibrate.change import pose_difference
-from elbowroom.calibrate.extrinsics import BoardAnchor, Extrinsics, solve_extrinsics
+from elbowroom.calibrate.extrinsics import BoardAnchor, Extrinsics, PointsAnchor, solve_extrinsics
 from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
 from elbowroom.calibrate.margin import is_within, pose_margin
 from elbowroom.calibrate.refinement.agreement import agreement
@@ -22,7 +22,7 @@ from elbowroom.calibrate.rigid import log
 from elbowroom.calibrate.simulated import BoardCapture, Start, record_board, started
 from elbowroom.errors import SiteError
 from elbowroom.evaluate.bench_board_images import board_image_rows
-from elbowroom.evaluate.board_views import BOARD, ROUGH, board_poses, floor, ring, views_of
+from elbowroom.evaluate.board_views import BOARD, ROUGH, board_poses, floor, measured_corners, ring, views_of
 from elbowroom.evaluate.room import MOMENTS_S, ROOM_LOWER_M, ROOM_UPPER_M, Tally
 from elbowroom.geometry import DepthCamera, VoxelGrid, invert_rigid
 from elbowroom.reconstruct import reconstruct
@@ -121,6 +121,7 @@ def extrinsics_rows(
         yield real_row(tell)
     if "coverage" in parts:
         yield coverage_row(draws, tell)
+        yield coverage_row(draws, tell, stands=(1, 2, 3))
     if "images" in parts:
         tell("boards in rendered images")
         yield from board_image_rows()
@@ -246,17 +247,25 @@ def with_margin(one: CalibratedCamera, sensor_lateral_px: float) -> DepthCamera:
     return replace(one.camera, margin=margin)
 
 
-def coverage_row(draws: int, tell: Tell) -> dict[str, Any]:
-    """Five cameras and twelve poses, drawn anew each time: how often the stated 95 % region holds the true pose."""
+def coverage_row(draws: int, tell: Tell, stands: Sequence[int] = ()) -> dict[str, Any]:
+    """Five cameras and twelve poses, drawn anew each time: how often the stated 95 % region holds the true pose.
+
+    Args:
+        draws: how many.
+        tell: told what is being done.
+        stands: poses in which corners are measured, to fix the world; none: the board on the floor does.
+    """
     inside, squares, held = [], [], []
     for draw in range(draws):
         if draw % 10 == 0:
-            tell(f"coverage: {draw} of {draws} draws")
+            tell(f"coverage{' with stands' if stands else ''}: {draw} of {draws} draws")
         random = np.random.default_rng([draw, 95])
         cameras, poses = ring(5), board_poses(12, random)
         shaken = replace(ROUGH, hand_m=0.0002, view_px=0.03) if draw % 2 else ROUGH
         views = views_of(cameras, poses, random, shaken)
-        found = solve_extrinsics(cameras, BOARD, views, BoardAnchor(0, floor()))
+        corners = measured_corners(poses, stands, random)
+        anchor = PointsAnchor(corners) if stands else BoardAnchor(0, floor())
+        found = solve_extrinsics(cameras, BOARD, views, anchor)
         for camera, one in zip(cameras, found.cameras, strict=True):
             error = log(invert_rigid(one.camera.world_from_camera) @ camera.world_from_camera)
             squares.append(float(error @ np.linalg.solve(one.covariance, error)))
@@ -265,6 +274,7 @@ def coverage_row(draws: int, tell: Tell) -> dict[str, Any]:
     return {
         "kind": "coverage",
         "case": "projected corners and depth, hand that shakes and common errors in every second draw",
+        "world": f"corners measured in {len(stands)} poses" if stands else "board on the floor",
         "cameras": 5,
         "poses": 12,
         "draws": draws,

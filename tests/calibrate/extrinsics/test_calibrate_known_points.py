@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from elbowroom.calibrate.extrinsics import BoardAnchor, BoardCorner, PointsAnchor, SeenPoint, solve_extrinsics
+from elbowroom.calibrate.extrinsics import BoardAnchor, PointsAnchor, SeenPoint, solve_extrinsics
 from elbowroom.calibrate.extrinsics.known_points import KnownPoints
 from elbowroom.calibrate.extrinsics.unknowns import Index, State
 from elbowroom.calibrate.lens import project
 from elbowroom.calibrate.rigid import exp, log
 from elbowroom.errors import CalibrationError
-from elbowroom.evaluate.board_views import BOARD, EXACT, Shaken, board_poses, ring, views_of
+from elbowroom.evaluate.board_views import BOARD, EXACT, Shaken, board_poses, measured_corners, ring, views_of
 from elbowroom.geometry import invert_rigid
 from elbowroom.sensing import NOISE_PRESETS
 
@@ -30,20 +30,6 @@ def made(seed, cameras=5, poses=10, shaken=ROUGH, **kinds):
         angle = 2 * np.pi * pose / len(STANDS)
         poses[pose][:2, 3] += (0.8 * np.cos(angle), 0.8 * np.sin(angle)) - poses[pose][:2, 3]
     return cameras, poses, views_of(cameras, poses, random, shaken), random
-
-
-def corners_of(poses, which, random, sigma_m=SIGMA_M):
-    """Three corners of each of these poses, as measured."""
-    return tuple(
-        BoardCorner(
-            f"stand {pose}, corner {number}",
-            (poses[pose] @ np.append(BOARD.corners_in_board[number], 1))[:3] + random.normal(0, sigma_m, 3),
-            pose,
-            BOARD.corners_in_board[number],
-        )
-        for pose in which
-        for number in (0, BOARD.columns - 1, BOARD.columns * (BOARD.rows - 1))
-    )
 
 
 def seen_points(cameras, random, sigma_m=SIGMA_M, sigma_px=0.5):
@@ -79,7 +65,7 @@ def common_error_m(found, truth):
 def test_exact_corners_of_several_poses_give_the_true_poses():
     cameras, poses, views, random = made(0, shaken=EXACT, width=640)
     found = solve_extrinsics(
-        cameras, BOARD, views, PointsAnchor(corners_of(poses, STANDS, random, sigma_m=0))
+        cameras, BOARD, views, PointsAnchor(measured_corners(poses, STANDS, random, sigma_m=0))
     )
     assert np.abs(errors(found, cameras)).max() < 1e-6
     assert max(found.points_off_m.values()) < 1e-6
@@ -90,14 +76,14 @@ def test_several_known_poses_leave_less_to_all_cameras_together_than_one():
     for seed in range(6):
         cameras, poses, views, random = made(seed)
         for count, own in off.items():
-            anchor = PointsAnchor(corners_of(poses, STANDS[:count], random))
+            anchor = PointsAnchor(measured_corners(poses, STANDS[:count], random))
             own.append(common_error_m(solve_extrinsics(cameras, BOARD, views, anchor), cameras))
     assert np.mean(off[3]) < 0.6 * np.mean(off[1])
 
 
 def test_one_more_known_pose_makes_no_covariance_larger():
     cameras, poses, views, random = made(1)
-    corners = corners_of(poses, STANDS, random)
+    corners = measured_corners(poses, STANDS, random)
     some, more = (solve_extrinsics(cameras, BOARD, views, PointsAnchor(corners[:n])) for n in (6, 9))
     for camera, better in zip(some.cameras, more.cameras, strict=True):
         gained = np.linalg.eigvalsh(camera.covariance - better.covariance)
@@ -106,7 +92,7 @@ def test_one_more_known_pose_makes_no_covariance_larger():
 
 def test_corners_that_are_surely_known_are_as_a_pose_that_is_held():
     cameras, poses, views, random = made(2)
-    corners = corners_of(poses, (1,), random, sigma_m=0)
+    corners = measured_corners(poses, (1,), random, sigma_m=0)
     held = solve_extrinsics(cameras, BOARD, views, BoardAnchor(1, poses[1]))
     known = solve_extrinsics(cameras, BOARD, views, PointsAnchor(corners, sigma_m=1e-6))
     for one, other in zip(held.cameras, known.cameras, strict=True):
@@ -116,7 +102,7 @@ def test_corners_that_are_surely_known_are_as_a_pose_that_is_held():
 
 def test_order_of_points_cameras_and_views_does_not_matter():
     cameras, poses, views, random = made(3)
-    points = (*corners_of(poses, STANDS, random), *seen_points(cameras, random))
+    points = (*measured_corners(poses, STANDS, random), *seen_points(cameras, random))
     one = solve_extrinsics(cameras, BOARD, views, PointsAnchor(points))
     other = solve_extrinsics(cameras[::-1], BOARD, views[::-1], PointsAnchor(points[::-1]))
     by_name = {camera.camera.name: camera for camera in other.cameras}
@@ -133,7 +119,7 @@ def test_stated_covariance_holds_the_truth(kinds, by):
     inside, squares = [], []
     for seed in range(8):
         cameras, poses, views, random = made(seed, **kinds)
-        points = corners_of(poses, STANDS, random) if by == "corners" else seen_points(cameras, random)
+        points = measured_corners(poses, STANDS, random) if by == "corners" else seen_points(cameras, random)
         found = solve_extrinsics(cameras, BOARD, views, PointsAnchor(points))
         for one, error in zip(found.cameras, errors(found, cameras), strict=True):
             squares.append(error @ np.linalg.solve(one.covariance, error))
@@ -145,7 +131,7 @@ def test_stated_covariance_holds_the_truth(kinds, by):
 
 def test_derivatives_are_those_of_the_residuals():
     cameras, poses, _, random = made(4)
-    anchor = PointsAnchor((*corners_of(poses, STANDS, random), *seen_points(cameras[:3], random)))
+    anchor = PointsAnchor((*measured_corners(poses, STANDS, random), *seen_points(cameras[:3], random)))
     known = KnownPoints(anchor, {camera.name: camera for camera in cameras})
     state = State({c.name: c.world_from_camera for c in cameras}, dict(enumerate(poses)), {})
     index = Index(state, None)
@@ -170,7 +156,7 @@ def test_derivatives_are_those_of_the_residuals():
 class TestPlacesThatContradict:
     def test_one_of_three_poses_is_named_with_how_far_it_is_off(self):
         cameras, poses, views, random = made(5)
-        points = corners_of(poses, STANDS, random)
+        points = measured_corners(poses, STANDS, random)
         wrong = [replace(p, world_m=p.world_m + (0, 0.1, 0)) if p.pose == 2 else p for p in points]
         with pytest.raises(CalibrationError, match=r"^pose 2: .* lies (9\d|10\d|11\d) mm from") as caught:
             solve_extrinsics(cameras, BOARD, views, PointsAnchor(tuple(wrong)))
@@ -178,7 +164,7 @@ class TestPlacesThatContradict:
 
     def test_of_two_poses_both_are_named(self):
         cameras, poses, views, random = made(5)
-        points = corners_of(poses, (1, 2), random)
+        points = measured_corners(poses, (1, 2), random)
         wrong = [replace(p, world_m=p.world_m + (0, 0.1, 0)) if p.pose == 2 else p for p in points]
         with pytest.raises(CalibrationError, match=r"pose [12]: .*or it is pose [12] that is wrong"):
             solve_extrinsics(cameras, BOARD, views, PointsAnchor(tuple(wrong)))
@@ -186,7 +172,7 @@ class TestPlacesThatContradict:
     @pytest.mark.parametrize("which", [(2,), STANDS])
     def test_a_corner_that_was_written_down_wrong(self, which):
         cameras, poses, views, random = made(6)
-        points = corners_of(poses, which, random)
+        points = measured_corners(poses, which, random)
         wrong = [
             replace(p, world_m=p.world_m + 0.1 * (poses[2][:3, 0])) if p.name == "stand 2, corner 0" else p
             for p in points
@@ -196,7 +182,7 @@ class TestPlacesThatContradict:
 
     def test_places_worse_than_they_are_said_to_be(self):
         cameras, poses, views, random = made(7)
-        points = corners_of(poses, STANDS, random, sigma_m=0.015)
+        points = measured_corners(poses, STANDS, random, sigma_m=0.015)
         with pytest.raises(CalibrationError, match="more than sigma_m of 2 mm allows"):
             solve_extrinsics(cameras, BOARD, views, PointsAnchor(points))
         solve_extrinsics(cameras, BOARD, views, PointsAnchor(points, sigma_m=0.015))
@@ -207,20 +193,22 @@ class TestPlacesThatContradict:
         with pytest.raises(
             CalibrationError, match=r"point stand 3, corner 0: .* pose 3, which was seen by no camera"
         ):
-            solve_extrinsics(cameras, BOARD, views, PointsAnchor(corners_of(poses, STANDS, random)))
+            solve_extrinsics(cameras, BOARD, views, PointsAnchor(measured_corners(poses, STANDS, random)))
 
     def test_a_point_behind_the_camera_that_sees_it(self):
         cameras, poses, views, random = made(9)
         lost = SeenPoint("lost", cameras[0].centre_in_world * 1.5, {"cam-0": np.array([30.0, 20.0])})
         with pytest.raises(CalibrationError, match="point lost: lies behind camera cam-0"):
-            solve_extrinsics(cameras, BOARD, views, PointsAnchor((*corners_of(poses, STANDS, random), lost)))
+            solve_extrinsics(
+                cameras, BOARD, views, PointsAnchor((*measured_corners(poses, STANDS, random), lost))
+            )
 
     def test_points_in_a_line(self):
         cameras, poses, views, random = made(10)
         points = [
             replace(point, world_m=(poses[1] @ np.append(at, 1))[:3], board_m=at)
             for point, at in zip(
-                corners_of(poses, (1,), random), BOARD.corners_in_board[[0, 3, 7]], strict=True
+                measured_corners(poses, (1,), random), BOARD.corners_in_board[[0, 3, 7]], strict=True
             )
         ]
         with pytest.raises(CalibrationError, match="lie in a line"):
@@ -230,7 +218,7 @@ class TestPlacesThatContradict:
 def test_a_world_that_is_turned_turns_the_cameras():
     cameras, poses, views, random = made(11)
     turned = exp(np.array([0.4, -0.2, 1.0, 3.0, -2.0, 0.5]))
-    points = corners_of(poses, STANDS, random)
+    points = measured_corners(poses, STANDS, random)
     also = tuple(replace(point, world_m=(turned @ np.append(point.world_m, 1))[:3]) for point in points)
     one = solve_extrinsics(cameras, BOARD, views, PointsAnchor(points))
     other = solve_extrinsics(cameras, BOARD, views, PointsAnchor(also))
