@@ -31,7 +31,7 @@ USUAL_BOARD = {"vga": ((8, 5), 0.1), "qqvga": ((6, 5), 0.12), "thesis": ((5, 4),
 """Inner corners and edge of a square [m] by size of image."""
 USUAL_STANDS = {"vga": 0, "qqvga": 0, "thesis": 10}
 """By size of image. Three would fix the world, but so few pixels tell little of each pose: by the stated covariance the
-worst of 21 cameras is known to 10 mm (one sigma) with three, to 7 with ten."""
+worst of 21 cameras is known to 10 mm (one sigma) with three, to 7 to 9 with ten."""
 NEAR_POSES = 20
 """Of a board before each camera."""
 PLATE_M = 0.003
