@@ -13,7 +13,8 @@ from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
 from elbowroom.calibrate.lens import project
 from elbowroom.calibrate.rigid import log
 from elbowroom.calibrate.simulated import Start, hand_poses, read_truth, started
-from elbowroom.calibrate.simulated.hand_poses import shown, stand_poses
+from elbowroom.calibrate.simulated.hand_poses import shown
+from elbowroom.calibrate.simulated.stand_poses import stand_poses
 from elbowroom.cli.app import app
 from elbowroom.errors import CalibrationError, InputError
 from elbowroom.geometry import invert_rigid

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.extrinsics.anchor import POINT_SIGMA_M
-from elbowroom.calibrate.simulated.hand_poses import Shown, floor_pose, hand_poses, shown, stand_poses
+from elbowroom.calibrate.simulated.hand_poses import Shown, floor_pose, hand_poses, shown
+from elbowroom.calibrate.simulated.stand_poses import stand_poses
 from elbowroom.calibrate.simulated.start import TrueCamera, moved
 from elbowroom.calibrate.simulated.writer import INFRARED_FOLDER, CaptureWriter
 from elbowroom.errors import CalibrationError

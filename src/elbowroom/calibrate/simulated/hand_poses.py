@@ -1,4 +1,4 @@
-"""Where somebody holds the board, or puts it on a stand, such that every camera gets to see it."""
+"""Where somebody holds the board: places and tilts over the room such that every camera gets to see it."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -27,16 +27,6 @@ TILT_DEG = 38.0
 NEAR_FILLS = (0.9, 1.6)
 """Distance of a board that is held near, over that at which its diagonal is as long as the image is wide."""
 NEAR_TILT_DEG = (20.0, 45.0)
-STAND_TRIES = 1000
-"""Places that are tried for each stand."""
-STAND_OUT_M = 0.7
-"""From the room's middle axis to the board's middle on a stand, at least: stands far apart tell of turns [m]."""
-STAND_SECTOR = (0.35, 0.65)
-"""Part of its sector of the room, seen from the middle axis, that a stand is in."""
-STAND_HEIGHT_M = (0.6, 1.6)
-"""Of the board's middle on a stand [m]."""
-STAND_SLANT_DEG = (30.0, 60.0)
-"""Of the board on a stand from lying: so cameras high on the walls look down on it from a metre or two."""
 FEET_M = 0.25
 """A board that is cut out stands on feet this high when it lies: through its holes depth must differ [m]."""
 FLOOR_PLACE_M = (-0.35, 0.2)
@@ -88,73 +78,6 @@ def floor_pose(board: Board) -> tuple[tuple[float, float, float], float]:
     return (*FLOOR_PLACE_M, height), 0.0
 
 
-def stand_poses(
-    cameras: Sequence[DepthCamera],
-    board: Board,
-    count: int,
-    random: np.random.Generator,
-    half_side_m: float = HALF_SIDE_M,
-) -> list[NDArray[np.float64]]:
-    """Poses of a board on stands: face up, slanted, all around the room's middle axis, each where many cameras see it.
-
-    As somebody finds them who looks at the images: of many places in its sector of the room each stand takes the one
-    that the cameras with fewest views so far see best.
-
-    Args:
-        cameras: with their true poses.
-        board: the board.
-        count: number of stands.
-        random: source of randomness.
-        half_side_m: the walls' distance from the room's middle [m].
-
-    Returns:
-        world_from_board, each of shape (4, 4).
-
-    Raises:
-        CalibrationError: no camera sees the board where a stand has room.
-    """
-    views = {camera.name: 0 for camera in cameras}
-    cells: dict[tuple[str, int, int], int] = {}
-    middle_in_board = board.corners_in_board.mean(axis=0)
-    first_deg = random.uniform(0, 360)
-    poses: list[NDArray[np.float64]] = []
-    for number in range(count):
-        best, most = None, 0.0
-        for _ in range(STAND_TRIES):
-            angle = np.radians(first_deg + (number + random.uniform(*STAND_SECTOR)) * 360 / count)
-            out_m = random.uniform(STAND_OUT_M, half_side_m)
-            middle = np.array([out_m * np.cos(angle), out_m * np.sin(angle), random.uniform(*STAND_HEIGHT_M)])
-            pose = _slanted(middle, middle_in_board, random)
-            if not _in_room(board, pose, half_side_m):
-                continue
-            worth = _worth(cameras, board, pose, views, cells)
-            if worth > most:
-                best, most = pose, worth
-        if best is None:
-            raise CalibrationError(
-                f"stand {number}: no place on its side of the room where a camera sees a board of {board.columns} x "
-                f"{board.rows} squares of {board.square_m} m; take fewer stands, or a smaller board"
-            )
-        _count(cameras, board, best, views, cells)
-        poses.append(best)
-    return poses
-
-
-def _slanted(
-    middle: NDArray[np.float64], middle_in_board: NDArray[np.float64], random: np.random.Generator
-) -> NDArray[np.float64]:
-    """The board with its middle there, face up, turned and slanted by chance."""
-    face_up = Rotation.from_euler("x", 180, degrees=True)
-    turn = Rotation.from_euler("z", random.uniform(0, 360), degrees=True)
-    way, slant = random.uniform(0, 2 * np.pi), np.radians(random.uniform(*STAND_SLANT_DEG))
-    pose = np.eye(4)
-    pose[:3, :3] = (
-        Rotation.from_rotvec(slant * np.array([np.cos(way), np.sin(way), 0])) * turn * face_up
-    ).as_matrix()
-    pose[:3, 3] = middle - pose[:3, :3] @ middle_in_board
-    return pose
-
-
 def hand_poses(
     cameras: Sequence[DepthCamera],
     board: Board,
@@ -188,16 +111,16 @@ def hand_poses(
     views = {camera.name: 0 for camera in cameras}
     cells: dict[tuple[str, int, int], int] = {}
     for pose in taken:
-        _count(cameras, board, pose, views, cells)
+        count_views(cameras, board, pose, views, cells)
     poses: list[NDArray[np.float64]] = []
     for number in range(count):
         best, most, drawn = None, -1.0, 0
         for _ in range(MOST_TRIES):
             camera = cameras[int(random.permutation(_neediest(views))[0])]
             pose = _drawn(camera, board, random, near)
-            if not _in_room(board, pose, half_side_m) or not shown(camera, board, pose).whole:
+            if not in_room(board, pose, half_side_m) or not shown(camera, board, pose).whole:
                 continue
-            worth = _worth(cameras, board, pose, views, cells)
+            worth = worth_of(cameras, board, pose, views, cells)
             if worth > most:
                 best, most = pose, worth
             drawn += 1
@@ -209,7 +132,7 @@ def hand_poses(
                 f"{board.columns} x {board.rows} squares of {board.square_m} m fits; "
                 "make it smaller, or the images larger"
             )
-        _count(cameras, board, best, views, cells)
+        count_views(cameras, board, best, views, cells)
         poses.append(best)
     return poses
 
@@ -253,7 +176,8 @@ def _facing(middle: NDArray[np.float64]) -> Rotation:
     return Rotation.from_rotvec(axis / max(across, 1e-12) * np.arctan2(across, middle[2]))
 
 
-def _in_room(board: Board, pose: NDArray[np.float64], half_side_m: float) -> bool:
+def in_room(board: Board, pose: NDArray[np.float64], half_side_m: float) -> bool:
+    """Whether a board fits in the room at a pose, world_from_board of shape (4, 4), and touches nothing."""
     corners = board.outline_in_board @ pose[:3, :3].T + pose[:3, 3]
     low, high = corners.min(axis=0), corners.max(axis=0)
     side = half_side_m - CLEARANCE_M
@@ -273,13 +197,14 @@ def _cell(camera: DepthCamera, board: Board, pose: NDArray[np.float64]) -> tuple
     return camera.name, int(np.clip(3 * u / camera.width, 0, 2)), int(np.clip(3 * v / camera.height, 0, 2))
 
 
-def _worth(
+def worth_of(
     cameras: Sequence[DepthCamera],
     board: Board,
     pose: NDArray[np.float64],
     views: dict[str, int],
     cells: dict[tuple[str, int, int], int],
 ) -> float:
+    """How much a pose gives to cameras that have few `views` so far, or few in that ninth of the image (`cells`)."""
     worth = 0.0
     for camera in cameras:
         seen = shown(camera, board, pose)
@@ -288,13 +213,14 @@ def _worth(
     return worth
 
 
-def _count(
+def count_views(
     cameras: Sequence[DepthCamera],
     board: Board,
     pose: NDArray[np.float64],
     views: dict[str, int],
     cells: dict[tuple[str, int, int], int],
 ) -> None:
+    """Adds a pose to the views and cells of the cameras that see it."""
     for camera in cameras:
         seen = shown(camera, board, pose)
         if seen.whole and seen.front:
