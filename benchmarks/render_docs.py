@@ -150,6 +150,8 @@ are declared free.
         """
 Simulated captures beside their truth ([calibration](calibration.md)). *inside*: share of cameras whose true pose lies
 in the stated 95 % region.
+In 64x48 images no camera reads a board on the floor: it stands on so many stands, where three corners are measured with
+errors of 2 mm; captures differ by their random numbers.
 Second table: the simulated room at 5 cm, carved with the poses that were found and their margins, from images of the
 true cameras. *seconds*: detection in all images and solution, two cores.
 """,

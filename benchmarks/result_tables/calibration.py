@@ -38,7 +38,16 @@ CALIBRATION_COLUMNS = {
         "pose_bias_mm",
         "margin_held_pct",
     ),
-    "coverage": ("case", "cameras", "poses", "draws", "inside_pct", "margin_held_pct", "mean_square"),
+    "coverage": (
+        "case",
+        "world",
+        "cameras",
+        "poses",
+        "draws",
+        "inside_pct",
+        "margin_held_pct",
+        "mean_square",
+    ),
     "images": (
         "case",
         "noise",

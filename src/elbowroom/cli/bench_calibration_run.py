@@ -9,7 +9,7 @@ from rich.console import Console
 
 from elbowroom.cli.json_output import json_rows
 from elbowroom.errors import InputError
-from elbowroom.evaluate.bench_calibration import PARTS, extrinsics_rows
+from elbowroom.evaluate.bench_calibration import CASES, PARTS, extrinsics_rows
 from elbowroom.evaluate.bench_calibration_boards import intrinsics_row
 from elbowroom.evaluate.bench_calibration_machine import machine_row, refine_rows, room_refine_row
 from elbowroom.evaluate.drift import drift_rows
@@ -53,7 +53,7 @@ def run_bench_calibration(
     """Measures board, machine, refinement and drift watch, and prints a line for each row.
 
     Args:
-        quick: five cameras, twelve poses and ten draws, and nothing else.
+        quick: one capture of five cameras and twelve poses, ten draws, and nothing else.
         parts: which to measure, of `PARTS`; none: all.
         captures: folder where simulated captures are kept; None: a temporary one.
         json_file: for the rows.
@@ -77,8 +77,10 @@ def run_bench_calibration(
             if not console.is_terminal:
                 console.print(text, highlight=False)
 
-        size = {"cameras": 5, "poses": 12, "draws": 10} if quick else {}
-        for row in extrinsics_rows(tell, kept, parts or PARTS, **size):
+        quickly: dict[str, Any] = (
+            {"cases": CASES[:1], "cameras": 5, "poses": 12, "draws": 10} if quick else {}
+        )
+        for row in extrinsics_rows(tell, kept, parts or PARTS, **quickly):
             add(row)
             _say(row)
         for part in () if quick else [part for part in MORE if part in (parts or MORE)]:

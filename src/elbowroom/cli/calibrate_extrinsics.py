@@ -22,8 +22,9 @@ def extrinsics(
 ) -> None:
     """Find where the cameras are from a board that two or more of them see at a time, and how sure that is.
 
-    The site's key calibration names the board, its images, and what fixes the world: the board in one pose, named
-    points, or a camera that stays where it is. Intrinsics are the site's: calibrate those first.
+    The site's key calibration names the board, its images, and what fixes the world: the board flat in one pose, points
+    that were measured (corners of the board in several poses, or points in images), or a camera that stays where it
+    is. Intrinsics are the site's: calibrate those first.
     """
     from elbowroom.cli.calibrate_extrinsics_run import run_extrinsics
 

@@ -3,8 +3,10 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from rich.console import Console
 
+from elbowroom.calibrate.board_report import rms
 from elbowroom.calibrate.boards.capture import Sightings, sightings
 from elbowroom.calibrate.extrinsics.report import report_sections
 from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
@@ -49,11 +51,19 @@ def run_extrinsics(
         )
         rows = write_result(site, found.cameras, cameras, out, "extrinsics", add)
         add(summary_row(site, found, seen, steps.seconds))
-    troubles = [str(trouble) for trouble in seen.troubles]
+    troubles = [str(trouble) for trouble in (*seen.troubles, *found.left_out)]
     print(
         f"views     {len(found.seen)} of {len(found.seen) + len(troubles)} images, "
         f"{len(found.world_from_board)} poses of the board"
     )
+    for trouble in found.left_out:
+        print(f"left out  {trouble}")
+    if found.points_off_m:
+        off_m = np.array(list(found.points_off_m.values()))
+        print(
+            f"world     {len(off_m)} measured points, {rms(off_m) * 1e3:.1f} mm rms from where they are seen, "
+            f"{off_m.max() * 1e3:.1f} mm at most"
+        )
     if report is not None:
         images = PoseImages(site)
         sections = report_sections(found, rows, troubles, images.grey)
@@ -105,7 +115,8 @@ def summary_row(site: Site, found: Extrinsics, seen: Sightings, seconds: dict[st
         "cameras": len(found.cameras),
         "poses": len(found.world_from_board),
         "views": len(found.seen),
-        "images_without_view": len(seen.troubles),
-        "troubles": [str(trouble) for trouble in seen.troubles],
+        "images_without_view": len(seen.troubles) + len(found.left_out),
+        "troubles": [str(trouble) for trouble in (*seen.troubles, *found.left_out)],
+        "points_off_m": dict(found.points_off_m),
         "seconds": seconds,
     }

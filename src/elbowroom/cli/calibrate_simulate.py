@@ -36,6 +36,14 @@ def simulate(
         typer.Option(metavar="METRES", help="Edge of a square. Default: 0.1; 64x48 images: 0.18."),
     ] = None,
     border: Annotated[float, typer.Option(metavar="METRES", help="Around the squares.")] = 0.04,
+    stands: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            help="So many of the poses are on stands, where corners were measured to 2 mm, which fixes the world; 0: "
+            "one is on the floor. Default: 0; 64x48 images, which show no board on the floor: 10.",
+        ),
+    ] = None,
     wrong_deg: Annotated[float, typer.Option(help="The site's poses are turned by so much [deg].")] = 3.0,
     wrong_m: Annotated[float, typer.Option(help="The site's poses are moved by so much [m].")] = 0.05,
     focal: Annotated[
@@ -90,6 +98,7 @@ def simulate(
         corners,
         square,
         border,
+        stands,
         start,
         near,
         hand,

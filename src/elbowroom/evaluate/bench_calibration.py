@@ -1,7 +1,6 @@
 """How well `elbowroom calibrate extrinsics` finds cameras: simulated captures beside their truth, a real one, time."""
 
 import time
-from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,10 +11,10 @@ import yaml
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from elbowroom.calibrate import Board, BoardView, CalibratedCamera
+from elbowroom.calibrate import Board, CalibratedCamera
 from elbowroom.calibrate.boards.capture import sightings
 from elbowroom.calibrate.change import pose_difference
-from elbowroom.calibrate.extrinsics import BoardAnchor, Extrinsics, solve_extrinsics
+from elbowroom.calibrate.extrinsics import BoardAnchor, Extrinsics, PointsAnchor, solve_extrinsics
 from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
 from elbowroom.calibrate.margin import is_within, pose_margin
 from elbowroom.calibrate.refinement.agreement import agreement
@@ -23,7 +22,7 @@ from elbowroom.calibrate.rigid import log
 from elbowroom.calibrate.simulated import BoardCapture, Start, record_board, started
 from elbowroom.errors import SiteError
 from elbowroom.evaluate.bench_board_images import board_image_rows
-from elbowroom.evaluate.board_views import BOARD, ROUGH, board_poses, floor, ring, views_of
+from elbowroom.evaluate.board_views import BOARD, ROUGH, board_poses, floor, measured_corners, ring, views_of
 from elbowroom.evaluate.room import MOMENTS_S, ROOM_LOWER_M, ROOM_UPPER_M, Tally
 from elbowroom.geometry import DepthCamera, VoxelGrid, invert_rigid
 from elbowroom.reconstruct import reconstruct
@@ -47,17 +46,26 @@ class Case:
         name: of its folder.
         size, noise: of the cameras.
         board: what they see.
-        on_stand: the world is fixed by the pose that most cameras see, as if the board stood there on a stand whose
-            place was measured: in 64x48 pixels no camera reads it on the floor.
+        stands: so many poses are on stands, and corners measured there fix the world: in 64x48 pixels no camera reads
+            a board on the floor. 0: the board on the floor defines it.
         due: worst and median error of the camera's centre [mm] and of its direction [degrees].
+        seed: of the capture.
+        room: whether the room is carved with these cameras.
     """
 
     name: str
     size: str
     noise: str
     board: Board
-    on_stand: bool
+    stands: int
     due: dict[str, float]
+    seed: int = 1
+    room: bool = True
+
+    @property
+    def world(self) -> str:
+        """What fixes the world, in words."""
+        return f"corners measured on {self.stands} stands" if self.stands else "board on the floor"
 
 
 CASES = (
@@ -66,16 +74,22 @@ CASES = (
         "vga",
         "kinect_v1",
         Board(8, 5, 0.1, "cut_out", 0.04, marked=True, thickness_m=0.003),
-        False,
+        0,
         {"worst_mm": 5.0, "worst_deg": 0.15, "median_mm": 2.0, "median_deg": 0.05},
     ),
-    Case(
-        "thesis",
-        "thesis",
-        "tof",
-        Board(5, 4, 0.18, "cut_out", 0.04, marked=True, thickness_m=0.003),
-        True,
-        {"worst_mm": 15.0, "worst_deg": 0.5},
+    *(
+        Case(
+            f"thesis-{stands}-stands-{seed}",
+            "thesis",
+            "tof",
+            Board(5, 4, 0.18, "cut_out", 0.04, marked=True, thickness_m=0.003),
+            stands,
+            {"worst_mm": 15.0, "worst_deg": 0.5},
+            seed,
+            room=stands == 10 and seed == 1,
+        )
+        for stands, seeds in ((3, (1, 2, 3)), (10, (1, 2, 3, 4, 5, 6)))
+        for seed in seeds
     ),
 )
 
@@ -85,6 +99,7 @@ def extrinsics_rows(
     captures: Path,
     parts: Sequence[str] = PARTS,
     *,
+    cases: Sequence[Case] = CASES,
     cameras: int = 21,
     poses: int = 40,
     draws: int = 100,
@@ -95,6 +110,7 @@ def extrinsics_rows(
         tell: told what is being done.
         captures: a folder for simulated captures; one that is there already is taken as it is.
         parts: of `PARTS`.
+        cases: captures to make.
         cameras, poses: of the captures.
         draws: for the coverage of the covariance.
 
@@ -105,27 +121,27 @@ def extrinsics_rows(
         yield real_row(tell)
     if "coverage" in parts:
         yield coverage_row(draws, tell)
+        yield coverage_row(draws, tell, stands=(1, 2, 3))
     if "images" in parts:
         tell("boards in rendered images")
         yield from board_image_rows()
-    for case in CASES if "captures" in parts else ():
+    for case in cases if "captures" in parts else ():
         site = capture(case, captures / case.name, cameras, poses, tell)
         tell(f"{case.name}: looking for the board, solving")
         begun = time.perf_counter()
         seen = sightings(site)
         detected = time.perf_counter()
-        anchor = stand(captures / case.name, seen.views) if case.on_stand else anchor_of(site)
-        found = solve_extrinsics(site.cameras(), seen.board, seen.views, anchor)
+        found = solve_extrinsics(site.cameras(), seen.board, seen.views, anchor_of(site))
         ended = time.perf_counter()
         truth = true_poses(captures / case.name)
         yield {
             "kind": "extrinsics",
             "case": case.name,
-            "world": "board on a stand" if case.on_stand else "board on the floor",
+            "world": case.world,
             "cameras": len(found.cameras),
             "poses": seen.poses,
             "images": len(seen.views) + len(seen.troubles),
-            "views": len(seen.views),
+            "views": len(found.seen),
             "noise": case.noise,
             "width": found.cameras[0].camera.width,
             **errors_of(found, truth),
@@ -134,8 +150,9 @@ def extrinsics_rows(
             "seconds": ended - begun,
             "due": case.due | {"seconds": 180.0},
         }
-        tell(f"{case.name}: the room as these cameras see it")
-        yield from room_rows(case, found, truth)
+        if case.room:
+            tell(f"{case.name}: the room as these cameras see it")
+            yield from room_rows(case, found, truth)
 
 
 def capture(case: Case, folder: Path, cameras: int, poses: int, tell: Tell) -> Site:
@@ -143,8 +160,8 @@ def capture(case: Case, folder: Path, cameras: int, poses: int, tell: Tell) -> S
     path = folder / "site.yaml"
     if not path.is_file():
         hung = wall_cameras(cameras, size=case.size, noise=NOISE_PRESETS[case.noise])
-        true = started(hung, Start(), np.random.default_rng([1, 5]))
-        wanted = BoardCapture(true, case.board, poses, case.noise, 1)
+        true = started(hung, Start(), np.random.default_rng([case.seed, 5]))
+        wanted = BoardCapture(true, case.board, poses, min(case.stands, poses), case.noise, case.seed)
         path = record_board(
             wanted, folder, lambda done, views: tell(f"{case.name}: rendering, {done} of {poses} poses")
         )
@@ -155,13 +172,6 @@ def true_poses(folder: Path) -> dict[str, NDArray[np.float64]]:
     """world_from_camera by name, as a simulated capture's `truth.yaml` has it."""
     content = yaml.safe_load((folder / "truth.yaml").read_text(encoding="utf-8"))
     return {name: np.array(camera["world_from_camera"]) for name, camera in content["cameras"].items()}
-
-
-def stand(folder: Path, views: Sequence[BoardView]) -> BoardAnchor:
-    """The pose of the board that most cameras see, at its true place."""
-    pose = Counter(view.pose for view in views).most_common(1)[0][0]
-    content = yaml.safe_load((folder / "truth.yaml").read_text(encoding="utf-8"))
-    return BoardAnchor(pose, np.array(content["poses"][pose]["world_from_board"]))
 
 
 def errors_of(found: Extrinsics, truth: dict[str, NDArray[np.float64]]) -> dict[str, float]:
@@ -221,7 +231,7 @@ def room_rows(
             "margin_held_pct": 100 * held / len(found.cameras),
             "pose_lateral_px": float(np.median([margin.lateral_px for margin in margins])),
             "pose_bias_mm": 1e3 * float(np.median([margin.bias_m for margin in margins])),
-            "due": {"occupied_pct": 99.99, "found_pct": 88.0} if case.name == "vga" else {},
+            "due": {"occupied_pct": 99.99, "found_pct": 88.0} if case.size == "vga" else {},
         }
 
 
@@ -237,17 +247,25 @@ def with_margin(one: CalibratedCamera, sensor_lateral_px: float) -> DepthCamera:
     return replace(one.camera, margin=margin)
 
 
-def coverage_row(draws: int, tell: Tell) -> dict[str, Any]:
-    """Five cameras and twelve poses, drawn anew each time: how often the stated 95 % region holds the true pose."""
+def coverage_row(draws: int, tell: Tell, stands: Sequence[int] = ()) -> dict[str, Any]:
+    """Five cameras and twelve poses, drawn anew each time: how often the stated 95 % region holds the true pose.
+
+    Args:
+        draws: how many.
+        tell: told what is being done.
+        stands: poses in which corners are measured, to fix the world; none: the board on the floor does.
+    """
     inside, squares, held = [], [], []
     for draw in range(draws):
         if draw % 10 == 0:
-            tell(f"coverage: {draw} of {draws} draws")
+            tell(f"coverage{' with stands' if stands else ''}: {draw} of {draws} draws")
         random = np.random.default_rng([draw, 95])
         cameras, poses = ring(5), board_poses(12, random)
         shaken = replace(ROUGH, hand_m=0.0002, view_px=0.03) if draw % 2 else ROUGH
         views = views_of(cameras, poses, random, shaken)
-        found = solve_extrinsics(cameras, BOARD, views, BoardAnchor(0, floor()))
+        corners = measured_corners(poses, stands, random)
+        anchor = PointsAnchor(corners) if stands else BoardAnchor(0, floor())
+        found = solve_extrinsics(cameras, BOARD, views, anchor)
         for camera, one in zip(cameras, found.cameras, strict=True):
             error = log(invert_rigid(one.camera.world_from_camera) @ camera.world_from_camera)
             squares.append(float(error @ np.linalg.solve(one.covariance, error)))
@@ -256,6 +274,7 @@ def coverage_row(draws: int, tell: Tell) -> dict[str, Any]:
     return {
         "kind": "coverage",
         "case": "projected corners and depth, hand that shakes and common errors in every second draw",
+        "world": f"corners measured in {len(stands)} poses" if stands else "board on the floor",
         "cameras": 5,
         "poses": 12,
         "draws": draws,

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from elbowroom.calibrate import Board, BoardView
+from elbowroom.calibrate.extrinsics.anchor import POINT_SIGMA_M, BoardCorner
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.sensing import NOISE_PRESETS, NoiseModel
 from elbowroom.sensing.distortion import distorted
@@ -77,6 +78,26 @@ def board_poses(count: int, rng: np.random.Generator) -> list[Array]:
         pose[:3, 3] = middle - pose[:3, :3] @ BOARD.corners_in_board.mean(axis=0)
         poses.append(pose)
     return poses
+
+
+def measured_corners(
+    poses: Sequence[Array],
+    which: Sequence[int],
+    rng: np.random.Generator,
+    sigma_m: float = POINT_SIGMA_M,
+    board: Board = BOARD,
+) -> tuple[BoardCorner, ...]:
+    """First corner, end of its row and end of its column in each of these poses, as somebody measures them."""
+    return tuple(
+        BoardCorner(
+            f"stand {pose}, corner {number}",
+            (poses[pose] @ np.append(board.corners_in_board[number], 1))[:3] + rng.normal(0, sigma_m, 3),
+            pose,
+            board.corners_in_board[number],
+        )
+        for pose in which
+        for number in (0, board.columns - 1, board.columns * (board.rows - 1))
+    )
 
 
 def views_of(

@@ -83,7 +83,7 @@ class CaptureImagesEntry(Entry):
 
 
 class WorldFromBoard(Entry):
-    """The board lies flat, its face up, in one pose: number of the pose, place of the first corner, direction of x.
+    """The board lies flat, its face up, in one pose, which defines the world: its number, first corner, direction of x.
 
     `first_corner_m` is in the world frame, its z the height of the board's face; `x_axis_deg` is the angle from the
     world's x axis to the board's, counter-clockwise seen from above.
@@ -106,19 +106,49 @@ class WorldFromBoard(Entry):
         return pose
 
 
+class CornerEntry(Entry):
+    """An inner corner of the board in one pose: number of the pose, column and row, both from 0 at the first corner."""
+
+    pose: Annotated[Whole, Field(ge=0)]
+    column: Annotated[Whole, Field(ge=0)]
+    row: Annotated[Whole, Field(ge=0)]
+
+
 class NamedPoint(Entry):
-    """A point whose place in the world is known, and the pixels where cameras see it, by camera."""
+    """A point whose place in the world was measured: seen at pixels of cameras, or a corner of the board in a pose."""
 
     name: Text
     world_m: Point
-    seen_px: dict[Text, Pixel] = Field(min_length=1)
+    seen_px: dict[Text, Pixel] = Field(default_factory=dict)
+    corner: CornerEntry | None = None
+
+    @model_validator(mode="after")
+    def _is_seen(self) -> "NamedPoint":
+        if bool(self.seen_px) == (self.corner is not None):
+            raise ValueError("either seen_px, with pixels by camera, or corner, of the board in a pose")
+        return self
 
 
 class WorldFromPoints(Entry):
-    """At least three named points that are not in one line."""
+    """At least three points, not in one line, each coordinate measured to `sigma_m`."""
 
     by: Literal["points"]
     points: Annotated[tuple[NamedPoint, ...], Field(min_length=3)]
+    sigma_m: Positive = 0.002
+
+    @model_validator(mode="after")
+    def _are_told_apart(self) -> "WorldFromPoints":
+        names = [point.name for point in self.points]
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise ValueError(f"each name once; {twice!r} is there twice")
+        corners = [point.corner for point in self.points if point.corner is not None]
+        again = next((corner for corner in corners if corners.count(corner) > 1), None)
+        if again is not None:
+            raise ValueError(
+                f"each corner once; column {again.column}, row {again.row} of pose {again.pose} is there twice"
+            )
+        return self
 
 
 class WorldFromMachine(Entry):
@@ -151,8 +181,22 @@ class CalibrationEntry(Entry):
     def _goes_together(self) -> "CalibrationEntry":
         if isinstance(self.world, WorldFromBoard) and self.board is None:
             raise ValueError("a board, where the world is fixed by one")
+        if isinstance(self.world, WorldFromPoints):
+            self._has_the_corners_of(self.world.points)
         if self.board is not None and (self.board.kind == "cut_out") != (self.images.kind == "depth"):
             raise ValueError(
                 "images of kind depth for a board that is cut out, of kind infrared or colour for a printed one"
             )
         return self
+
+    def _has_the_corners_of(self, points: tuple[NamedPoint, ...]) -> None:
+        for point in points:
+            if point.corner is None:
+                continue
+            if self.board is None:
+                raise ValueError(f"a board, of which point {point.name} is a corner")
+            if point.corner.column >= self.board.columns or point.corner.row >= self.board.rows:
+                raise ValueError(
+                    f"corners that the board has; point {point.name} is column {point.corner.column}, row "
+                    f"{point.corner.row}, of columns 0 to {self.board.columns - 1}, rows 0 to {self.board.rows - 1}"
+                )

@@ -10,6 +10,9 @@ class Fault(Enum):
     NOT_SEEN = "no board is seen"
     HALF_SEEN = "a part of the board lies outside the image or is hidden"
     MIRRORED = "the mark is on the wrong side: the board shows its back, or the image is mirrored"
+    MISREAD = (
+        "the board seems to be elsewhere than other cameras agree that it is: misread, or moved meanwhile"
+    )
     WRONG_SIZE = "a board is seen, but of another size than the site says"
     WRONG_COUNT = "a board is seen, but with another number of corners than the site says"
 

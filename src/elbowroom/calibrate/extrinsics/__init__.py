@@ -6,18 +6,20 @@ views -> each by itself -> graph of cameras and poses -> joint least squares -> 
 from elbowroom.calibrate.extrinsics.anchor import (
     Anchor,
     BoardAnchor,
+    BoardCorner,
     CameraAnchor,
     PointsAnchor,
-    Sighting,
+    SeenPoint,
 )
 from elbowroom.calibrate.extrinsics.solve import Extrinsics, solve_extrinsics
 
 __all__ = [
     "Anchor",
     "BoardAnchor",
+    "BoardCorner",
     "CameraAnchor",
     "Extrinsics",
     "PointsAnchor",
-    "Sighting",
+    "SeenPoint",
     "solve_extrinsics",
 ]

@@ -1,25 +1,28 @@
 """The joint least squares over all poses of cameras and board.
 
 Unknown are a motion of each camera and of each pose of the board on the right of its pose, and of each camera with
-depth a bias and a scale error of its depth, which a prior keeps small. What the anchor fixes does not move.
+depth a bias and a scale error of its depth, which a prior keeps small. The pose that defines the world does not move.
+Where points measured in the world fix it, they come last, when views are settled with any one camera held: what these
+scatter by does not depend on where the world is, and a wrong place cannot make good views look bad.
 
 Each view comes down to nine numbers: of its corners the six that depend on poses (by a QR decomposition), and the
 three of its plane. What they scatter by is estimated with the poses (`variances.py`), and views that fit badly all the
 same are weighted down: so the covariance says what is true, not what the sigmas of corners promise.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.extrinsics.anchor import Anchor, BoardAnchor, CameraAnchor, PointsAnchor
+from elbowroom.calibrate.extrinsics.anchor import BoardAnchor, CameraAnchor
+from elbowroom.calibrate.extrinsics.known_points import KnownPoints
 from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, corner_rows, plane_rows
+from elbowroom.calibrate.extrinsics.unknowns import Index, State
 from elbowroom.calibrate.extrinsics.variances import Variances, ViewRows
-from elbowroom.calibrate.lens import project
-from elbowroom.calibrate.rigid import cross_matrix, exp
-from elbowroom.geometry import DepthCamera, invert_rigid
+from elbowroom.errors import CalibrationError
+from elbowroom.geometry import invert_rigid
 
 Array = NDArray[np.float64]
 BIAS_SIGMA_M = 0.005
@@ -29,59 +32,6 @@ ROUNDS, STEPS = 4, 15
 """Of linearisations with variances estimated anew; of Levenberg-Marquardt before."""
 RENEWALS = 12
 """Of variances at one linearisation, at most."""
-
-
-@dataclass(eq=False)
-class State:
-    """Where everything is thought to be.
-
-    Args:
-        cameras: world_from_camera by name.
-        boards: world_from_board by pose.
-        depth_errors: bias [m] and scale by name of the camera, shape (2,); only of those with depth.
-    """
-
-    cameras: dict[str, Array]
-    boards: dict[int, Array]
-    depth_errors: dict[str, Array]
-
-    def moved(self, step: Array, index: "Index") -> "State":
-        """The state after a step, shape (n,)."""
-        return State(
-            {
-                name: pose @ exp(step[index.cameras[name]]) if name in index.cameras else pose
-                for name, pose in self.cameras.items()
-            },
-            {
-                pose: at @ exp(step[index.boards[pose]]) if pose in index.boards else at
-                for pose, at in self.boards.items()
-            },
-            {name: error + step[index.depths[name]] for name, error in self.depth_errors.items()},
-        )
-
-
-class Index:
-    """Where in a step each unknown stands; what the anchor holds has no place.
-
-    Args:
-        state: all of them.
-        anchor: what is held.
-    """
-
-    def __init__(self, state: State, anchor: Anchor) -> None:
-        at = 0
-        self.cameras: dict[str, slice] = {}
-        self.boards: dict[int, slice] = {}
-        self.depths: dict[str, slice] = {}
-        for name in state.cameras:
-            if not (isinstance(anchor, CameraAnchor) and anchor.camera == name):
-                self.cameras[name], at = slice(at, at + 6), at + 6
-        for pose in state.boards:
-            if not (isinstance(anchor, BoardAnchor) and anchor.pose == pose):
-                self.boards[pose], at = slice(at, at + 6), at + 6
-        for name in state.depth_errors:
-            self.depths[name], at = slice(at, at + 2), at + 2
-        self.size = at
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,23 +58,20 @@ class Solution:
         return self.covariance[at, at]
 
 
-def adjust(
-    cameras: Mapping[str, DepthCamera], seen: Sequence[SeenBoard], state: State, anchor: Anchor
-) -> Solution:
-    """Solves for all poses at once.
+def adjust(seen: Sequence[SeenBoard], state: State, held: BoardAnchor | CameraAnchor) -> Solution:
+    """Solves for all poses at once, and for what views scatter by.
 
     Args:
-        cameras: by name.
         seen: all views.
-        state: where to begin, in the world's frame.
-        anchor: what fixes the world.
+        state: where to begin.
+        held: what does not move.
     """
-    index = Index(state, anchor)
+    index = Index(state, held)
     variances = Variances.before(list(state.cameras), len(seen), _within(seen))
-    state = _solved(cameras, seen, state, anchor, index, variances)
+    state = _solved(seen, state, index, variances)
     for number in range(ROUNDS):
         views = [_rows(one, state, index) for one in seen]
-        prior, pull, _ = _prior(cameras, state, anchor, index)
+        prior, pull, _ = _prior(state, index)
         for renewal in range(RENEWALS):
             normal, slope, _ = _summed(views, variances, prior, pull)
             covariance = _inverse(normal)
@@ -135,12 +82,42 @@ def adjust(
             change, variances = renewed.change(variances), renewed
             if change < 0.02 and renewal > 4:
                 break
-        state = _solved(cameras, seen, state, anchor, index, variances)
+        state = _solved(seen, state, index, variances)
         if number and float(np.abs(step).max()) < 1e-6:
             break
-    views = [_rows(one, state, index) for one in seen]
-    prior, pull, _ = _prior(cameras, state, anchor, index)
-    normal, _, _ = _summed(views, variances, prior, pull)
+    return _solution(seen, state, index, variances)
+
+
+def fixed_by_points(seen: Sequence[SeenBoard], solution: Solution, known: KnownPoints) -> Solution:
+    """Solves once more, with nothing held and points of known place in it.
+
+    Args:
+        seen: all views.
+        solution: by views alone, in the world's frame as nearly as may be.
+        known: the points.
+
+    Raises:
+        CalibrationError: a point lies behind a camera that sees it.
+    """
+    behind = known.behind(solution.state)
+    if behind is not None:
+        raise CalibrationError(
+            f"point {behind[0]}: lies behind camera {behind[1]}, which is said to see it; check its world_m and seen_px"
+        )
+    index = Index(solution.state, None)
+    state = _solved(seen, solution.state, index, solution.variances, known)
+    return _solution(seen, state, index, solution.variances, known)
+
+
+def _solution(
+    seen: Sequence[SeenBoard],
+    state: State,
+    index: Index,
+    variances: Variances,
+    known: KnownPoints | None = None,
+) -> Solution:
+    prior, pull, _ = _prior(state, index, known)
+    normal, _, _ = _summed([_rows(one, state, index) for one in seen], variances, prior, pull)
     return Solution(state, _inverse(normal), index, variances)
 
 
@@ -154,17 +131,16 @@ def _within(seen: Sequence[SeenBoard]) -> float:
 
 
 def _solved(
-    cameras: Mapping[str, DepthCamera],
     seen: Sequence[SeenBoard],
     state: State,
-    anchor: Anchor,
     index: Index,
     variances: Variances,
+    known: KnownPoints | None = None,
 ) -> State:
     """Levenberg-Marquardt with the variances as they are."""
 
     def equations(state: State) -> tuple[Array, Array, float]:
-        prior, pull, cost = _prior(cameras, state, anchor, index)
+        prior, pull, cost = _prior(state, index, known)
         normal, slope, more = _summed([_rows(one, state, index) for one in seen], variances, prior, pull)
         return normal, slope, cost + more
 
@@ -174,7 +150,7 @@ def _solved(
         damped = normal + damping * np.diag(np.diag(normal))
         step = np.asarray(-np.linalg.solve(damped, slope), dtype=np.float64)
         tried = state.moved(step, index)
-        new = equations(tried) if _all_in_front(seen, tried) else None
+        new = equations(tried) if _all_in_front(seen, tried, known) else None
         if new is None or not new[2] <= cost * (1 + 1e-9) + 1e-18:
             damping = max(damping * 100, 1e-3)
             if damping > 1e6:
@@ -188,8 +164,8 @@ def _solved(
     return state
 
 
-def _all_in_front(seen: Sequence[SeenBoard], state: State) -> bool:
-    return all(
+def _all_in_front(seen: Sequence[SeenBoard], state: State, known: KnownPoints | None) -> bool:
+    return (known is None or known.behind(state) is None) and all(
         (one.corners @ pose[2, :3] + pose[2, 3]).min() > 0.01
         for one in seen
         for pose in [camera_from_board(one, state)]
@@ -250,31 +226,18 @@ def _summed(
     return normal, slope, cost
 
 
-def _prior(
-    cameras: Mapping[str, DepthCamera], state: State, anchor: Anchor, index: Index
-) -> tuple[Array, Array, float]:
-    """Normal matrix, gradient and sum of squares of depth errors and of named points."""
+def _prior(state: State, index: Index, known: KnownPoints | None = None) -> tuple[Array, Array, float]:
+    """Normal matrix, gradient and sum of squares of depth errors and of points of known place."""
     normal, slope, cost = np.zeros((index.size, index.size)), np.zeros(index.size), 0.0
     for name, error in state.depth_errors.items():
         at, inverse = index.depths[name], np.array([BIAS_SIGMA_M, SCALE_SIGMA]) ** -2.0
         normal[at, at] += np.diag(inverse)
         slope[at] += inverse * error
         cost += float(inverse @ error**2)
-    if isinstance(anchor, PointsAnchor):
-        for sighting in anchor.sightings:
-            pose = invert_rigid(state.cameras[sighting.camera])
-            in_camera = pose[:3, :3] @ sighting.world_m + pose[:3, 3]
-            if in_camera[2] <= 0:
-                return normal, slope, float("inf")
-            at_px, by_point = project(cameras[sighting.camera].intrinsics, in_camera[None])
-            residual = (at_px[0] - sighting.pixel) / anchor.sigma_px
-            rows = (
-                by_point[0] @ np.concatenate([cross_matrix(in_camera), -np.eye(3)], axis=1) / anchor.sigma_px
-            )
-            place = index.cameras[sighting.camera]
-            normal[place, place] += rows.T @ rows
-            slope[place] += rows.T @ residual
-            cost += float(residual @ residual)
+    for point in known.rows(state, index) if known is not None else ():
+        normal[np.ix_(point.among, point.among)] += point.rows.T @ point.rows
+        slope[point.among] += point.rows.T @ point.residual
+        cost += float(point.residual @ point.residual)
     return normal, slope, cost
 
 

@@ -1,7 +1,6 @@
-"""What fixes the world's frame: the board in a known pose, named points, or one camera that stays where it is."""
+"""What fixes the world's frame: one pose of the board or one camera, which define it, or points measured in it."""
 
-from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,14 +12,16 @@ from elbowroom.geometry import DepthCamera, invert_rigid
 
 Array = NDArray[np.float64]
 POINT_SIGMA_PX = 0.5
-"""Of the pixels at which named points are said to be seen."""
+"""Of the pixels at which points are said to be seen."""
+POINT_SIGMA_M = 0.002
+"""Of measured places: what a total station reaches in a room, or a tape with much care [m]."""
 LEAST_WIDTH_M = 0.05
-"""Named points lie in a line if none is farther off it than this [m]."""
+"""Points lie in a line if none is farther off it than this [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoardAnchor:
-    """In one pose it is known where the board is.
+    """The world's frame is that in which the board lies so in one pose.
 
     Args:
         pose: number of the pose.
@@ -33,7 +34,7 @@ class BoardAnchor:
 
 @dataclass(frozen=True, slots=True)
 class CameraAnchor:
-    """One camera is where its pose says.
+    """The world's frame is that in which one camera is where its pose says.
 
     Args:
         camera: name.
@@ -43,32 +44,52 @@ class CameraAnchor:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sighting:
-    """A named point in one camera's image.
+class SeenPoint:
+    """A point of measured place that images show.
 
     Args:
         name: of the point.
-        world_m: where it is, shape (3,) [m].
-        camera: who sees it.
-        pixel: where, u then v [px].
+        world_m: where it was measured, shape (3,) [m].
+        seen_px: where cameras see it, u then v, shape (2,) [px], by camera.
     """
 
     name: str
     world_m: Array
-    camera: str
-    pixel: Array
+    seen_px: Mapping[str, Array]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BoardCorner:
+    """A corner of the board, whose place was measured while the board stood in one of its poses.
+
+    Args:
+        name: of the point.
+        world_m: where it was measured, shape (3,) [m].
+        pose: number of the pose.
+        board_m: where the corner is on the board, shape (3,), board frame [m].
+    """
+
+    name: str
+    world_m: Array
+    pose: int
+    board_m: Array
+
+
+KnownPoint = SeenPoint | BoardCorner
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PointsAnchor:
-    """Points whose place in the world is known.
+    """Points whose places in the world were measured, each with an error of its own.
 
     Args:
-        sightings: at least three points, not in a line, each seen by two cameras or more.
+        points: at least three, not in a line, each a corner of the board or seen by two cameras or more.
+        sigma_m: of each measured coordinate [m].
         sigma_px: of the pixels.
     """
 
-    sightings: tuple[Sighting, ...]
+    points: tuple[KnownPoint, ...]
+    sigma_m: float = POINT_SIGMA_M
     sigma_px: float = POINT_SIGMA_PX
 
 
@@ -100,52 +121,46 @@ def world_from_base(
             )
         camera = cameras[anchor.camera]
         return np.asarray(camera.world_from_camera @ invert_rigid(base_from_camera[anchor.camera]))
-    return _from_points(anchor, cameras, base_from_camera)
+    return _from_points(anchor, cameras, base_from_camera, base_from_board)
 
 
 def _from_points(
-    anchor: PointsAnchor, cameras: Mapping[str, DepthCamera], base_from_camera: Mapping[str, Array]
+    anchor: PointsAnchor,
+    cameras: Mapping[str, DepthCamera],
+    base_from_camera: Mapping[str, Array],
+    base_from_board: Mapping[int, Array],
 ) -> Array:
-    seen_by: dict[str, list[Sighting]] = defaultdict(list)
-    for sighting in anchor.sightings:
-        if sighting.camera not in cameras:
-            raise CalibrationError(
-                f"point {sighting.name}: camera {sighting.camera} is unknown; cameras are {', '.join(cameras)}"
-            )
-        seen_by[sighting.name].append(sighting)
     in_base, in_world = [], []
-    for sightings in seen_by.values():
-        if len({sighting.camera for sighting in sightings}) > 1:
-            in_base.append(_crossing(sightings, cameras, base_from_camera))
-            in_world.append(sightings[0].world_m)
-    if len(in_base) < 3:
-        raise CalibrationError(
-            f"{len(in_base)} named points are seen by two cameras or more; at least 3 are needed to fix the world"
-        )
-    base, world = np.array(in_base), np.array(in_world)
-    if np.linalg.svd(world - world.mean(axis=0))[1][1] < LEAST_WIDTH_M:
-        raise CalibrationError("the named points lie in a line; name one that lies beside it")
-    found = _fitted(base, world)
-    off = np.linalg.norm(base @ found[:3, :3].T + found[:3, 3] - world, axis=1)
-    if off.max() > 0.1:
-        name = [name for name, seen in seen_by.items() if len({s.camera for s in seen}) > 1][
-            int(off.argmax())
-        ]
-        raise CalibrationError(
-            f"point {name}: lies {off.max() * 1e3:.0f} mm from where the cameras see it when all points are fitted; "
-            "check its world_m and seen_px"
-        )
-    return found
+    for point in anchor.points:
+        if isinstance(point, BoardCorner):
+            if point.pose not in base_from_board:
+                raise CalibrationError(
+                    f"point {point.name}: is a corner of the board in pose {point.pose}, which was seen by no camera; "
+                    "show the board there again, or take the point out of calibration.world"
+                )
+            pose = base_from_board[point.pose]
+            in_base.append(pose[:3, :3] @ point.board_m + pose[:3, 3])
+            in_world.append(point.world_m)
+            continue
+        unknown = [camera for camera in point.seen_px if camera not in cameras]
+        if unknown:
+            raise CalibrationError(
+                f"point {point.name}: camera {unknown[0]} is unknown; cameras are {', '.join(cameras)}"
+            )
+        if len(point.seen_px) > 1:
+            in_base.append(_crossing(point, cameras, base_from_camera))
+            in_world.append(point.world_m)
+    return _fitted(in_base, in_world)
 
 
 def _crossing(
-    sightings: list[Sighting], cameras: Mapping[str, DepthCamera], base_from_camera: Mapping[str, Array]
+    point: SeenPoint, cameras: Mapping[str, DepthCamera], base_from_camera: Mapping[str, Array]
 ) -> Array:
     """The point nearest to the rays of all cameras, base frame."""
     left, right = np.zeros((3, 3)), np.zeros(3)
-    for sighting in sightings:
-        ray = np.append(directions(cameras[sighting.camera].intrinsics, sighting.pixel[None])[0], 1.0)
-        pose = base_from_camera[sighting.camera]
+    for camera, pixel in point.seen_px.items():
+        ray = np.append(directions(cameras[camera].intrinsics, pixel[None])[0], 1.0)
+        pose = base_from_camera[camera]
         along = pose[:3, :3] @ (ray / np.linalg.norm(ray))
         across = np.eye(3) - np.outer(along, along)
         left += across
@@ -153,8 +168,16 @@ def _crossing(
     return np.asarray(np.linalg.solve(left, right), dtype=np.float64)
 
 
-def _fitted(base: Array, world: Array) -> Array:
+def _fitted(in_base: Sequence[Array], in_world: Sequence[Array]) -> Array:
     """The rigid transform that brings points of one frame nearest to those of the other (Kabsch 1976)."""
+    if len(in_base) < 3:
+        raise CalibrationError(
+            f"{len(in_base)} points of known place are corners of the board or seen by two cameras or more; "
+            "at least 3 are needed to fix the world"
+        )
+    base, world = np.array(in_base), np.array(in_world)
+    if np.linalg.svd(world - world.mean(axis=0))[1][1] < LEAST_WIDTH_M:
+        raise CalibrationError("the points of known place lie in a line; name one that lies beside it")
     middle_of_base, middle_of_world = base.mean(axis=0), world.mean(axis=0)
     u, _, vt = np.linalg.svd((world - middle_of_world).T @ (base - middle_of_base))
     turn = u @ np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))]) @ vt

@@ -48,6 +48,8 @@ def report_sections(
         change_table(rows),
         what_next([note for camera in found.cameras for note in camera.notes]),
     ]
+    if found.points_off_m:
+        overview.append(_points(found))
     sections = [
         ("What was found", overview),
         ("Cameras and poses from above", [_graph(found), _shared(found)]),
@@ -58,6 +60,14 @@ def report_sections(
         lines = [(text,) for text in troubles]
         sections.append(("Images without a usable view", [Table("", ("what was wrong",), lines)]))
     return sections
+
+
+def _points(found: Extrinsics) -> Block:
+    return Table(
+        "Points of known place, which fix the world",
+        ("point", "from where it was measured to where it is seen [mm]"),
+        [(name, f"{off_m * 1e3:.1f}") for name, off_m in found.points_off_m.items()],
+    )
 
 
 def _graph(found: Extrinsics) -> Block:

@@ -9,9 +9,16 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.trouble import Fault, Trouble
 from elbowroom.calibrate.calibrated_camera import CalibratedCamera
-from elbowroom.calibrate.extrinsics.adjustment import Solution, State, adjust, camera_from_board
-from elbowroom.calibrate.extrinsics.anchor import Anchor, CameraAnchor, world_from_base
+from elbowroom.calibrate.extrinsics.adjustment import Solution, adjust, camera_from_board, fixed_by_points
+from elbowroom.calibrate.extrinsics.anchor import (
+    Anchor,
+    CameraAnchor,
+    PointsAnchor,
+    world_from_base,
+)
+from elbowroom.calibrate.extrinsics.contradiction import require_points_agree
 from elbowroom.calibrate.extrinsics.disagreement import (
     require_board_size,
     require_still,
@@ -19,8 +26,11 @@ from elbowroom.calibrate.extrinsics.disagreement import (
     weak_points,
 )
 from elbowroom.calibrate.extrinsics.graph import first_solution, require_one_piece, shared_poses
+from elbowroom.calibrate.extrinsics.known_points import KnownPoints
+from elbowroom.calibrate.extrinsics.misread import misread_views
 from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, corner_rows, seen_boards
 from elbowroom.calibrate.extrinsics.seen_plane import rays_of
+from elbowroom.calibrate.extrinsics.unknowns import State
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
 
@@ -39,8 +49,10 @@ class Extrinsics:
         corner_factor, plane_factor: variance factors by camera: how many times the variance of what was seen is that
             which its sigmas promise.
         seen: all views, in which residuals are.
+        left_out: views that were not used, and why.
         shared: how many poses each two cameras saw together.
         view_weight: of each view in the end; below one: it fits the others badly.
+        points_off_m: how far each point of known place is probably from where it was measured [m], by name.
     """
 
     cameras: tuple[CalibratedCamera, ...]
@@ -51,8 +63,10 @@ class Extrinsics:
     corner_factor: Mapping[str, float]
     plane_factor: Mapping[str, float]
     seen: tuple[SeenBoard, ...]
+    left_out: tuple[Trouble, ...]
     shared: Mapping[tuple[str, str], int]
     view_weight: Array
+    points_off_m: Mapping[str, float]
 
     def depth_errors(self) -> dict[str, tuple[float, float]]:
         """Bias [m] and scale of those cameras whose depth reads wrong by more than chance at 1 m or at 4 m."""
@@ -95,26 +109,40 @@ def solve_extrinsics(
     _require_once(views)
     progress("each view by itself")
     seen = seen_boards(named, board, views)
-    by_camera: dict[str, list[SeenBoard]] = {name: [] for name in named}
-    for one in seen:
-        by_camera[one.view.camera].append(one)
-    require_one_piece(list(named), seen)
-    _require_views(by_camera, least_views)
+    _require_views(named, seen, least_views)
     require_board_size(board, seen)
     progress("first solution")
     corners = board.corners_in_board
     base_from_camera, base_from_board = first_solution(list(named), seen, corners)
+    misread = misread_views(seen, base_from_camera, base_from_board, corners)
+    if misread:
+        seen = [one for one in seen if all(one is not other for other, _ in misread)]
+        _require_views(named, seen, least_views)
+        base_from_camera, base_from_board = first_solution(list(named), seen, corners)
     world = world_from_base(anchor, named, base_from_camera, base_from_board)
     state = State(
         {name: world @ base_from_camera[name] for name in named},
         {pose: world @ at for pose, at in base_from_board.items()},
-        {name: np.zeros(2) for name, own in by_camera.items() if any(one.plane is not None for one in own)},
+        {name: np.zeros(2) for name in named if any(one.plane is not None for one in _of(name, seen))},
     )
     progress(f"{len(named)} cameras and {len(state.boards)} poses together")
-    solution = adjust(named, seen, state, anchor)
+    known = KnownPoints(anchor, named) if isinstance(anchor, PointsAnchor) else None
+    held = CameraAnchor(seen[0].view.camera) if isinstance(anchor, PointsAnchor) else anchor
+    solution = adjust(seen, state, held)
     require_still(seen, solution, corners)
     require_tilts(seen, solution)
-    return _found(named, before or named, by_camera, seen, solution, anchor)
+    if known is not None:
+        solution = fixed_by_points(seen, solution, known)
+        require_points_agree(known, solution)
+    left_out = tuple(
+        Trouble(one.view.camera, one.view.pose, Fault.MISREAD, f"by {off_m * 1e3:.0f} mm")
+        for one, off_m in misread
+    )
+    return _found(named, before or named, seen, left_out, solution, known)
+
+
+def _of(camera: str, seen: Sequence[SeenBoard]) -> list[SeenBoard]:
+    return [one for one in seen if one.view.camera == camera]
 
 
 def _require_once(views: Sequence[BoardView]) -> None:
@@ -127,8 +155,10 @@ def _require_once(views: Sequence[BoardView]) -> None:
         known.add((view.camera, view.pose))
 
 
-def _require_views(by_camera: Mapping[str, Sequence[SeenBoard]], least: int) -> None:
-    few = {name: len(own) for name, own in by_camera.items() if len(own) < least}
+def _require_views(cameras: Mapping[str, DepthCamera], seen: Sequence[SeenBoard], least: int) -> None:
+    require_one_piece(list(cameras), seen)
+    counts = {name: len(_of(name, seen)) for name in cameras}
+    few = {name: count for name, count in counts.items() if count < least}
     if few:
         words = ", ".join(f"{name} ({count})" for name, count in list(few.items())[:4])
         raise CalibrationError(
@@ -140,20 +170,20 @@ def _require_views(by_camera: Mapping[str, Sequence[SeenBoard]], least: int) -> 
 def _found(
     cameras: Mapping[str, DepthCamera],
     before: Mapping[str, DepthCamera],
-    by_camera: Mapping[str, Sequence[SeenBoard]],
     seen: Sequence[SeenBoard],
+    left_out: tuple[Trouble, ...],
     solution: Solution,
-    anchor: Anchor,
+    known: KnownPoints | None,
 ) -> Extrinsics:
     shared = shared_poses(seen)
     found = []
-    for name, own in by_camera.items():
+    for name in cameras:
+        own = _of(name, seen)
         covariance = solution.of_camera(name)
         common: dict[str, int] = defaultdict(int)
         for (a, b), count in shared.items():
             if name in (a, b):
                 common[b if a == name else a] += count
-        held = isinstance(anchor, CameraAnchor) and anchor.camera == name
         sure = np.sqrt([np.trace(covariance[3:, 3:]), np.trace(covariance[:3, :3])])
         found.append(
             CalibratedCamera(
@@ -163,7 +193,7 @@ def _found(
                 residuals_px=np.concatenate([corner_distances(one, solution.state) for one in own]),
                 residuals_m=np.concatenate([depth_distances(one, solution.state) for one in own]),
                 notes=()
-                if held
+                if name not in solution.index.cameras
                 else weak_points(name, own, common, float(sure[0]), float(np.degrees(sure[1]))),
             )
         )
@@ -177,8 +207,10 @@ def _found(
         corner_factor=solution.variances.corner,
         plane_factor=solution.variances.plane,
         seen=tuple(seen),
+        left_out=left_out,
         shared=shared,
         view_weight=solution.variances.view,
+        points_off_m={} if known is None else known.off_m(solution.state, solution.index),
     )
 
 

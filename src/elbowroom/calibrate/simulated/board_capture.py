@@ -1,14 +1,17 @@
-"""A capture of a board that is held up all over the room, and laid on the floor once."""
+"""A capture of a board that is held up all over the room, and laid on the floor once or put on stands."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.extrinsics.anchor import POINT_SIGMA_M
 from elbowroom.calibrate.simulated.hand_poses import Shown, floor_pose, hand_poses, shown
+from elbowroom.calibrate.simulated.stand_poses import stand_poses
 from elbowroom.calibrate.simulated.start import TrueCamera, moved
 from elbowroom.calibrate.simulated.writer import INFRARED_FOLDER, CaptureWriter
 from elbowroom.errors import CalibrationError
@@ -32,7 +35,9 @@ class BoardCapture:
     Args:
         cameras: true and said.
         board: the board.
-        poses: how often it is shown, the pose on the floor among them.
+        poses: how often it is shown, the pose on the floor or those on stands among them.
+        stands: on so many stands the board is put, and three of its corners are measured there, to `MEASURED_M`: that
+            fixes the world. 0: the board is laid on the floor, which defines the world.
         noise: name of the sensors' noise, for the site file; the cameras themselves have the model.
         seed: of all random numbers.
         hand_moved_m, hand_turned_deg: how far a hand moves the board between the exposures of different cameras.
@@ -42,12 +47,13 @@ class BoardCapture:
         all_views: also images that show a part of the board or its back, as a real capture has.
 
     Raises:
-        CalibrationError: fewer than two poses.
+        CalibrationError: fewer than two poses, or than stands.
     """
 
     cameras: tuple[TrueCamera, ...]
     board: Board
     poses: int = 40
+    stands: int = 0
     noise: str = "kinect_v1"
     seed: int = 1
     hand_moved_m: float = 0.0002
@@ -59,9 +65,13 @@ class BoardCapture:
     def __post_init__(self) -> None:
         if self.poses < 2:
             raise CalibrationError(f"capture: {self.poses} poses, must be at least 2")
+        if not 0 <= self.stands <= self.poses:
+            raise CalibrationError(f"capture: {self.stands} stands, must be 0 to the {self.poses} poses")
 
 
 MOVED_M = 0.03
+MEASURED_M = POINT_SIGMA_M
+"""Sigma of each coordinate of a corner that is measured [m]."""
 
 
 def record_board(
@@ -83,16 +93,15 @@ def record_board(
     """
     writer = CaptureWriter(out, capture.cameras)
     random = np.random.default_rng([capture.seed, 17])
-    first_corner_m, x_axis_deg = floor_pose(capture.board)
-    lying = WorldFromBoard(by="board", pose=0, first_corner_m=first_corner_m, x_axis_deg=x_axis_deg)
     true_cameras = [camera.true for camera in capture.cameras]
-    poses = [lying.world_from_board]
+    fixed = _on_stands(capture, random) if capture.stands else _on_the_floor(capture.board)
+    poses = list(fixed.poses)
     poses += hand_poses(
-        true_cameras, capture.board, capture.poses - 1, random, taken=poses, near=capture.near
+        true_cameras, capture.board, capture.poses - len(poses), random, taken=poses, near=capture.near
     )
     rows = []
     for number, pose in enumerate(poses):
-        seen = _show(capture, writer, number, pose, random)
+        seen = _show(capture, writer, number, pose, random, by_hand=number >= len(fixed.poses))
         rows.append(
             {
                 "stamp_ns": _stamp(number),
@@ -104,7 +113,40 @@ def record_board(
         )
         on_pose(number + 1, len(seen))
     writer.truth({"poses": rows})
-    return writer.site(capture.noise, {"calibration": _said(capture.board, lying)}, GRID)
+    return writer.site(capture.noise, {"calibration": _said(capture.board, fixed)}, GRID)
+
+
+class _Fixed(NamedTuple):
+    """What fixes the world: the first poses, world_from_board each of shape (4, 4), and `calibration.world`."""
+
+    poses: list[NDArray[np.float64]]
+    world: dict[str, object]
+
+
+def _on_the_floor(board: Board) -> _Fixed:
+    first_corner_m, x_axis_deg = floor_pose(board)
+    lying = WorldFromBoard(by="board", pose=0, first_corner_m=first_corner_m, x_axis_deg=x_axis_deg)
+    return _Fixed([lying.world_from_board], lying.model_dump(mode="json"))
+
+
+def _on_stands(capture: BoardCapture, random: np.random.Generator) -> _Fixed:
+    """The board on stands, of which somebody measures the first corner, the end of its row and that of its column."""
+    board = capture.board
+    poses = stand_poses([camera.true for camera in capture.cameras], board, capture.stands, random)
+    points = []
+    for pose, world_from_board in enumerate(poses):
+        for column, row in ((0, 0), (board.columns - 1, 0), (0, board.rows - 1)):
+            on_board = board.square_m * np.array([column, row, 0.0])
+            place = world_from_board[:3, :3] @ on_board + world_from_board[:3, 3]
+            measured = place + random.normal(0.0, MEASURED_M, 3)
+            points.append(
+                {
+                    "name": f"stand {pose}, column {column}, row {row}",
+                    "world_m": np.round(measured, 4).tolist(),
+                    "corner": {"pose": pose, "column": column, "row": row},
+                }
+            )
+    return _Fixed(poses, {"by": "points", "sigma_m": MEASURED_M, "points": points})
 
 
 def _stamp(number: int) -> int:
@@ -117,18 +159,19 @@ def _show(
     number: int,
     pose: NDArray[np.float64],
     random: np.random.Generator,
+    by_hand: bool,
 ) -> dict[str, Shown]:
     """Renders the board at one pose for each camera that has it in view."""
     seen: dict[str, Shown] = {}
     work: list[tuple[TrueCamera, NDArray[np.float64]]] = []
     for index, camera in enumerate(capture.cameras):
-        by_hand = pose @ moved(capture.hand_turned_deg, capture.hand_moved_m, random) if number else pose
+        held = pose @ moved(capture.hand_turned_deg, capture.hand_moved_m, random) if by_hand else pose
         if number == capture.moved_pose and index % 2:
-            by_hand = by_hand @ moved(0.0, MOVED_M, random)
-        view = shown(camera.true, capture.board, by_hand)
+            held = held @ moved(0.0, MOVED_M, random)
+        view = shown(camera.true, capture.board, held)
         if (view.whole and view.front) or (capture.all_views and view.any_part):
             seen[camera.true.name] = view
-            work.append((camera, by_hand))
+            work.append((camera, held))
 
     def one(item: tuple[TrueCamera, NDArray[np.float64]]) -> None:
         camera, held = item
@@ -144,7 +187,7 @@ def _show(
     return seen
 
 
-def _said(board: Board, lying: WorldFromBoard) -> dict[str, object]:
+def _said(board: Board, fixed: _Fixed) -> dict[str, object]:
     """The key `calibration` of the site file."""
     images: dict[str, object] = {"kind": "depth"}
     if board.kind == "printed":
@@ -160,10 +203,5 @@ def _said(board: Board, lying: WorldFromBoard) -> dict[str, object]:
             "thickness_m": board.thickness_m,
         },
         "images": images,
-        "world": {
-            "by": "board",
-            "pose": lying.pose,
-            "first_corner_m": list(lying.first_corner_m),
-            "x_axis_deg": lying.x_axis_deg,
-        },
+        "world": fixed.world,
     }

@@ -98,7 +98,7 @@ def hand_poses(
         count: number of poses.
         random: source of randomness.
         half_side_m: the walls' distance from the room's middle [m].
-        taken: poses that are there already, such as the one on the floor.
+        taken: poses that are there already, on the floor or on a stand.
         near: right before one camera each time, so that the board fills half of its image or more and is always
             tilted: what intrinsics want. Other cameras hardly see it.
 
@@ -111,16 +111,16 @@ def hand_poses(
     views = {camera.name: 0 for camera in cameras}
     cells: dict[tuple[str, int, int], int] = {}
     for pose in taken:
-        _count(cameras, board, pose, views, cells)
+        count_views(cameras, board, pose, views, cells)
     poses: list[NDArray[np.float64]] = []
     for number in range(count):
         best, most, drawn = None, -1.0, 0
         for _ in range(MOST_TRIES):
             camera = cameras[int(random.permutation(_neediest(views))[0])]
             pose = _drawn(camera, board, random, near)
-            if not _in_room(board, pose, half_side_m) or not shown(camera, board, pose).whole:
+            if not in_room(board, pose, half_side_m) or not shown(camera, board, pose).whole:
                 continue
-            worth = _worth(cameras, board, pose, views, cells)
+            worth = worth_of(cameras, board, pose, views, cells)
             if worth > most:
                 best, most = pose, worth
             drawn += 1
@@ -132,7 +132,7 @@ def hand_poses(
                 f"{board.columns} x {board.rows} squares of {board.square_m} m fits; "
                 "make it smaller, or the images larger"
             )
-        _count(cameras, board, best, views, cells)
+        count_views(cameras, board, best, views, cells)
         poses.append(best)
     return poses
 
@@ -176,7 +176,8 @@ def _facing(middle: NDArray[np.float64]) -> Rotation:
     return Rotation.from_rotvec(axis / max(across, 1e-12) * np.arctan2(across, middle[2]))
 
 
-def _in_room(board: Board, pose: NDArray[np.float64], half_side_m: float) -> bool:
+def in_room(board: Board, pose: NDArray[np.float64], half_side_m: float) -> bool:
+    """Whether a board fits in the room at a pose, world_from_board of shape (4, 4), and touches nothing."""
     corners = board.outline_in_board @ pose[:3, :3].T + pose[:3, 3]
     low, high = corners.min(axis=0), corners.max(axis=0)
     side = half_side_m - CLEARANCE_M
@@ -196,13 +197,14 @@ def _cell(camera: DepthCamera, board: Board, pose: NDArray[np.float64]) -> tuple
     return camera.name, int(np.clip(3 * u / camera.width, 0, 2)), int(np.clip(3 * v / camera.height, 0, 2))
 
 
-def _worth(
+def worth_of(
     cameras: Sequence[DepthCamera],
     board: Board,
     pose: NDArray[np.float64],
     views: dict[str, int],
     cells: dict[tuple[str, int, int], int],
 ) -> float:
+    """How much a pose gives to cameras that have few `views` so far, or few in that ninth of the image (`cells`)."""
     worth = 0.0
     for camera in cameras:
         seen = shown(camera, board, pose)
@@ -211,13 +213,14 @@ def _worth(
     return worth
 
 
-def _count(
+def count_views(
     cameras: Sequence[DepthCamera],
     board: Board,
     pose: NDArray[np.float64],
     views: dict[str, int],
     cells: dict[tuple[str, int, int], int],
 ) -> None:
+    """Adds a pose to the views and cells of the cameras that see it."""
     for camera in cameras:
         seen = shown(camera, board, pose)
         if seen.whole and seen.front:
