@@ -106,7 +106,7 @@ def reconstruct(
             margin=margin,
             machine=machine,
             joints=here,
-            source=Source(images, margin or Margin(), detail, rule, model_depth or {}),
+            source=Source(images, margin or Margin(), detail, rule, model_depth or {}, focus),
             threads=threads,
         )
 
