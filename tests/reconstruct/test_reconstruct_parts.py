@@ -99,11 +99,34 @@ def test_a_camera_close_by_sees_all_parts_that_are_in_its_image(aside):
     eye = np.array([aside * 0.2, 0.01, -0.1])
     camera = scenes.camera_at("c", eye, eye + (0, 0, 1), size=(961, 961), focal=80.0)
     frame = scenes.frame_of(camera, scenes.Scene())
-    for lateral_px in (0.0, 0.3, 0.5):
-        margin = Margin(lateral_px=lateral_px)
-        space = space_of(grid, [camera], [frame], margin, {})
+    for own_px, lateral_px in ((None, 0.0), (None, 0.3), (None, 0.5), (12.0, 0.0)):
+        own = None if own_px is None else Margin(lateral_px=own_px)
+        space = space_of(grid, [replace(camera, margin=own)], [frame], Margin(lateral_px=lateral_px), {})
         assert space.free.all()
         assert is_free_in_parts(space, (0, 0, 0))
+
+
+def test_an_explained_pixel_is_free_up_to_the_model_in_parts_too():
+    grid = VoxelGrid((1.0, -0.1, -0.1), (1, 1, 1), 0.2)
+    camera = scenes.camera_at("c", (0, 0, 0), (1, 0, 0))
+    depth = np.full((camera.height, camera.width), 1.1, dtype=np.float32)
+    frame = scenes.DepthFrame("c", NOW, depth)
+    for model_m, free in ((0.0, False), (1.15, False), (2.0, True)):
+        model = {"c": np.full_like(depth, model_m)}
+        space = space_of(grid, [camera], [frame], Margin(), model)
+        assert space.free.all() == free
+        assert is_free_in_parts(space, (0, 0, 0)) == free
+
+
+def test_a_voxel_that_anybody_disputes_is_not_free_in_parts():
+    _, grid, cameras, frames, _, model = a_room(4)
+    space = space_of(grid, cameras, frames, Margin(lateral_px=0.0), model)
+    free = [tuple(i) for i in overridable(space) if is_free_in_parts(space, tuple(i))]
+    for index in free:
+        disputed = np.zeros(grid.shape, dtype=bool)
+        disputed[index] = True
+        other = replace(space, disputed_words=bits.pack(disputed, grid))
+        assert [i for i in free if not is_free_in_parts(other, i)] == [index]
 
 
 def test_what_no_camera_was_asked_of_is_not_free_in_parts():
@@ -131,7 +154,7 @@ def test_some_voxels_are_free_in_parts_and_some_are_not():
 
 
 def test_no_voxel_that_a_ball_touches_is_free_in_parts():
-    """Balls of three pixel pitches and more, exact depth."""
+    """Nor one that a box touches: they are some pixels wide, and depth is exact."""
     asked = 0
     for seed in range(0, 60, 2):
         _, grid, cameras, frames, scene, _ = a_room(seed)
