@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.geometry import bits
+from elbowroom.geometry import VoxelGrid, bits
+from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.reconstruct import LAWFUL, carve, merge, reconstruct, resolve
 from elbowroom.sensing import DepthFrame
@@ -81,6 +82,22 @@ def test_widening_the_margin_step_by_step_only_ever_takes_space(detail):
             after = reconstruct(grid, cameras, frames, detail=detail, margin=margin)
             assert_no_milder(after, before)
             before = after
+
+
+@pytest.mark.parametrize("cells", range(8, 36, 3))
+def test_what_lies_behind_a_speck_is_no_freer_by_a_wider_margin_where_neighbours_see_past_the_room(cells):
+    """A camera of coarse pixels: what they measured less a pixel's pitch may lie in the room again."""
+    grid = VoxelGrid((0.5, -0.2, -0.2), (cells, 4, 4), 0.1)
+    camera = scenes.camera_at("c", (0, 0, 0), (1, 0, 0), size=(16, 12), focal=6.0, flying_pixels=True)
+    depth = np.full((12, 16), 9.0, dtype=np.float32)
+    depth[6, 8] = 0.0
+    before = reconstruct(grid, [camera], [DepthFrame("c", 0, depth)])
+    for quadratic in (0.01, 0.03, 0.1, 0.3):
+        after = reconstruct(
+            grid, [camera], [DepthFrame("c", 0, depth)], margin=Margin(range_quadratic=quadratic)
+        )
+        assert_no_milder(after, before)
+        before = after
 
 
 def test_veto_is_rightly_called_unlawful():

@@ -27,6 +27,7 @@ class Source:
         detail: of the carve.
         rule: of `resolve`.
         model_depth: by camera, what the machine explains [m].
+        focus: blocks of 4 voxels that cameras were asked of, in the planes' order; None: all.
     """
 
     images: RoomImages
@@ -34,6 +35,7 @@ class Source:
     detail: str
     rule: str
     model_depth: Mapping[str, NDArray[np.float32]]
+    focus: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +52,8 @@ class FreeSpace:
         blind_words: blocked, disputed by a camera that delivered nothing valid there.
         disputed_words: blocked, and a camera that looks there could not say "through", for whatever reason.
         body_words: made free because the machine's own grown body covers it.
-        source: what it was made of, for `explain`; None: it comes from elsewhere.
+        source: what it was made of, for `explain` and for looking again (`reconstruct.parts`); None: it comes from
+            elsewhere, or more of it was blocked since then.
     """
 
     grid: VoxelGrid

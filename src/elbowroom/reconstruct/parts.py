@@ -5,12 +5,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.reconstruct import _kernels_box as box
 from elbowroom.reconstruct import _kernels_pyramid as pyramid
 from elbowroom.reconstruct._kernels_pixel import PIXEL_FLOATS, settle_word
 from elbowroom.reconstruct.free_space import FreeSpace, Source
-from elbowroom.reconstruct.images import Image, RoomImages
+from elbowroom.reconstruct.images import Image
 from elbowroom.reconstruct.views import layout_of, texels_of
 
 PARTS = 4
@@ -21,6 +21,8 @@ NEAREST_M = 1e-3
 """A camera whose plane comes as near to the voxel as this is not asked [m]."""
 STEPS = np.stack(np.meshgrid(*[range(PARTS)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 """From the first part to each, in parts, in the order of bits."""
+CORNERS = np.flatnonzero((STEPS % (PARTS - 1) == 0).all(axis=1))
+"""The parts in the corners of the voxel."""
 
 
 def is_free_in_parts(space: FreeSpace, index: tuple[int, int, int]) -> bool:
@@ -33,15 +35,17 @@ def is_free_in_parts(space: FreeSpace, index: tuple[int, int, int]) -> bool:
     Args:
         space: of detail `pixel` and rule `three`, with the frames it was made of (`FreeSpace.source`); else the
             answer is no.
-        index: of the voxel, (i, j, k); unseen and not disputed.
+        index: of the voxel, (i, j, k); one that cameras were not asked of, or that anybody disputes, is not free.
     """
     source = space.source
     if source is None or source.detail != "pixel" or source.rule != "three":
         return False
+    if not _is_undisputed(space, source, index):
+        return False
     edge = space.grid.voxel_size_m / PARTS
     first = space.grid.lower_m + np.array(index) * space.grid.voxel_size_m + edge / 2
     in_cameras = _in_cameras(source.images.cameras, first + STEPS * edge)
-    maybe = _centres_seen(source.images, in_cameras)
+    maybe = _may_be_seen(source, in_cameras)
     # first the camera that may see most
     rows = np.argsort(-maybe.sum(axis=1), kind="stable")
     seen = np.zeros(len(STEPS), dtype=np.bool_)
@@ -52,6 +56,14 @@ def is_free_in_parts(space: FreeSpace, index: tuple[int, int, int]) -> bool:
         if seen.all():
             return True
     return False
+
+
+def _is_undisputed(space: FreeSpace, source: Source, index: tuple[int, int, int]) -> bool:
+    """Whether cameras were asked of a voxel, and nobody disputes it."""
+    cells = bits.lattice(space.grid)
+    word = bits.word_of(*index, cells.cubes_y, cells.cubes_z)
+    asked = source.focus is None or source.focus[word]
+    return bool(asked and not space.disputed_words[word] & bits.bit_of(*index))
 
 
 def _in_cameras(cameras: tuple[DepthCamera, ...], points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -72,24 +84,33 @@ def _lenses(cameras: tuple[DepthCamera, ...]) -> NDArray[np.float64]:
     return np.array([(k.fx, k.fy, k.cx, k.cy, w, h) for k, w, h in lenses]).reshape(-1, 6, 1)
 
 
-def _centres_seen(images: RoomImages, in_cameras: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """By camera and part, whether the pixel at the part's centre measured farther, shape (cameras, parts).
+def _may_be_seen(source: Source, in_cameras: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """By camera and part, whether the pixel at the part's centre may be free beyond it, shape (cameras, parts).
 
-    A camera sees through no part at whose centre it does not.
+    A camera sees through no other part: a pixel is free no farther than it measured, than the machine's model in it,
+    or, if it is a speck, than the pixels beside it.
     """
+    images = source.images
     x, y, z = np.moveaxis(in_cameras, 1, 0)
     fx, fy, cx, cy, width, height = np.moveaxis(_lenses(images.cameras), 1, 0)
     depth = np.where(z > NEAREST_M, z, np.inf)
     u, v = np.rint(fx * x / depth + cx), np.rint(fy * y / depth + cy)
     inside = (z > NEAREST_M) & (u >= 0) & (u < width) & (v >= 0) & (v < height)
-    column, line = u.astype(np.intp), v.astype(np.intp)
     away = np.linalg.norm(in_cameras, axis=1)
     seen = np.zeros(z.shape, dtype=np.bool_)
     for row in np.flatnonzero(inside.any(axis=1)):
         camera, here = images.cameras[row], inside[row]
-        if camera.name in images.least_m:
-            far = z[row, here] if camera.depth_kind == "planar" else away[row, here]
-            seen[row, here] = images.least_m[camera.name][line[row, here], column[row, here]] > far
+        if camera.name not in images.least_m:
+            continue
+        far = (z if camera.depth_kind == "planar" else away)[row, here, None]
+        # of the two beside a speck one at most is a speck as well
+        beside = (-1, 0, 1) if camera.flying_pixels else (0,)
+        line = v[row, here, None].astype(np.intp)
+        column = np.clip(u[row, here, None].astype(np.intp) + beside, 0, camera.width - 1)
+        beyond = images.least_m[camera.name][line, column] > far
+        if camera.name in source.model_depth:
+            beyond |= np.abs(source.model_depth[camera.name][line, column]) > far
+        seen[row, here] = beyond.any(axis=1)
     return seen
 
 
@@ -111,9 +132,11 @@ def _parts_seen(
         in_camera: centres of all parts in its axes, shape (3, parts) [m].
     """
     camera = source.images.cameras[row]
-    if in_camera[2].min() <= 2 * edge + NEAREST_M:
+    middle = in_camera.mean(axis=1, keepdims=True)
+    corners = middle + (in_camera[:, CORNERS] - middle) * PARTS / (PARTS - 1)
+    if corners[2].min() <= NEAREST_M:
         return np.zeros(len(STEPS), dtype=np.bool_)
-    rows, columns = _window(camera, source, edge, in_camera)
+    rows, columns = _window(camera, source, corners)
     numbers = layout_of(grid, source.images.cameras, source.margin).numbers[row : row + 1].copy()
     numbers[0, box.LENS + 2] -= columns.start
     numbers[0, box.LENS + 3] -= rows.start
@@ -154,18 +177,13 @@ def _parts_seen(
 
 
 def _window(
-    camera: DepthCamera, source: Source, edge: float, in_camera: NDArray[np.float64]
+    camera: DepthCamera, source: Source, corners_in_camera: NDArray[np.float64]
 ) -> tuple[slice, slice]:
-    """Rows and columns of an image in which parts may be seen that lie before the camera."""
+    """Rows and columns of an image with all pixels that meet a voxel before the camera, and spare ones."""
     k = camera.intrinsics
-    x, y, z = in_camera
-    nearest = z.min() - edge
-    # half a part beyond the outermost centres, as it looks where the voxel is nearest
+    x, y, z = corners_in_camera
     beyond = (camera.margin or source.margin).lateral_px + SPARE_PX
-    return (
-        _span(k.fy * y / z + k.cy, beyond + k.fy * edge / nearest, camera.height),
-        _span(k.fx * x / z + k.cx, beyond + k.fx * edge / nearest, camera.width),
-    )
+    return _span(k.fy * y / z + k.cy, beyond, camera.height), _span(k.fx * x / z + k.cx, beyond, camera.width)
 
 
 def _span(at: NDArray[np.float64], beyond: float, size: int) -> slice:

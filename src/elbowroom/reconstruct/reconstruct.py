@@ -111,7 +111,7 @@ def reconstruct(
             machine=machine,
             joints=here,
             body_growth_m=body_growth_m,
-            source=Source(images, margin or Margin(), detail, rule, model_depth or {}),
+            source=Source(images, margin or Margin(), detail, rule, model_depth or {}, focus),
             threads=threads,
         )
 

@@ -130,6 +130,10 @@ def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin)
         polynomial = margin_polynomial(camera, own)
         reach = float(np.linalg.norm(corners - camera.centre_in_world, axis=1).max()) + SPARE_M
         reach += float(pyramid.margin_at.py_func(reach, polynomial))
+        pitch = _pitch_of(camera)
+        if camera.flying_pixels and pitch < 1.0:
+            # the farthest that is told apart, less the pitch that specks are short of it, lies beyond the grid as well
+            reach /= 1.0 - pitch
         row = numbers[c]
         row[:12] = camera.camera_from_world[:3].reshape(12)
         row[box.LENS : box.LENS + 4] = k.fx, k.fy, k.cx, k.cy
@@ -169,6 +173,11 @@ def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin)
         texel_first[c + 1] = texel_first[c] + camera.width * camera.height
         tile_first[c + 1] = tile_first[c] + own_shapes[TILE_LEVEL][0] * own_shapes[TILE_LEVEL][1]
     return Layout(grid, cameras, numbers, levels, offset, texel_first, tile_first, shapes, bits.inside(grid))
+
+
+def _pitch_of(camera: DepthCamera) -> float:
+    """Of a pixel, as a share of its depth."""
+    return 1.0 / min(camera.intrinsics.fx, camera.intrinsics.fy)
 
 
 def _levels_of(camera: DepthCamera) -> int:
@@ -279,10 +288,9 @@ def texels_of(
     if camera.flying_pixels:
         if not explained:
             model = NO_IMAGE
-        pitch = 1.0 / min(camera.intrinsics.fx, camera.intrinsics.fy)
         step = margin_polynomial(camera, STEP if camera.noise is not None else STEP_WITHOUT_NOISE)
         passed = np.empty_like(trust)
-        pyramid.pass_over_specks(trust, pitch, model, polynomial, quantum, passed)
+        pyramid.pass_over_specks(trust, _pitch_of(camera), model, polynomial, quantum, passed)
         pyramid.lower_at_steps(passed, doubt, quantum, step, trust)
         pyramid.mark_explained(model, polynomial, quantum, trust, doubt)
         apart = (0, trust.shape[0], 0, trust.shape[1])
