@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from elbowroom.errors import CameraError, FrameError, MachineError
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, bits
@@ -151,8 +154,14 @@ def test_a_hand_on_the_body_or_a_centimetre_off_is_never_explained_away(arm, dra
     assert (kept & voxels).any() or not voxels.any()
 
 
-def test_voxels_of_unexplained_returns_are_those_of_the_pixels_cubes(arm):
+@pytest.mark.parametrize("roll", [0.0, np.pi / 2])
+def test_voxels_of_unexplained_returns_are_those_of_the_pixels_cubes(arm, roll):
+    """With rows of pixels level and upright: neighbours may differ in one axis alone."""
     camera = naive.camera_at(*VIEWS[0])
+    about_axis = Rotation.from_rotvec([0.0, 0.0, roll]).as_matrix()
+    pose = camera.world_from_camera.copy()
+    pose[:3, :3] = pose[:3, :3] @ about_axis
+    camera = replace(camera, world_from_camera=pose)
     drawn, _ = naive.ray_cast(naive.triangles_in_world(arm, AT_REST), camera)
     depth = np.where(np.isfinite(drawn), drawn - 0.05, 3.0).astype(np.float32)
     explained = explain_one(arm, camera, depth, grid=GRID)
