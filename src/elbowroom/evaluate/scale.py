@@ -1,16 +1,16 @@
 """The scale model (thesis 5.2, 6.2): a room at 1:5 with C-arm, table, doctor and four Kinects; free travel and truth.
 
 Ours is simulated, the thesis' was a physical model: same scale, same kind of sensor (noise and near limit of a Kinect
-v1), but exact meshes for truth where the thesis used a ruler. Poses are drawn at random; every joint and direction
-that truly ends at an object within five braking distances is judged. Shortfalls are those of the point that touches,
-in millimetres of the model. The thesis restricts its scene to what four Kinects can see. Ours keeps every motion and
-says, by exact rays and not by verdicts, whether its way is *in view*: each voxel that the moving links come to touch,
-up to two voxels before the contact, is wholly seen by one camera, but for what the body covers. Where it is not, free
-travel has to end at the first voxel that no camera sees all of; how much earlier it ends is *short of the view*. The
-cameras were placed for these motions by the same rays (`benchmarks/scale_cameras.py`), for the smaller voxels. With
-these the body is grown by more than half a voxel, so that it takes the same space as with the larger ones. *Noise* is
-sigma(z) of Kinect v1; *and losses* adds to it what the simulated time-of-flight sensors suffer: mixed pixels at edges,
-and pixels without a return.
+v1), but exact meshes for truth where the thesis used a ruler. Poses are drawn at random; every joint and direction that
+truly ends at an object within five braking distances is judged. Shortfalls are those of the point that touches, in
+millimetres of the model. The thesis restricts its scene to what four Kinects can see. Ours keeps every motion and says,
+by exact rays and not by verdicts, whether its way is *in view*: each voxel that the moving links come to touch, up to
+two voxels before the contact, is wholly seen by one camera, but for what the body covers. Where it is not, free travel
+ends at the first voxel that no one camera sees all of, unless several see it between them; how much earlier it ends is
+*short of the view*, below zero where it goes on. The cameras were placed for these motions by the same rays
+(`benchmarks/scale_cameras.py`), for the smaller voxels. With these the body is grown by more than half a voxel, so that
+it takes the same space as with the larger ones. *Noise* is sigma(z) of Kinect v1; *and losses* adds to it what the
+simulated time-of-flight sensors suffer: mixed pixels at edges, and pixels without a return.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""How far the way of a motion is in view, by exact rays: what no reconstruction from these cameras can go beyond.
+"""How far the way of a motion is in view, by exact rays: up to the first voxel that no one camera sees all of.
 
 The way of a motion is the voxels that its moving links come to touch, without those that the body covers already. A
 voxel is in view if no solid touches it and one camera alone sees all of it: its centre, and its eight corners
