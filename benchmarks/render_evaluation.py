@@ -85,15 +85,16 @@ What misses, and why:
   on top, and by rule `three` fewer than three other cameras cannot overrule that. That alone takes up most of the due
   median, whatever the voxels, and a Kinect measures nothing nearer than 0.5 m; what is lost to each cause stands
   under the part's table. Four cameras see the way of few motions wholly: where one voxel of it is hidden from all,
-  free travel ends there, unless several see it between them. Mixed pixels and lost returns, which the noise model of a Kinect does not have, cost the
-  most: where one camera alone looks, or two, nobody can overrule them. Read the figures with this in mind: the
-  cameras are placed for the very motions that are judged (`python benchmarks/scale_cameras.py`, by exact rays); of 23
-  motions that an earlier placement was not made for, one was in view. The half pixel of the rule *in view* was
-  settled with verdicts in sight, when the ways were still made of points: without it, two more ways that stop early
-  counted as in view, and with a whole pixel none of 13 did. Voxels of 2.5 mm, too, were taken because it was known
-  that those of 4 mm miss what is due. With half a voxel of growth of the body, as everywhere else, four cameras saw
-  hardly a way wholly at 2.5 mm, since what lies beside a link that turns along itself is then not body any more;
-  hence its growth of 3 mm, by which the body takes the space that it takes with 4 mm.
+  free travel ends there, unless several see it between them. Mixed pixels and lost returns, which the noise model of
+  a Kinect does not have, cost the most: where one camera alone looks, or two, nobody can overrule them. Read the
+  figures with this in mind: the cameras are placed for the very motions that are judged (`python
+  benchmarks/scale_cameras.py`, by exact rays); of 23 motions that an earlier placement was not made for, one was in
+  view. The half pixel of the rule *in view* was settled with verdicts in sight, when the ways were still made of
+  points: without it, two more ways that stop early counted as in view, and with a whole pixel none of 13 did. Voxels
+  of 2.5 mm, too, were taken because it was known that those of 4 mm miss what is due. With half a voxel of growth of
+  the body, as everywhere else, four cameras saw hardly a way wholly at 2.5 mm, since what lies beside a link that
+  turns along itself is then not body any more; hence its growth of 3 mm, by which the body takes the space that it
+  takes with 4 mm.
 """
 
 
