@@ -27,6 +27,17 @@ def test_packing_loses_nothing_and_adds_nothing(shape, seed):
     assert np.bitwise_count(words).sum() == mask.sum()
 
 
+def test_the_place_of_a_voxel_is_where_its_bit_is():
+    grid = grid_of((21, 18, 35))
+    for index in [(0, 0, 0), (20, 17, 34), (3, 4, 16), (16, 0, 5)]:
+        mask = np.zeros(grid.shape, dtype=bool)
+        mask[index] = True
+        words = np.zeros(bits.word_count(grid), dtype=np.uint64)
+        word, bit = bits.place_of(index, grid)
+        words[word] |= bit
+        np.testing.assert_array_equal(words, bits.pack(mask, grid))
+
+
 @njit
 def _where(i, j, k, cubes_y, cubes_z):
     return word_of(i, j, k, cubes_y, cubes_z), bit_of(i, j, k)

@@ -77,13 +77,15 @@ def _machine_in_images() -> None:
 def _motion() -> None:
     from elbowroom.geometry import VoxelGrid, bits
     from elbowroom.machine.probe import probe
-    from elbowroom.motion import Motion, check_motion
+    from elbowroom.motion import Motion, blocks_in_reach, check_motion
     from elbowroom.reconstruct import FreeSpace
 
     grid = VoxelGrid((-0.2, -0.2, -0.2), (8, 8, 8), 0.05)
     nothing = bits.empty(grid)
     space = FreeSpace(grid, nothing, nothing, nothing, nothing)
-    check_motion(space, probe(), {"slide": 0.0}, Motion("slide", 1, 0.01))
+    motion = Motion("slide", 1, 0.01)
+    check_motion(space, probe(), {"slide": 0.0}, motion)
+    blocks_in_reach(grid, probe(), {"slide": 0.0}, [motion])
 
 
 def _watch() -> None:

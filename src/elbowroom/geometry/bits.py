@@ -9,7 +9,7 @@ from elbowroom.errors import GridError
 from elbowroom.geometry._kernels import Lattice, bit_of, word_of
 from elbowroom.geometry.grid import VoxelGrid
 
-__all__ = ["Words", "bit_of", "empty", "inside", "lattice", "pack", "unpack", "word_count", "word_of"]
+__all__ = ["Words", "empty", "inside", "lattice", "pack", "place_of", "unpack", "word_count"]
 
 Words = NDArray[np.uint64]
 
@@ -29,6 +29,13 @@ def word_count(grid: VoxelGrid) -> int:
 def empty(grid: VoxelGrid) -> Words:
     """A plane of zeros: nothing is known of any voxel."""
     return np.zeros(word_count(grid), dtype=np.uint64)
+
+
+def place_of(index: tuple[int, int, int], grid: VoxelGrid) -> tuple[int, np.uint64]:
+    """Where a voxel's bit lies: index of its word, and the bit within it."""
+    cells = lattice(grid)
+    # not the compiled ones: these would be compiled when first called, perhaps while the machine moves
+    return word_of.py_func(*index, cells.cubes_y, cells.cubes_z), bit_of.py_func(*index)
 
 
 def pack(mask: NDArray[np.bool_], grid: VoxelGrid) -> Words:

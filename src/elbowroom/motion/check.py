@@ -170,10 +170,9 @@ class _Scene:
 
 def _with_free(space: FreeSpace, block: Block) -> FreeSpace:
     """The space with the voxel of a block made free."""
-    cells = bits.lattice(space.grid)
-    i, j, k = _index_of(block, space)
+    word, bit = bits.place_of(_index_of(block, space), space.grid)
     free = space.free_words.copy()
-    free[bits.word_of(i, j, k, cells.cubes_y, cells.cubes_z)] |= bits.bit_of(i, j, k)
+    free[word] |= bit
     return replace(space, free_words=free)
 
 

@@ -60,10 +60,9 @@ def is_free_in_parts(space: FreeSpace, index: tuple[int, int, int]) -> bool:
 
 def _is_undisputed(space: FreeSpace, source: Source, index: tuple[int, int, int]) -> bool:
     """Whether cameras were asked of a voxel, and nobody disputes it."""
-    cells = bits.lattice(space.grid)
-    word = bits.word_of(*index, cells.cubes_y, cells.cubes_z)
+    word, bit = bits.place_of(index, space.grid)
     asked = source.focus is None or source.focus[word]
-    return bool(asked and not space.disputed_words[word] & bits.bit_of(*index))
+    return bool(asked and not space.disputed_words[word] & bit)
 
 
 def _in_cameras(cameras: tuple[DepthCamera, ...], points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -103,9 +103,10 @@ def report_on(space: FreeSpace, point_in_world: NDArray[np.float64]) -> PointRep
 
 
 def _state(space: FreeSpace, i: int, j: int, k: int) -> str:
+    word, bit = bits.place_of((i, j, k), space.grid)
+
     def holds(words: NDArray[np.uint64]) -> bool:
-        cells = bits.lattice(space.grid)
-        return bool(words[bits.word_of(i, j, k, cells.cubes_y, cells.cubes_z)] & bits.bit_of(i, j, k))
+        return bool(words[word] & bit)
 
     if holds(space.body_words):
         return "the machine itself"

@@ -254,6 +254,13 @@ def _squares(tiles: NDArray[np.uint32], squares: NDArray[np.uint32]) -> None:
         smaller = larger
 
 
+def _read_only(image: Image) -> Image:
+    """The same image, as frames have it: to numba one that may be written is another type, to be compiled anew."""
+    view = image.view()
+    view.setflags(write=False)
+    return view
+
+
 def texels_of(
     camera: DepthCamera,
     numbers: NDArray[np.float64],
@@ -279,6 +286,7 @@ def texels_of(
     quantum = numbers[box.QUANTUM]
     low, high = np.float32(camera.min_depth_m), np.float32(camera.max_depth_m)
     model = NO_IMAGE if model_m is None else model_m
+    least_m, greatest_m = _read_only(least_m), _read_only(greatest_m)
     # not one array by two names: the compiler could not tell, and would do one pixel at a time
     other = NO_TEXELS if doubt is trust else doubt
     apart = pyramid.texels_of_frame(
