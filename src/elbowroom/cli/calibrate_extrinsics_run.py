@@ -58,6 +58,8 @@ def run_extrinsics(
     )
     for trouble in found.left_out:
         print(f"left out  {trouble}")
+    for name in found.points_unseen:
+        print(f"left out  point {name}: no camera saw the board in its pose")
     if found.points_off_m:
         off_m = np.array(list(found.points_off_m.values()))
         print(
@@ -117,6 +119,7 @@ def summary_row(site: Site, found: Extrinsics, seen: Sightings, seconds: dict[st
         "views": len(found.seen),
         "images_without_view": len(seen.troubles) + len(found.left_out),
         "troubles": [str(trouble) for trouble in (*seen.troubles, *found.left_out)],
+        "points_unseen": list(found.points_unseen),
         "points_off_m": dict(found.points_off_m),
         "seconds": seconds,
     }

@@ -153,6 +153,19 @@ def test_derivatives_are_those_of_the_residuals():
         np.testing.assert_allclose(own.by_shift @ shift, slope, atol=1e-3 * np.abs(slope).max() + 10)
 
 
+def test_corners_in_a_pose_that_nobody_saw_are_left_out_and_told():
+    cameras, poses, views, random = made(8)
+    views = [view for view in views if view.pose != 3]
+    points = measured_corners(poses, STANDS, random)
+    found = solve_extrinsics(cameras, BOARD, views, PointsAnchor(points))
+    assert found.points_unseen == tuple(point.name for point in points if point.pose == 3)
+    kept = tuple(point for point in points if point.pose != 3)
+    other = solve_extrinsics(cameras, BOARD, views, PointsAnchor(kept))
+    assert other.points_unseen == ()
+    np.testing.assert_array_equal(errors(found, cameras), errors(other, cameras))
+    assert set(found.points_off_m) == {point.name for point in kept}
+
+
 class TestPlacesThatContradict:
     def test_one_of_three_poses_is_named_with_how_far_it_is_off(self):
         cameras, poses, views, random = made(5)
@@ -187,13 +200,13 @@ class TestPlacesThatContradict:
             solve_extrinsics(cameras, BOARD, views, PointsAnchor(points))
         solve_extrinsics(cameras, BOARD, views, PointsAnchor(points, sigma_m=0.015))
 
-    def test_a_pose_that_nobody_saw(self):
+    def test_no_pose_that_anybody_saw(self):
         cameras, poses, views, random = made(8)
         views = [view for view in views if view.pose != 3]
         with pytest.raises(
             CalibrationError, match=r"point stand 3, corner 0: .* pose 3, which was seen by no camera"
         ):
-            solve_extrinsics(cameras, BOARD, views, PointsAnchor(measured_corners(poses, STANDS, random)))
+            solve_extrinsics(cameras, BOARD, views, PointsAnchor(measured_corners(poses, (3,), random)))
 
     def test_a_point_behind_the_camera_that_sees_it(self):
         cameras, poses, views, random = made(9)

@@ -1,7 +1,7 @@
 """What fixes the world's frame: one pose of the board or one camera, which define it, or points measured in it."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,6 +91,11 @@ class PointsAnchor:
     points: tuple[KnownPoint, ...]
     sigma_m: float = POINT_SIGMA_M
     sigma_px: float = POINT_SIGMA_PX
+
+    def on_poses(self, poses: Collection[int]) -> "PointsAnchor":
+        """Without corners of the board in other poses; all points if that would leave fewer than three."""
+        kept = tuple(p for p in self.points if not isinstance(p, BoardCorner) or p.pose in poses)
+        return self if len(kept) < 3 else replace(self, points=kept)
 
 
 Anchor = BoardAnchor | CameraAnchor | PointsAnchor

@@ -52,6 +52,7 @@ class Extrinsics:
         left_out: views that were not used, and why.
         shared: how many poses each two cameras saw together.
         view_weight: of each view in the end; below one: it fits the others badly.
+        points_unseen: names of corners of the board that were measured in a pose that no camera saw; not used.
         points_off_m: how far each point of known place is probably from where it was measured [m], by name.
     """
 
@@ -66,6 +67,7 @@ class Extrinsics:
     left_out: tuple[Trouble, ...]
     shared: Mapping[tuple[str, str], int]
     view_weight: Array
+    points_unseen: tuple[str, ...]
     points_off_m: Mapping[str, float]
 
     def depth_errors(self) -> dict[str, tuple[float, float]]:
@@ -119,6 +121,11 @@ def solve_extrinsics(
         seen = [one for one in seen if all(one is not other for other, _ in misread)]
         _require_views(named, seen, least_views)
         base_from_camera, base_from_board = first_solution(list(named), seen, corners)
+    unseen: tuple[str, ...] = ()
+    if isinstance(anchor, PointsAnchor):
+        kept = anchor.on_poses(base_from_board)
+        unseen = tuple(point.name for point in anchor.points if point not in kept.points)
+        anchor = kept
     world = world_from_base(anchor, named, base_from_camera, base_from_board)
     state = State(
         {name: world @ base_from_camera[name] for name in named},
@@ -138,7 +145,7 @@ def solve_extrinsics(
         Trouble(one.view.camera, one.view.pose, Fault.MISREAD, f"by {off_m * 1e3:.0f} mm")
         for one, off_m in misread
     )
-    return _found(named, before or named, seen, left_out, solution, known)
+    return _found(named, before or named, seen, left_out, unseen, solution, known)
 
 
 def _of(camera: str, seen: Sequence[SeenBoard]) -> list[SeenBoard]:
@@ -172,6 +179,7 @@ def _found(
     before: Mapping[str, DepthCamera],
     seen: Sequence[SeenBoard],
     left_out: tuple[Trouble, ...],
+    unseen: tuple[str, ...],
     solution: Solution,
     known: KnownPoints | None,
 ) -> Extrinsics:
@@ -210,6 +218,7 @@ def _found(
         left_out=left_out,
         shared=shared,
         view_weight=solution.variances.view,
+        points_unseen=unseen,
         points_off_m={} if known is None else known.off_m(solution.state, solution.index),
     )
 
