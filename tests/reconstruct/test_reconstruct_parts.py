@@ -187,3 +187,15 @@ def test_without_its_frames_or_by_another_test_or_rule_nothing_is_free_in_parts(
     assert free
     for source in (None, replace(space.source, detail="footprint"), replace(space.source, rule="majority")):
         assert not is_free_in_parts(replace(space, source=source), free[0])
+
+
+def test_where_somebody_blocked_more_nothing_is_free_in_parts():
+    _, grid, cameras, frames, _, model = a_room(4)
+    space = space_of(grid, cameras, frames, Margin(lateral_px=0.0), model)
+    free = [tuple(i) for i in overridable(space) if is_free_in_parts(space, tuple(i))]
+    kept_out = np.zeros(grid.shape, dtype=bool)
+    kept_out[:, :, :2] = True
+    zone = replace(space, free_words=space.free_words & ~bits.pack(kept_out, grid))
+    assert free and not any(is_free_in_parts(zone, index) for index in free)
+    more = replace(space, free_words=space.free_words | bits.pack(kept_out, grid))
+    assert any(is_free_in_parts(more, index) for index in free if not kept_out[index])

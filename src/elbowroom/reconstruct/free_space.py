@@ -28,6 +28,8 @@ class Source:
         rule: of `resolve`.
         model_depth: by camera, what the machine explains [m].
         focus: blocks of 4 voxels that cameras were asked of, in the planes' order; None: all.
+        free_words: what was declared free of it: where less is free than that, somebody blocked more, and nothing is
+            looked at again; `resolve` fills it in.
     """
 
     images: RoomImages
@@ -36,6 +38,7 @@ class Source:
     rule: str
     model_depth: Mapping[str, NDArray[np.float32]]
     focus: NDArray[np.bool_] | None = None
+    free_words: Words | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,7 +56,7 @@ class FreeSpace:
         disputed_words: blocked, and a camera that looks there could not say "through", for whatever reason.
         body_words: made free because the machine's own grown body covers it.
         source: what it was made of, for `explain` and for looking again (`reconstruct.parts`); None: it comes from
-            elsewhere, or more of it was blocked since then.
+            elsewhere.
     """
 
     grid: VoxelGrid

@@ -33,14 +33,14 @@ def is_free_in_parts(space: FreeSpace, index: tuple[int, int, int]) -> bool:
     voxels would not. Less evidence leaves fewer parts free, never more.
 
     Args:
-        space: of detail `pixel` and rule `three`, with the frames it was made of (`FreeSpace.source`); else the
-            answer is no.
+        space: of detail `pixel` and rule `three`, with the frames it was made of (`FreeSpace.source`) and no less free
+            than they say; else the answer is no.
         index: of the voxel, (i, j, k); one that cameras were not asked of, or that anybody disputes, is not free.
     """
     source = space.source
     if source is None or source.detail != "pixel" or source.rule != "three":
         return False
-    if not _is_undisputed(space, source, index):
+    if not _is_undisputed(space, source, index) or _more_is_blocked(space, source):
         return False
     edge = space.grid.voxel_size_m / PARTS
     first = space.grid.lower_m + np.array(index) * space.grid.voxel_size_m + edge / 2
@@ -63,6 +63,11 @@ def _is_undisputed(space: FreeSpace, source: Source, index: tuple[int, int, int]
     word, bit = bits.place_of(index, space.grid)
     asked = source.focus is None or source.focus[word]
     return bool(asked and not space.disputed_words[word] & bit)
+
+
+def _more_is_blocked(space: FreeSpace, source: Source) -> bool:
+    """Whether somebody blocked what the frames say is free, such as a zone to keep out of."""
+    return source.free_words is None or bool((source.free_words & ~space.free_words).any())
 
 
 def _in_cameras(cameras: tuple[DepthCamera, ...], points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,6 +1,7 @@
 """Evidence -> free space, by a rule; the machine's body taken out."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Literal, get_args
 
 import numpy as np
@@ -122,5 +123,5 @@ def resolve(
         evidence.blind & blocked & ~surface,
         (evidence.disputed | evidence.unexplained) & blocked,
         body,
-        source,
+        None if source is None else replace(source, free_words=free),
     )
