@@ -126,7 +126,7 @@ def _budget(content: dict[str, Any]) -> list[str]:
     names = list(content["rows"][0]["short_mm"])
     lines = [
         (
-            f"{1000 * row['voxel_size_m']:g} mm",
+            f"{1000 * row['voxel_size_m']:g} mm{'' if row['judged'] else ', other poses'}",
             f"{row['in_view']} of {row['motions']}",
             *(f"{median:.1f} / {worst:.1f}" for median, worst in row["short_mm"].values()),
         )
@@ -137,7 +137,8 @@ def _budget(content: dict[str, Any]) -> list[str]:
     return [
         "What it is lost to: *voxels* that the true objects touch, in an else open space; *view*, up to the first "
         "voxel that no camera sees all of; *pixels* of exact images; the *margin* of three sigmas, with exact images; "
-        "*noise*. The cameras are placed for the smallest of these voxels.",
+        "*noise*. The cameras are placed for the smallest of these voxels and for the poses that are judged; *other "
+        "poses* are drawn in the same way.",
         "",
         *_lines([Table(title, ("voxel", "ways in view", *names), lines)]),
         f"Measured by `{meta['command']}`; commit {meta['commit']}; {meta['processor']}.",

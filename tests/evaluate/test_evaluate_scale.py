@@ -16,7 +16,7 @@ from elbowroom.simulate.machine_solids import link_solids
 from elbowroom.simulate.shapes import box, join
 
 pytest.importorskip("coal", reason="coal is not installed; exact mesh distance is left out")
-from elbowroom.evaluate.scale import PART, SENSORS, judge_pose
+from elbowroom.evaluate.scale import PART, SENSORS, judge_pose, near_m, with_noise
 from elbowroom.evaluate.scale_model import (
     PLACES_M,
     VOXEL_SIZES_M,
@@ -61,6 +61,26 @@ def test_every_motion_is_judged_by_every_sensor_and_its_view_is_the_same_for_all
     for motion, edge in itertools.product(motions, EDGES_M):
         mine = [row for row in rows if (row["motion"], row["voxel_size_m"]) == (motion, edge)]
         assert len({(row["in_view"], row["travel_in_view"]) for row in mine}) == 1
+
+
+def test_a_way_is_in_view_where_what_is_hidden_lies_near_the_contact(rows):
+    assert [near_m(edge) for edge in (0.002, 0.0025, 0.004)] == [0.005, 0.005, 0.008]
+    for row in rows:
+        hidden_mm = row["short_mm"] - row["short_of_view_mm"]
+        assert row["in_view"] == (hidden_mm <= 1000 * near_m(row["voxel_size_m"]) + 1e-3)
+
+
+def test_noise_is_that_of_the_model_and_makes_no_return_of_none():
+    depth = np.full((480, 640), 0.9, dtype=np.float32)
+    depth[:10] = 0
+    frame = er.DepthFrame("one", 0, depth)
+    camera = kinect("one", (0.9, 0.0, 0.22), True)
+    assert (with_noise(kinect("one", (0.9, 0.0, 0.22), False), frame, [1]).depth_m == depth).all()
+    noisy = with_noise(camera, frame, [1]).depth_m
+    assert (noisy[:10] == 0).all()
+    # Nguyen 2012: 1.2 mm + 1.9 mm/m^2 (0.9 m - 0.4 m)^2
+    assert np.std(noisy[10:]) == pytest.approx(0.0012 + 0.0019 * 0.25, rel=0.01)
+    assert np.mean(noisy[10:]) == pytest.approx(0.9, abs=1e-4)
 
 
 def test_summary_adds_up_and_answers_what_was_due(rows):

@@ -5,11 +5,11 @@ v1), but exact meshes for truth where the thesis used a ruler. Poses are drawn a
 truly ends at an object within five braking distances is judged. Shortfalls are those of the point that touches, in
 millimetres of the model. The thesis restricts its scene to what four Kinects can see. Ours keeps every motion and says,
 by exact rays and not by verdicts, whether its way is *in view*: each voxel that the moving links come to touch, up to
-two voxels before the contact, is wholly seen by one camera, but for what the body covers. Where it is not, free travel
-ends at the first voxel that no one camera sees all of, unless several see it between them; how much earlier it ends is
-*short of the view*, below zero where it goes on. The cameras were placed for these motions by the same rays
-(`benchmarks/scale_cameras.py`), for the smaller voxels. With these the body is grown by more than half a voxel, so that
-it takes the same space as with the larger ones. *Noise* is sigma(z) of Kinect v1; *and losses* adds to it what the
+two voxels before the contact and at least 5 mm, is wholly seen by one camera, but for what the body covers. Where it is
+not, free travel ends at the first voxel that no one camera sees all of, unless several see it between them; how much
+earlier it ends is *short of the view*, below zero where it goes on. The cameras were placed for these motions and for
+the smaller voxels (`benchmarks/scale_cameras.py`). With these the body is grown by more than half a voxel, so that it
+takes the same space as with the larger ones. *Noise* is sigma(z) of Kinect v1; *and losses* adds to it what the
 simulated time-of-flight sensors suffer: mixed pixels at edges, and pixels without a return.
 """
 
@@ -45,8 +45,8 @@ from elbowroom.simulate import Moment, render
 from elbowroom.simulate.machine_solids import link_solids
 from elbowroom.view.blocks import Block, Picture, Table, Words
 
-NEAR_VOXELS = 2
-"""A way is in view if it is so up to this many voxels before the contact."""
+NEAR_VOXELS, NEAR_M = 2, 0.005
+"""A way is in view if it is so up to two voxels before the contact, or to what the thesis was off by [m]."""
 EXPLAIN_M = 0.01 * FACTOR
 """How far from the machine's model a return may lie and still be the machine: the usual centimetre at 1:5 [m]."""
 SENSORS = {
@@ -138,14 +138,22 @@ def _space(
 
 def noisy_frames(views: Sequence[DepthCamera], moment: Moment, seed: int) -> list[DepthFrame]:
     """Exact images, with the noise of each camera's model and none of what else `render` does to them."""
-    frames = []
-    for number, (camera, frame) in enumerate(zip(views, render(views, moment, noise=False), strict=True)):
-        depth = frame.depth_m.astype(np.float64)
-        if camera.noise is not None:
-            normal = np.random.default_rng([seed, number]).standard_normal(depth.shape)
-            depth = np.where(depth > 0, depth + normal * camera.noise.sigma(depth), 0.0)
-        frames.append(DepthFrame(frame.camera, frame.stamp_ns, depth.astype(np.float32)))
-    return frames
+    frames = render(views, moment, noise=False)
+    return [with_noise(*pair, [seed, number]) for number, pair in enumerate(zip(views, frames, strict=True))]
+
+
+def with_noise(camera: DepthCamera, frame: DepthFrame, seed: Sequence[int]) -> DepthFrame:
+    """An exact image with the noise of its camera's model, if that has any."""
+    depth = frame.depth_m.astype(np.float64)
+    if camera.noise is not None:
+        normal = np.random.default_rng(seed).standard_normal(depth.shape)
+        depth = np.where(depth > 0, depth + normal * camera.noise.sigma(depth), 0.0)
+    return DepthFrame(frame.camera, frame.stamp_ns, depth.astype(np.float32))
+
+
+def near_m(voxel_size_m: float) -> float:
+    """Up to how long before the contact a way has to be in view [m]."""
+    return max(NEAR_M, NEAR_VOXELS * voxel_size_m)
 
 
 def _compared(
@@ -156,7 +164,7 @@ def _compared(
 
     hidden_mm = short_mm(travel_in_view)
     return {
-        "in_view": hidden_mm <= 1000 * NEAR_VOXELS * voxel_size_m,
+        "in_view": hidden_mm <= 1000 * near_m(voxel_size_m),
         "free_travel": round(verdict.free_travel, DECIMALS),
         "free_travel_unit": verdict.free_travel_unit,
         "truth_travel": round(contact.travel, DECIMALS),

@@ -27,8 +27,8 @@ FACTOR = 0.2
 OBJECTS = ("table", "mattress", "table controls", "doctor")
 LABORATORY = ("floor", "walls", "ceiling")
 """Solids that are not of the model."""
-VOXEL_M = 0.0025
-"""Edge of a voxel in what is due: 1.25 cm at full size [m]."""
+VOXEL_M = 0.002
+"""Edge of a voxel in what is due: 1 cm at full size [m]."""
 VOXEL_SIZES_M = (VOXEL_M, 0.004)
 """All that are measured [m]."""
 PICTURE_VOXEL_M = 0.004
@@ -38,8 +38,8 @@ CLEAR_M = 0.008
 """Between the machine and everything else at the start [m of the model]."""
 AIM_M = (0.0, 0.0, 0.22)
 """What the Kinects look at: the middle of the C."""
-PLACES_M = ((0.4, -0.69, 0.12), (-0.79, -0.29, 0.12), (0.58, 0.49, 0.7), (-0.44, 0.75, 0.45))
-"""Where they stand: `benchmarks/scale_cameras.py` found it, by exact rays to the ways of the motions judged [m]."""
+PLACES_M = ((-0.409, 0.709, 0.45), (0.142, -0.806, 0.45), (0.763, -0.356, 0.1), (-0.889, 0.078, 0.1))
+"""Where they stand: `benchmarks/scale_cameras.py` found it, for the ways of the motions judged [m]."""
 BLUE, GREEN, RED = (0.05, 0.15, 0.75), (0.05, 0.5, 0.12), (0.75, 0.04, 0.04)
 GREY = (0.75, 0.75, 0.72)
 
