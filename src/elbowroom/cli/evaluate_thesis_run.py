@@ -66,6 +66,8 @@ def run_parts(
         InputError: a folder that cannot be written to, no scheduler at the address.
         ElbowroomError: an extra is not installed.
     """
+    # at once: a result file that is written into the checkout makes it differ from its commit
+    said = meta()
     parts: list[Part] = [importlib.import_module(f"elbowroom.evaluate.{name}").PART for name in names]
     if out is not None:
         folder(out)
@@ -95,7 +97,7 @@ def run_parts(
                 console.print(rich_table(block))
     if out is not None:
         with whole_file(out / "report.html") as unfinished:
-            unfinished.write_text(page(TITLE, ABOUT, sections, meta()), encoding="utf-8")
+            unfinished.write_text(page(TITLE, ABOUT, sections, said), encoding="utf-8")
         console.print(f"\nPage: {out / 'report.html'}")
 
 
