@@ -82,20 +82,20 @@ What to read them with:
 - **Scale model.** No motion goes farther than the truth, by any sensor. What is due is asked of ways in view: four
   cameras see the way of few motions wholly, and where one voxel of it is hidden from all, free travel ends there,
   unless several see it between them. Where a camera looks at an object from the front, three sigmas (4 to 5 mm here)
-  are kept clear of what it measured, the farthest stray of some hundred pixels comes on top, and by rule `three` fewer
-  than three other cameras cannot overrule that; a camera that looks past the object loses nothing. So what is reached
-  depends on where the cameras stand, and they are placed for the very motions that are judged (`python
+  are kept clear of what it measured, the farthest stray of some hundred pixels comes on top, and by rule `three`
+  fewer than three other cameras cannot overrule that; a camera that looks past the object loses nothing. So what is
+  reached depends on where the cameras stand, and they are placed for the very motions that are judged (`python
   benchmarks/scale_cameras.py`, with other noise); placed by exact rays alone, with voxels of 2.5 mm, ways in view
-  were short by 8.0 mm median and 13.4 worst. What is lost to each cause, and what becomes of poses that they were
-  not placed for, stands under the part's table. Mixed pixels and lost returns, which the noise model of a Kinect does
-  not have, cost the most: where one camera alone looks, or two, nobody can overrule them. The half pixel of the rule
-  *in view* was settled with verdicts in sight, when the ways were still made of points: without it, two more ways that
-  stop early counted as in view, and with a whole pixel none of 13 did. A first search had asked nothing of ways beyond
-  the limit of *in view*; it put one that ends 16 mm short 0.14 mm beyond it, so now the worst that is due is asked up
-  to twice the limit. Voxels of 2 mm, too, were taken because it was known that larger ones miss what is due. With half
-  a voxel of growth of the body, as everywhere else, four cameras saw hardly a way wholly with such voxels, since what
-  lies beside a link that turns along itself is then not body any more; hence its growth of 3.3 mm, by which the body
-  takes the space that it takes with 4 mm.
+  were short by 8.0 mm median and 13.4 worst. In poses that they were not placed for, fewer ways are in view, and
+  those miss what is due; that, and what is lost to each cause, stands under the part's table. Mixed pixels and lost
+  returns, which the noise model of a Kinect does not have, cost the most: where one camera alone looks, or two,
+  nobody can overrule them. The half pixel of the rule *in view* was settled with verdicts in sight, when the ways
+  were still made of points: without it, two more ways that stop early counted as in view, and with a whole pixel none
+  of 13 did. A first search had asked nothing of ways beyond the limit of *in view*; it put one that ends 16 mm short
+  0.14 mm beyond it, so now the worst that is due is asked up to twice the limit. Voxels of 2 mm, too, were taken
+  because it was known that larger ones miss what is due. With half a voxel of growth of the body, as everywhere else,
+  four cameras saw hardly a way wholly with such voxels, since what lies beside a link that turns along itself is then
+  not body any more; hence its growth of 3.3 mm, by which the body takes the space that it takes with 4 mm.
 """
 
 
