@@ -49,7 +49,7 @@ One command does all of it and writes one page with the pictures:
 `reconstruction`, `motions`, `calibration`, `scale` and `more` in place of `all` do one part. The work is cut into
 shares that do not depend on each other: `--jobs N` spreads them over processes, `--cluster tcp://HOST:PORT` over the
 computers of a Dask cluster, and the numbers are the same however they are spread. Ctrl-C keeps the shares that are
-done in `report/parts`; the same command goes on from there. All of it took 8 min 38 s on two cores (`time` before the
+done in `report/parts`; the same command goes on from there. All of it took 8 min 56 s on two cores (`time` before the
 command; due are 12 minutes). It needs `pip install 'elbowroom[evaluate]'`, and
 `[cluster]` for Dask.
 

@@ -2,7 +2,7 @@
 
     python benchmarks/scale_budget.py
 
-Writes benchmarks/results/scale_budget.json, which docs/evaluation.md shows; takes some six minutes. The last row is of
+Writes benchmarks/results/scale_budget.json, which docs/evaluation.md shows; takes some five minutes. The last row is of
 poses for which the cameras were not placed. Each column adds one cause to those before it, and says how far free travel
 ends before the truth, median and worst: *voxels* are those that the true objects touch, in an else open space; *view*
 ends where the first voxel is that no camera sees all of, by exact rays; *pixels* are exact images, *margin* the same

@@ -8,7 +8,7 @@ it, or dispute it? A camera that looks at an object from the front keeps three s
 that looks past it does not. The noise is another than the one that is judged, and of two draws the worse counts. Then
 four candidates are chosen, one exchanged at a time, that have the most ways in view for which what is due holds: half
 of them short by less than the median that is due, none by more than the worst, nor any that is all but in view. First
-among candidates far apart, then among closer ones about the best fours. It takes half an hour on two cores.
+among candidates far apart, then among closer ones about the best fours. It takes some twenty minutes on two cores.
 """
 
 import itertools

@@ -70,6 +70,12 @@ def test_a_way_is_in_view_where_what_is_hidden_lies_near_the_contact(rows):
         assert row["in_view"] == (hidden_mm <= 1000 * near_m(row["voxel_size_m"]) + 1e-3)
 
 
+def test_exact_images_let_a_motion_go_as_far_as_its_way_is_in_view(rows):
+    exact = [row for row in rows if not row["noise"]]
+    assert any(row["free_travel"] > 0 for row in exact)
+    assert all(row["short_of_view_mm"] <= 1000 * row["voxel_size_m"] for row in exact)
+
+
 def test_noise_is_that_of_the_model_and_makes_no_return_of_none():
     depth = np.full((480, 640), 0.9, dtype=np.float32)
     depth[:10] = 0
