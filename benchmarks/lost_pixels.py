@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from elbowroom.cli.json_output import meta
-from elbowroom.view.atomic import whole_file
+from elbowroom.files.atomic import whole_file
+from elbowroom.files.json_rows import meta
 
 RESULT = Path(__file__).resolve().parent / "results" / "lost_pixels.json"
 DATA = Path(os.environ.get("ELBOWROOM_DATA", "../shared/data"))

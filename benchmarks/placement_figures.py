@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.cli.json_output import meta
+from elbowroom.files.atomic import whole_file
+from elbowroom.files.json_rows import meta
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.placement import (
     FixedRoom,
@@ -35,7 +36,6 @@ from elbowroom.simulate import InterventionRoom, Moment, render, true_occupancy,
 from elbowroom.simulate.setups import SETUPS
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
-from elbowroom.view.atomic import whole_file
 
 OUT = Path(__file__).resolve().parent / "results" / "placement_figures.json"
 AIM_M = 0.4

@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from elbowroom.cli.evaluate_thesis_run import PARTS
-from elbowroom.evaluate.due import due_table
-from elbowroom.view.blocks import Block, Picture, Table, Words
+from elbowroom.cli.evaluate.thesis_run import PARTS
+from elbowroom.evaluate.thesis.due import due_table
+from elbowroom.view.report.blocks import Block, Picture, Table, Words
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results"
@@ -107,7 +107,7 @@ def render(results: Path = RESULTS) -> str:
     if due is not None:
         text += ["## What was due", "", *_lines([due])]
     for name in PARTS:
-        part = importlib.import_module(f"elbowroom.evaluate.{name}").PART
+        part = importlib.import_module(f"elbowroom.evaluate.thesis.{name}").PART
         text += [f"## {part.title}", ""]
         if name not in measured:
             text += ["Not measured yet.", ""]
@@ -168,7 +168,7 @@ def draw(results: Path, report: Path | None) -> None:
         measured = _measured(results, name)
         if measured is None:
             continue
-        part = importlib.import_module(f"elbowroom.evaluate.{name}").PART
+        part = importlib.import_module(f"elbowroom.evaluate.thesis.{name}").PART
         charts = [block for block in part.show(measured[0], {}) if isinstance(block, Picture)]
         for number, chart in enumerate(charts):
             (IMAGES / f"evaluation_{name}_{number}.svg").write_bytes(chart.png)

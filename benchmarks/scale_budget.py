@@ -19,9 +19,9 @@ from pathlib import Path
 
 import numpy as np
 
-from elbowroom.cli.json_output import meta
-from elbowroom.evaluate.scale import EXPLAIN_M, near_m, noisy_frames
-from elbowroom.evaluate.scale_model import (
+from elbowroom.evaluate.rooms.scene import WELL_KNOWN
+from elbowroom.evaluate.thesis.scale import EXPLAIN_M, near_m, noisy_frames
+from elbowroom.evaluate.thesis.scale_model import (
     POSES,
     VOXEL_M,
     VOXEL_SIZES_M,
@@ -32,8 +32,8 @@ from elbowroom.evaluate.scale_model import (
     model_pose,
     model_solids,
 )
-from elbowroom.evaluate.scene import WELL_KNOWN
-from elbowroom.evaluate.way_view import WayView
+from elbowroom.evaluate.thesis.way_view import WayView
+from elbowroom.files.json_rows import meta
 from elbowroom.geometry import bits
 from elbowroom.machine import body_words
 from elbowroom.motion import blocks_in_reach, check_motions

@@ -22,8 +22,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.evaluate.scale import EXPLAIN_M, near_m, with_noise
-from elbowroom.evaluate.scale_model import (
+from elbowroom.evaluate.rooms.scene import WELL_KNOWN
+from elbowroom.evaluate.thesis.scale import EXPLAIN_M, near_m, with_noise
+from elbowroom.evaluate.thesis.scale_model import (
     AIM_M,
     LABORATORY,
     POSES,
@@ -35,8 +36,7 @@ from elbowroom.evaluate.scale_model import (
     model_pose,
     model_solids,
 )
-from elbowroom.evaluate.scene import WELL_KNOWN
-from elbowroom.evaluate.way_view import WayView
+from elbowroom.evaluate.thesis.way_view import WayView
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.machine import explain_frames
 from elbowroom.reconstruct.carve import carve_images

@@ -15,11 +15,11 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
-from elbowroom.cli.json_output import meta
+from elbowroom.files.atomic import whole_file
+from elbowroom.files.json_rows import meta
 from elbowroom.geometry import VoxelGrid
 from elbowroom.reconstruct import reconstruct
 from elbowroom.sensing import DepthFrame
-from elbowroom.view.atomic import whole_file
 from reference.reconstruct_scenes import camera_at, corners_of, rays_of
 
 RESULT = Path(__file__).resolve().parent / "results" / "thin_solids.json"

@@ -2,9 +2,9 @@ from elbowroom._kernel_cache import forget_stale_kernels
 
 
 def a_package(folder):
-    (folder / "a" / "__pycache__").mkdir(parents=True)
-    (folder / "a" / "_kernels.py").write_text("one = 1")
-    kept = folder / "a" / "__pycache__" / "_kernels.f-1.py311.1.nbc"
+    (folder / "a" / "kernels" / "__pycache__").mkdir(parents=True)
+    (folder / "a" / "kernels" / "one.py").write_text("one = 1")
+    kept = folder / "a" / "kernels" / "__pycache__" / "one.f-1.py311.1.nbc"
     kept.write_bytes(b"compiled")
     return kept
 
@@ -21,6 +21,6 @@ def test_a_change_in_any_kernel_forgets_all_compiled_ones(tmp_path):
     kept = a_package(tmp_path)
     forget_stale_kernels(tmp_path)
     kept.write_bytes(b"compiled anew")
-    (tmp_path / "a" / "_kernels_other.py").write_text("two = 2")
+    (tmp_path / "a" / "kernels" / "other.py").write_text("two = 2")
     assert forget_stale_kernels(tmp_path)
     assert not kept.exists()

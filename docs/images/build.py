@@ -15,7 +15,7 @@ from elbowroom.reconstruct import warm_up
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
 from elbowroom.site import Site
 from elbowroom.view import save_sections
-from elbowroom.view.terminal import TerminalView
+from elbowroom.view.screen.terminal import TerminalView
 
 HERE = Path(__file__).resolve().parent
 START_S, PASSES, STEP_S = 4.0, 12, 0.1

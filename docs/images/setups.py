@@ -8,8 +8,8 @@ from PIL import Image
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.simulate import SETUPS, render, wall_cameras
 from elbowroom.simulate import setup as setup_of
-from elbowroom.simulate.picture import View, colour_picture
-from elbowroom.view.depth import depth_picture
+from elbowroom.view.draw.colour import View, colour_picture
+from elbowroom.view.draw.depth import depth_picture
 
 HERE = Path(__file__).resolve().parent
 VIEW = View((4.2, -4.4, 4.0), (0.0, -0.05, 0.95), 44, 640, 480)

@@ -15,13 +15,13 @@ def forget_stale_kernels(package: Path = _PACKAGE) -> bool:
     """Removes what numba has kept of the package's kernels, if their sources are not those it was made of.
 
     Args:
-        package: folder whose `_kernels*.py` are meant.
+        package: folder whose `kernels/*.py` are meant.
 
     Returns:
         Whether anything was stale. Where the folder cannot be written, numba keeps its files elsewhere, and nothing is
         done here.
     """
-    sources = sorted(package.rglob("_kernels*.py"))
+    sources = sorted(package.rglob("kernels/*.py"))
     digest = hashlib.sha256()
     for source in sources:
         digest.update(source.relative_to(package).as_posix().encode())

@@ -5,16 +5,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.calibrate.change import pose_difference
+from elbowroom.calibrate.boards.seen_plane import rays_of, seen_plane
 from elbowroom.calibrate.extrinsics.disagreement import unseen_parts
-from elbowroom.calibrate.extrinsics.seen_plane import rays_of, seen_plane
 from elbowroom.calibrate.lens import directions, project
-from elbowroom.calibrate.pictures import camera_graph, coverage, histogram, reprojection
-from elbowroom.calibrate.rigid import cross_matrix, exp, log
+from elbowroom.calibrate.pages.pictures import camera_graph, coverage, histogram, reprojection
+from elbowroom.calibrate.result.change import pose_difference
 from elbowroom.errors import CalibrationError
-from elbowroom.evaluate.board_views import ring
+from elbowroom.evaluate.calibrating.board_views import ring
 from elbowroom.geometry import Intrinsics, invert_rigid
-from elbowroom.sensing.distortion import distorted
+from elbowroom.geometry.lens import distorted
+from elbowroom.geometry.rigid import cross_matrix, exp, log
 
 LENSES = [
     Intrinsics(500, 510, 320, 240),

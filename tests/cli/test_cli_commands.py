@@ -107,7 +107,7 @@ def test_a_recording_has_the_cameras_that_it_has(recording, capsys, option):
 
 
 def test_ctrl_c_ends_the_monitor_with_its_summary(room, tmp_path, capsys, monkeypatch):
-    from elbowroom.view.terminal import TerminalView
+    from elbowroom.view.screen.terminal import TerminalView
 
     def interrupted(self, result, source_ms):
         self.log.add(result, source_ms)

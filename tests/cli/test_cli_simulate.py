@@ -9,8 +9,9 @@ import trimesh
 from elbowroom.cli import run
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.simulate import render, setup
-from elbowroom.site import Site, moments
-from elbowroom.view.recorder import UNIT_M, as_units
+from elbowroom.site import Site
+from elbowroom.sources import moments
+from elbowroom.sources.recorder import UNIT_M, as_units
 
 FEW = ["--size", "thesis", "--cameras", "5", "--height", "1.9"]
 

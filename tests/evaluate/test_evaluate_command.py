@@ -53,7 +53,7 @@ def test_sevenscenes_has_a_row_for_each_rule_and_detail(example_site, tmp_path, 
 
 
 def test_the_default_recording_is_the_examples(example_site):
-    from elbowroom.cli.evaluate_run import example_site as found
+    from elbowroom.cli.evaluate.run import example_site as found
 
     assert found().samefile(example_site("sevenscenes"))
 
@@ -128,7 +128,7 @@ def test_the_same_seed_gives_the_same_rows(tmp_path):
 
 
 def test_ctrl_c_shows_what_there_is_and_leaves_no_file(tmp_path, monkeypatch, capsys):
-    from elbowroom.evaluate import alone
+    from elbowroom.evaluate.rooms import alone
 
     rows = alone.alone_rows
 

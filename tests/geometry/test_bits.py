@@ -6,7 +6,7 @@ from numba import njit
 
 from elbowroom.errors import GridError
 from elbowroom.geometry import VoxelGrid, bits
-from elbowroom.geometry._kernels import bit_of, word_of
+from elbowroom.geometry.kernels.bits import bit_of, word_of
 
 sides = st.integers(1, 37)
 

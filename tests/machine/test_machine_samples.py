@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from elbowroom.errors import MachineError
 from elbowroom.machine import Link, Machine, body_samples, ceiling_c_arm
-from elbowroom.machine import _kernels_samples as kernels
+from elbowroom.machine.kernels import samples as kernels
 from elbowroom.machine.samples import CLUSTER_SIZE, interior_points, surface_points
 from reference import machine_twins as naive
 

@@ -7,9 +7,9 @@ from scipy.ndimage import maximum_filter
 from elbowroom.geometry import bits
 from elbowroom.motion import JointPath, Motion
 from elbowroom.motion import sweep as swept
-from elbowroom.motion._kernels_triangles import triangle_meets_box
-from elbowroom.motion._kernels_volume import meets_block, meets_voxel
 from elbowroom.motion.course import way_of
+from elbowroom.motion.kernels.triangles import triangle_meets_box
+from elbowroom.motion.kernels.volume import meets_block, meets_voxel
 from elbowroom.motion.skin import skin_of
 from elbowroom.reconstruct.free_space import FreeSpace
 from reference import motion_machines as machines

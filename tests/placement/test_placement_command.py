@@ -239,5 +239,5 @@ def test_a_camera_in_the_cupboard_is_one_line(placed, capsys):
 
 
 def test_placement_is_there_without_ortools():
-    code = "import sys; sys.modules['ortools'] = None; import elbowroom.cli.placement_optimise, elbowroom.placement"
+    code = "import sys; sys.modules['ortools'] = None; import elbowroom.cli.placement.optimise, elbowroom.placement"
     subprocess.run([sys.executable, "-c", code], check=True)

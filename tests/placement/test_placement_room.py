@@ -15,7 +15,7 @@ from elbowroom.placement.sensor import sensors_of
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
-from elbowroom.view.site_file import write_site
+from elbowroom.site.written import write_site
 from reference.placement_rooms import camera_at, room_of
 
 SITE = """

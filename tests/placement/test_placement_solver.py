@@ -15,8 +15,8 @@ from elbowroom.geometry import VoxelGrid
 from elbowroom.placement.candidates import candidates_of
 from elbowroom.placement.optimisation import Goal, optimise, sample_points
 from elbowroom.placement.requirement import TIE_RAD, Requirement
-from elbowroom.placement.solver import _kernels as kernels
 from elbowroom.placement.solver.bound import hard_points, price_bound, share_bound
+from elbowroom.placement.solver.kernels import search as kernels
 from elbowroom.placement.solver.layout import Layout
 from elbowroom.placement.solver.model import Model, build_model
 from elbowroom.placement.solver.search import prune, repair

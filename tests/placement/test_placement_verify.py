@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from elbowroom.errors import CameraError, InputError
 from elbowroom.geometry import Intrinsics, VoxelGrid
-from elbowroom.placement import _kernels_views as kernels
+from elbowroom.placement.kernels import views as kernels
 from elbowroom.placement.requirement import TIE_RAD, Requirement
 from elbowroom.placement.sight import sights
 from elbowroom.placement.verification import judge, verify

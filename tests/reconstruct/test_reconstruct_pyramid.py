@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from elbowroom.reconstruct import _kernels_pyramid as kernels
-from elbowroom.reconstruct._kernels_look import least_of_tiles
+from elbowroom.reconstruct.kernels import pyramid as kernels
+from elbowroom.reconstruct.kernels.look import least_of_tiles
 from reference import reconstruct_pyramid as naive
 from reference.reconstruct_pyramid import NO_RETURN, bounds_of, packed
 

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from elbowroom.calibrate.rigid import exp
-from elbowroom.calibrate.twist import between, sizes
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
+from elbowroom.geometry.rigid import exp
+from elbowroom.geometry.twist import between, sizes
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import InterventionRoom, render
-from elbowroom.site import RecordedMoment
+from elbowroom.sources import RecordedMoment
 
 PLACES = {
     "north": ((0.3, 1.9, 2.3), (0.0, 0.0, 1.3)),

@@ -1,8 +1,8 @@
-"""Naive twins of `calibrate._kernels_overlap`: planes by least squares, points one by one."""
+"""Naive twins of `calibrate.refinement.kernels.overlap`: planes by least squares, points one by one."""
 
 import numpy as np
 
-from elbowroom.calibrate.rigid import exp
+from elbowroom.geometry.rigid import exp
 
 LITTLE = 1e-6
 

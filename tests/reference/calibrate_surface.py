@@ -1,8 +1,8 @@
-"""Naive twin of `calibrate._kernels_surface.compare`: pixel by pixel, derivatives by moving the camera a little."""
+"""Naive twin of `from_machine.kernels.surface.compare`: pixel by pixel, derivatives by moving the camera a little."""
 
 import numpy as np
 
-from elbowroom.calibrate.rigid import exp
+from elbowroom.geometry.rigid import exp
 
 LITTLE = 1e-6
 

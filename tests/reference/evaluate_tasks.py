@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from elbowroom.evaluate.task import Outcome
+from elbowroom.evaluate.shares.task import Outcome
 
 
 def square(number: int) -> Outcome:

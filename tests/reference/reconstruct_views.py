@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from elbowroom.reconstruct import _kernels_box as box
 from elbowroom.reconstruct.images import room_images
+from elbowroom.reconstruct.kernels import box as box
 from elbowroom.reconstruct.views import fill, layout_of
 from reference.reconstruct_pixel import Image
 from reference.reconstruct_pyramid import bounds_of

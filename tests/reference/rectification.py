@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from elbowroom.sensing.distortion import distorted
+from elbowroom.geometry.lens import distorted
 
 
 def contributors(intrinsics, width, height, u, v, samples=25):

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from elbowroom.calibrate.commissioning.commission import Commissioning
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
-from elbowroom.monitor import _kernels_watch as kernels
+from elbowroom.monitor.health.drift.commission import Commissioning
+from elbowroom.monitor.health.drift.kernels import watch as kernels
 from elbowroom.sensing import DepthFrame
 
 LOWER, UPPER = np.array((-2.0, -2.2, 0.0)), np.array((2.3, 2.0, 2.8))

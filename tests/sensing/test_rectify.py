@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from elbowroom import errors
 from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.geometry.lens import distorted, usable_radius
 from elbowroom.sensing import DepthFrame, rectified, rectify
-from elbowroom.sensing.distortion import distorted, usable_radius
 from elbowroom.sensing.rectify import index_map_of
 from reference import rectification as naive
 

@@ -7,9 +7,9 @@ import pytest
 from elbowroom.errors import CameraError, InputError
 from elbowroom.geometry import DepthCamera, Intrinsics
 from elbowroom.sensing import NOISE_PRESETS, NoiseModel
+from elbowroom.sensing.rays import pixel_rays
 from elbowroom.simulate import Moment, Solid, render, wall_cameras
-from elbowroom.simulate import _kernels_sensor as kernels
-from elbowroom.simulate.rays import pixel_rays
+from elbowroom.simulate.kernels import sensor as kernels
 from elbowroom.simulate.shapes import box, ellipsoid, join
 from reference import simulate_sensor as naive_sensor
 from reference import simulate_truth as naive

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from elbowroom.errors import InputError
-from elbowroom.evaluate.exact import ExactTravel
-from elbowroom.evaluate.thesis import sensor_cameras
+from elbowroom.evaluate.rooms.exact import ExactTravel
+from elbowroom.evaluate.thesis.thesis import sensor_cameras
 from elbowroom.geometry import VoxelGrid
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.simulate import SETUPS, setup, true_occupancy

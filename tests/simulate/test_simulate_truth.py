@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from elbowroom.geometry import VoxelGrid
 from elbowroom.simulate import Moment, Solid, true_occupancy
-from elbowroom.simulate import _kernels as kernels
+from elbowroom.simulate.kernels import touch as kernels
 from elbowroom.simulate.shapes import box, capsule, cylinder, ellipsoid, join
 from elbowroom.simulate.truth import SHRINK_M
 from reference import simulate_truth as naive

@@ -5,7 +5,8 @@ import pytest
 
 from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
 from elbowroom.errors import SiteError
-from elbowroom.site import Site, moments
+from elbowroom.site import Site
+from elbowroom.sources import moments
 
 BOARD = {"columns": 8, "rows": 5, "square_m": 0.1, "kind": "cut_out"}
 

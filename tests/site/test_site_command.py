@@ -9,7 +9,7 @@ from elbowroom.errors import GridError, InputError, SiteError
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
 from elbowroom.site import Site, memory_of
 from elbowroom.site.coverage import in_view, views_per_voxel
-from elbowroom.site.picture import draw_site, frustum_in_world
+from elbowroom.view.draw.site import draw_site, frustum_in_world
 
 
 def command(*words):
@@ -124,7 +124,7 @@ def test_the_picture_shows_the_machine_where_it_stands():
 
 
 def test_a_site_with_a_machine_has_it_in_its_picture(monkeypatch, tmp_path):
-    from elbowroom.site import picture
+    from elbowroom.view.draw import site as picture
 
     given = []
     monkeypatch.setattr(picture, "draw_site", lambda *args: given.append(args) or draw_site(*args))

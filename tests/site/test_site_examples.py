@@ -7,7 +7,8 @@ import pytest
 
 from elbowroom.errors import SiteError
 from elbowroom.reconstruct import reconstruct
-from elbowroom.site import SIMULATED_ROOM, Site, check_images, excluded_frames, moments
+from elbowroom.site import SIMULATED_ROOM, Site
+from elbowroom.sources import check_images, excluded_frames, moments
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 RECORDINGS = {

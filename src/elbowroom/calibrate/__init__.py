@@ -9,7 +9,7 @@ from elbowroom.calibrate.boards.capture import Sightings, board_of, sightings
 from elbowroom.calibrate.boards.cut_out import cut_out_view
 from elbowroom.calibrate.boards.printed import printed_view
 from elbowroom.calibrate.boards.trouble import Fault, Trouble
-from elbowroom.calibrate.calibrated_camera import CalibratedCamera
+from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
 
 __all__ = [
     "Board",

@@ -4,12 +4,12 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.bench import bench
-from elbowroom.cli.calibrate import calibrate_app
+from elbowroom.cli.calibrate.app import calibrate_app
 from elbowroom.cli.check import check
-from elbowroom.cli.evaluate_thesis import evaluate_app
+from elbowroom.cli.evaluate.bench import bench
+from elbowroom.cli.evaluate.thesis import evaluate_app
 from elbowroom.cli.monitor import monitor
-from elbowroom.cli.placement import placement_app
+from elbowroom.cli.placement.app import placement_app
 from elbowroom.cli.reconstruct import reconstruct
 from elbowroom.cli.simulate import simulate
 from elbowroom.cli.site import site_app
@@ -62,7 +62,7 @@ app.add_typer(site_app, name="site")
 
 def _print_version(asked: bool) -> None:
     if asked:
-        from elbowroom.cli.json_output import commit, package_version
+        from elbowroom.files.json_rows import commit, package_version
 
         version, source = package_version(), commit()
         print(f"elbowroom {version}" + (f" ({source})" if source != version else ""))

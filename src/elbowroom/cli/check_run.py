@@ -4,16 +4,16 @@ from pathlib import Path
 
 from rich.console import Console
 
-from elbowroom.cli.compiling import compile_kernels
-from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.reconstruct_run import scene_at, space_of
 from elbowroom.cli.room import Room
-from elbowroom.cli.rows import verdict_row
 from elbowroom.errors import InputError
+from elbowroom.files.json_rows import json_rows
+from elbowroom.monitor.rows import verdict_row
+from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.motion import Motion, Verdict, check_motion
 from elbowroom.reconstruct import FreeSpace, warm_up
-from elbowroom.view.words import NOT_CERTIFIED, travel_text
+from elbowroom.view.screen.words import NOT_CERTIFIED, travel_text
 
 
 def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | None) -> None:

@@ -12,23 +12,23 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from elbowroom.cli.compiling import compile_kernels
-from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.reconstruct_run import space_of
 from elbowroom.cli.room import Room, Scene
-from elbowroom.cli.rows import cycle_rows, health_rows
 from elbowroom.cli.watching import watch_of
 from elbowroom.errors import InputError
+from elbowroom.files.atomic import folder
+from elbowroom.files.json_rows import json_rows
 from elbowroom.geometry import bits
 from elbowroom.geometry.parallel import default_threads
 from elbowroom.monitor import Cycle, CycleResult
+from elbowroom.monitor.rows import cycle_rows, health_rows
+from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
 from elbowroom.view import save_sections
-from elbowroom.view.atomic import folder
-from elbowroom.view.run_log import RunLog
-from elbowroom.view.terminal import TerminalView
+from elbowroom.view.screen.run_log import RunLog
+from elbowroom.view.screen.terminal import TerminalView
 
 
 def watch(room: Room, *, seconds: float | None, json_file: Path | None, out_dir: Path | None) -> None:

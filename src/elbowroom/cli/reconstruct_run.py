@@ -7,16 +7,16 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from elbowroom.cli.compiling import compile_kernels
-from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.room import Room, Scene
-from elbowroom.cli.rows import shares_pct
 from elbowroom.errors import InputError
+from elbowroom.files.atomic import folder
+from elbowroom.files.json_rows import json_rows
+from elbowroom.monitor.rows import shares_pct
+from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.reconstruct import FreeSpace, reconstruct, warm_up
 from elbowroom.view import save_npz, save_ply, save_sections
-from elbowroom.view.atomic import folder
-from elbowroom.view.words import NOT_CERTIFIED
+from elbowroom.view.screen.words import NOT_CERTIFIED
 
 
 def scene_at(room: Room, number: int) -> Scene:

@@ -14,8 +14,9 @@ from elbowroom.machine import Machine
 from elbowroom.motion import Motion
 from elbowroom.reconstruct import Detail, Rule
 from elbowroom.sensing import DepthFrame, JointRecord, Margin
-from elbowroom.site import RecordedMoment, Site, moments
-from elbowroom.view.watched import Watched
+from elbowroom.site import Site
+from elbowroom.sources import RecordedMoment, moments
+from elbowroom.view.screen.watched import Watched
 
 if TYPE_CHECKING:
     from elbowroom.simulate.knock import Knock

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from elbowroom.cli.json_output import json_rows
 from elbowroom.cli.progress import Steps
 from elbowroom.errors import InputError
+from elbowroom.files.atomic import folder
+from elbowroom.files.json_rows import json_rows
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
@@ -18,10 +19,9 @@ from elbowroom.sensing import NOISE_PRESETS, DepthFrame
 from elbowroom.simulate import Moment, render, setup, solids_of_glb, wall_cameras
 from elbowroom.simulate.inside import check_outside
 from elbowroom.simulate.machine_solids import link_solids
-from elbowroom.simulate.picture import View, colour_picture
-from elbowroom.view.atomic import folder
-from elbowroom.view.depth import depth_picture
-from elbowroom.view.recorder import Recording, write_recording
+from elbowroom.sources.recorder import Recording, write_recording
+from elbowroom.view.draw.colour import View, colour_picture
+from elbowroom.view.draw.depth import depth_picture
 
 INSIDE_WALLS_M = 0.01
 """Cameras hang so far inside the box [m]."""

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from elbowroom.cli.json_output import write_json
 from elbowroom.cli.options import JsonFile, SitePath
 from elbowroom.errors import SiteError
+from elbowroom.files.json_rows import write_json
 
 if TYPE_CHECKING:
     from elbowroom.geometry import DepthCamera
@@ -22,8 +22,8 @@ def new(
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
 ) -> None:
     """Write a commented, valid site file to start from."""
+    from elbowroom.files.atomic import whole_file
     from elbowroom.site.site import NEW_SITE
-    from elbowroom.view.atomic import whole_file
 
     if path.exists() and not force:
         raise SiteError(f"{path}: is there already; choose another name, or --force to replace it")
@@ -77,8 +77,9 @@ def _findings(site: "Site") -> dict[str, Any]:
     """All that can be said of a site without carving; raises on whatever is wrong with it."""
     import numpy as np
 
-    from elbowroom.site import check_images, memory_of, silent_cameras
+    from elbowroom.site import memory_of
     from elbowroom.site.coverage import views_per_voxel
+    from elbowroom.sources import check_images, silent_cameras
 
     grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
     motions = site.motions(machine) if machine is not None else ()
@@ -142,9 +143,9 @@ def _say(row: dict[str, Any]) -> None:
 
 
 def _draw(site: "Site", out: Path) -> None:
-    from elbowroom.site.picture import draw_site
-    from elbowroom.view.atomic import whole_file
-    from elbowroom.view.outline import triangles_of
+    from elbowroom.files.atomic import whole_file
+    from elbowroom.view.draw.outline import triangles_of
+    from elbowroom.view.draw.site import draw_site
 
     machine = site.machine()
     triangles = None if machine is None else triangles_of(machine, machine.nearest_to_zero())

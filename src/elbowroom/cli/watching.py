@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from elbowroom.calibrate.commissioning.commission import Commissioning
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.room import Room
 from elbowroom.errors import CalibrationError
 from elbowroom.monitor import CameraReference, Tolerance, Watch, load_references
+from elbowroom.monitor.health.drift.commission import Commissioning
 
 FRAMES = 12
 EVERY_S = 0.9

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import GridError
-from elbowroom.geometry._kernels import Lattice, bit_of, word_of
 from elbowroom.geometry.grid import VoxelGrid
+from elbowroom.geometry.kernels.bits import Lattice, bit_of, word_of
 
 __all__ = ["Words", "empty", "inside", "lattice", "pack", "place_of", "unpack", "word_count"]
 

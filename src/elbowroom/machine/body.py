@@ -7,7 +7,7 @@ from elbowroom.errors import MachineError
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.parallel import default_threads, spread
-from elbowroom.machine._kernels import mark_balls, mark_points
+from elbowroom.machine.kernels.body import mark_balls, mark_points
 from elbowroom.machine.machine import Joints, Machine
 from elbowroom.machine.samples import ROUNDING_M, BodySamples, body_samples
 

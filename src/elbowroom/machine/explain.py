@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import FrameError, MachineError
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits, invert_rigid
-from elbowroom.geometry._kernels import Lattice
 from elbowroom.geometry.bits import Words
+from elbowroom.geometry.kernels.bits import Lattice
 from elbowroom.geometry.parallel import spread
-from elbowroom.machine._kernels_draw import View, draw, to_kind
-from elbowroom.machine._kernels_explain import explain
-from elbowroom.machine._kernels_returns import TILE, Around, mark_tiles
 from elbowroom.machine.body import default_growth
 from elbowroom.machine.buffers import zero_image
+from elbowroom.machine.kernels.draw import View, draw, to_kind
+from elbowroom.machine.kernels.explain import explain
+from elbowroom.machine.kernels.returns import TILE, Around, mark_tiles
 from elbowroom.machine.machine import Joints, Machine
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
 from elbowroom.machine.samples import body_samples

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
-from elbowroom.machine._kernels import Tree, place_links
 from elbowroom.machine.joint import Joint
+from elbowroom.machine.kernels.body import Tree, place_links
 from elbowroom.machine.link import Link
 from elbowroom.machine.urdf import read_urdf
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from elbowroom.errors import CameraError
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.noise import NoiseModel
-from elbowroom.machine._kernels_draw import Mesh, View, draw, to_kind
 from elbowroom.machine.buffers import zero_image
+from elbowroom.machine.kernels.draw import Mesh, View, draw, to_kind
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Joints, Machine
 

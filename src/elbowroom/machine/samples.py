@@ -11,7 +11,7 @@ from scipy import ndimage
 
 from elbowroom.errors import MachineError
 from elbowroom.geometry.parallel import spread
-from elbowroom.machine import _kernels_samples as kernels
+from elbowroom.machine.kernels import samples as kernels
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Machine
 

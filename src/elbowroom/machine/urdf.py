@@ -12,8 +12,8 @@ from yourdfpy import urdf as yourdf
 
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
-from elbowroom.machine._kernels import FIXED, SLIDES, TURNS, Tree
 from elbowroom.machine.joint import Joint, Mimic
+from elbowroom.machine.kernels.body import FIXED, SLIDES, TURNS, Tree
 from elbowroom.machine.link import Link
 from elbowroom.machine.meshes import mesh_path, triangles_of
 

@@ -11,8 +11,8 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
+from elbowroom.monitor.health.drift.watch import Watch
 from elbowroom.monitor.result import CycleResult
-from elbowroom.monitor.watch import Watch
 from elbowroom.motion import Cause, Level, Motion, Verdict, blocks_in_reach, check_motions
 from elbowroom.reconstruct import Detail, Rule, reconstruct
 from elbowroom.reconstruct.reconstruct import young_enough

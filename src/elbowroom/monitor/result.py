@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from elbowroom.monitor.health import Health
+from elbowroom.monitor.health.health import Health
 from elbowroom.motion import Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
 

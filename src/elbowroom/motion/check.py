@@ -11,10 +11,10 @@ from elbowroom.errors import MachineError
 from elbowroom.geometry import bits
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
-from elbowroom.motion._kernels import Skin
-from elbowroom.motion._kernels_volume import Volume
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.course import Way, way_of
+from elbowroom.motion.kernels.sweep import Skin
+from elbowroom.motion.kernels.volume import Volume
 from elbowroom.motion.motion import JointPath, Motion
 from elbowroom.motion.skin import skin_of
 from elbowroom.motion.sweep import Block, cluster_speeds, find_block, volume_of

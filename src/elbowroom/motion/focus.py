@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.machine import Machine, body_samples
-from elbowroom.motion._kernels_focus import mark_ways
 from elbowroom.motion.course import Way, way_of
+from elbowroom.motion.kernels.focus import mark_ways
 from elbowroom.motion.motion import JointPath, Motion
 
 BLOCK = 4

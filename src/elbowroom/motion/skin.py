@@ -7,8 +7,8 @@ import numpy as np
 
 from elbowroom.machine import Machine
 from elbowroom.machine.samples import ROUNDING_M, BodySamples, body_samples
-from elbowroom.motion._kernels import Skin
-from elbowroom.motion._kernels_triangles import list_patches
+from elbowroom.motion.kernels.sweep import Skin
+from elbowroom.motion.kernels.triangles import list_patches
 
 _kept: WeakKeyDictionary[Machine, dict[float, Skin]] = WeakKeyDictionary()
 _keeping = Lock()

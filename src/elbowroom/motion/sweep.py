@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.machine import Machine
-from elbowroom.machine._kernels import FIXED, SLIDES
-from elbowroom.motion._kernels import Skin, bound_speeds, first_block
-from elbowroom.motion._kernels_volume import Volume, block, gather_corners
+from elbowroom.machine.kernels.body import FIXED, SLIDES
 from elbowroom.motion.course import Way
+from elbowroom.motion.kernels.sweep import Skin, bound_speeds, first_block
+from elbowroom.motion.kernels.volume import Volume, block, gather_corners
 from elbowroom.reconstruct.free_space import FreeSpace
 
 FINEST_STEP_IN_VOXELS = 1 / 16

@@ -15,7 +15,7 @@ from elbowroom.placement.scenes import random_scenes
 from elbowroom.placement.sensor import Sensor, known_sensors, sensors_of
 from elbowroom.placement.verification import Verification, verify
 from elbowroom.placement.worst import Place, worst_places
-from elbowroom.view.site_file import write_site
+from elbowroom.site.written import write_site
 
 __all__ = [
     "Candidate",

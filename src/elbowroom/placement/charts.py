@@ -10,9 +10,9 @@ from elbowroom.placement.detection import Capability
 from elbowroom.placement.even import Sweep
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.pictures import FIXED, INVALID, LINE_INK, WATCHED_INK, legend, title
-from elbowroom.view.outline import cut_lines
-from elbowroom.view.palette import CAMERA_INK, INK, SOFT_INK, Colour
-from elbowroom.view.plot import Plot, font
+from elbowroom.view.draw.outline import cut_lines
+from elbowroom.view.draw.palette import CAMERA_INK, INK, SOFT_INK, Colour
+from elbowroom.view.draw.plot import Plot, font
 
 ROUND_MM = (14, 20, 25, 30, 35, 40, 45, 50, 60, 70, 80, 90, 100, 120, 150, 200, 250, 300, 400, 500, 700, 1000)
 """Steps of the map of detection capability are taken from these; 14, 40 and 70 mm are those of ISO 13855 [mm]."""

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.files.atomic import whole_file
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.parallel import spread
 from elbowroom.placement.verification import Verification
-from elbowroom.view.atomic import whole_file
 
 PIXELS = 3.0
 """An object must be so many pixel pitches thick (docs/safety.md, "Detection capability")."""

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from elbowroom.errors import CameraError, SiteError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.simulate import InterventionRoom, Moment, Solid, true_occupancy
-from elbowroom.simulate._kernels import touch_surface
 from elbowroom.simulate.glb import merged_mesh, open_edge_count
+from elbowroom.simulate.kernels.touch import touch_surface
 from elbowroom.simulate.setups import SETUPS, setup
 from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Mesh

@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
+from elbowroom.files.atomic import folder, whole_file
 from elbowroom.geometry import DepthCamera
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.verification import Verification
-from elbowroom.view.atomic import folder, whole_file
-from elbowroom.view.outline import cut_lines
-from elbowroom.view.palette import CAMERA_INK, INK, PAPER, SOFT_INK, Colour
-from elbowroom.view.plot import LEFT_PX, Plot, font
+from elbowroom.view.draw.outline import cut_lines
+from elbowroom.view.draw.palette import CAMERA_INK, INK, PAPER, SOFT_INK, Colour
+from elbowroom.view.draw.plot import LEFT_PX, Plot, font
 
 VALID, INVALID, FIXED = (222, 239, 248), (213, 94, 0), (126, 131, 138)
 LINE_INK = (0, 114, 178)

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.parallel import spread
-from elbowroom.placement import _kernels_views as kernels
 from elbowroom.placement.fixed_room import FixedRoom
+from elbowroom.placement.kernels import views as kernels
 from elbowroom.placement.requirement import TIE_RAD, Requirement
 from elbowroom.placement.sight import sights
 

@@ -11,11 +11,11 @@ from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.parallel import spread
-from elbowroom.reconstruct._kernels_carve import carve_cubes
-from elbowroom.reconstruct._kernels_planes import PLANES
-from elbowroom.reconstruct._kernels_points import carve_points
 from elbowroom.reconstruct.evidence import Counts, Evidence
 from elbowroom.reconstruct.images import RoomImages, room_images
+from elbowroom.reconstruct.kernels.carve import carve_cubes
+from elbowroom.reconstruct.kernels.planes import PLANES
+from elbowroom.reconstruct.kernels.points import carve_points
 from elbowroom.reconstruct.views import fill, layout_of
 from elbowroom.sensing import DepthFrame
 

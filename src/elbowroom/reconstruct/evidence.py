@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.errors import EvidenceError
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.bits import Words
-from elbowroom.reconstruct._kernels_planes import BLIND, DISPUTED, ONE, PLANES, SURFACE, THREE, TWO
+from elbowroom.reconstruct.kernels.planes import BLIND, DISPUTED, ONE, PLANES, SURFACE, THREE, TWO
 
 
 @dataclass(frozen=True, slots=True, eq=False)

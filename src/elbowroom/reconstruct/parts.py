@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
-from elbowroom.reconstruct import _kernels_box as box
-from elbowroom.reconstruct import _kernels_pyramid as pyramid
-from elbowroom.reconstruct._kernels_pixel import PIXEL_FLOATS, settle_word
 from elbowroom.reconstruct.free_space import FreeSpace, Source
 from elbowroom.reconstruct.images import Image
+from elbowroom.reconstruct.kernels import box as box
+from elbowroom.reconstruct.kernels import pyramid as pyramid
+from elbowroom.reconstruct.kernels.pixel import PIXEL_FLOATS, settle_word
 from elbowroom.reconstruct.views import layout_of, texels_of
 
 PARTS = 4

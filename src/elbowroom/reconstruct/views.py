@@ -13,10 +13,10 @@ from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.parallel import spread
-from elbowroom.reconstruct import _kernels_box as box
-from elbowroom.reconstruct import _kernels_pyramid as pyramid
-from elbowroom.reconstruct._kernels_box import Views
 from elbowroom.reconstruct.images import Image, RoomImages
+from elbowroom.reconstruct.kernels import box as box
+from elbowroom.reconstruct.kernels import pyramid as pyramid
+from elbowroom.reconstruct.kernels.box import Views
 
 TILE_LEVEL = 2
 """The level whose texels the pixel test passes over at once: 4 x 4 pixels."""

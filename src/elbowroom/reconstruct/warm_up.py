@@ -7,9 +7,9 @@ import numpy as np
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
-from elbowroom.reconstruct._kernels_pixel import PIXEL_FLOATS, settle_word
 from elbowroom.reconstruct.carve import DETAILS, Detail
 from elbowroom.reconstruct.images import room_images
+from elbowroom.reconstruct.kernels.pixel import PIXEL_FLOATS, settle_word
 from elbowroom.reconstruct.reconstruct import reconstruct
 from elbowroom.reconstruct.views import fill, layout_of
 from elbowroom.sensing import DepthFrame, NoiseModel

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import FrameError
 from elbowroom.geometry import DepthCamera, Intrinsics
-from elbowroom.sensing._kernels import bounds_of_contributors
-from elbowroom.sensing.distortion import distorted, usable_radius
+from elbowroom.geometry.lens import distorted, usable_radius
 from elbowroom.sensing.frame import DepthFrame
+from elbowroom.sensing.kernels.rectify import bounds_of_contributors
 
 SLACK_PX = 1e-3
 """Added around the mapped square of a pixel, above what its curved edges need [px]."""

@@ -14,8 +14,8 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
-from elbowroom.simulate import _kernels_sensor as kernels
-from elbowroom.simulate.rays import PixelRays, pixel_rays
+from elbowroom.sensing.rays import PixelRays, pixel_rays
+from elbowroom.simulate.kernels import sensor as kernels
 from elbowroom.simulate.solid import Mesh, Moment, Solid
 
 CAMERAS_KEPT = 64

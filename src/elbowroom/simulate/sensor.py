@@ -9,7 +9,7 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.parallel import spread
 from elbowroom.sensing import DepthFrame, NoiseModel
-from elbowroom.simulate import _kernels_sensor as kernels
+from elbowroom.simulate.kernels import sensor as kernels
 from elbowroom.simulate.range_image import RangeImage, range_image
 from elbowroom.simulate.solid import Moment
 

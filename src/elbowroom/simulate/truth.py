@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import VoxelGrid
 from elbowroom.geometry.parallel import spread
-from elbowroom.simulate import _kernels as kernels
+from elbowroom.simulate.kernels import touch as kernels
 from elbowroom.simulate.solid import Moment, Solid
 
 SHRINK_M = 1e-9

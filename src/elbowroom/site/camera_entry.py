@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 
 from elbowroom.errors import SiteError
+from elbowroom.files.matrix_file import read_matrix
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.sensing import NOISE_PRESETS, Margin, NoiseModel
 from elbowroom.site.entry import (
@@ -23,7 +24,6 @@ from elbowroom.site.entry import (
     Positive,
     Text,
 )
-from elbowroom.site.matrix_file import read_matrix
 from elbowroom.site.paths import expand
 
 PINHOLE = ("fx", "fy", "cx", "cy")

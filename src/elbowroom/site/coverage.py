@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera, VoxelGrid
-from elbowroom.sensing.distortion import distorted
+from elbowroom.geometry.lens import distorted
 
 MOST_SAMPLES = 20_000
 

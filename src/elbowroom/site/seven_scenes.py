@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import SiteError
-from elbowroom.site.matrix_file import read_matrix
+from elbowroom.files.matrix_file import read_matrix
 from elbowroom.site.recording_entry import SevenScenes
 
 INTRINSICS_FILE = "camera-intrinsics.txt"

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from elbowroom.errors import CameraError, GridError, InputError, PoseWarning, SiteError
+from elbowroom.files.yaml_file import read_yaml
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.motion import Motion
@@ -24,7 +25,6 @@ from elbowroom.site.notes import mended_poses, notes_of
 from elbowroom.site.paths import existing_folder
 from elbowroom.site.recording_entry import SevenScenes, StamplessFolder
 from elbowroom.site.schema import SimulatedEntry, SiteEntry
-from elbowroom.site.yaml_file import read_yaml
 
 SIMULATED_ROOM = Path(__file__).with_name("simulated_room.yaml")
 """The site file of the simulated intervention room, shipped with the package."""

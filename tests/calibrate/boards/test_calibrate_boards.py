@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 from elbowroom.calibrate import Board, BoardView, Fault, Trouble, cut_out_view, printed_view
 from elbowroom.calibrate.simulated.hand_poses import shown
 from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.geometry.lens import distorted
 from elbowroom.sensing import NOISE_PRESETS
-from elbowroom.sensing.distortion import distorted
 from elbowroom.simulate import Moment, Solid, render
 from elbowroom.simulate.board_plate import plate_mesh
 from elbowroom.simulate.furniture import shell

@@ -14,10 +14,18 @@ from elbowroom.calibrate.extrinsics import (
     solve_extrinsics,
 )
 from elbowroom.calibrate.lens import project
-from elbowroom.calibrate.rigid import exp, log
 from elbowroom.errors import CalibrationError
-from elbowroom.evaluate.board_views import BOARD, EXACT, Shaken, board_poses, floor, ring, views_of
+from elbowroom.evaluate.calibrating.board_views import (
+    BOARD,
+    EXACT,
+    Shaken,
+    board_poses,
+    floor,
+    ring,
+    views_of,
+)
 from elbowroom.geometry import invert_rigid
+from elbowroom.geometry.rigid import exp, log
 from elbowroom.sensing import NOISE_PRESETS
 
 ROUGH = Shaken()

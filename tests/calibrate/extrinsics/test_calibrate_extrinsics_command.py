@@ -7,11 +7,12 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from elbowroom.calibrate.change import pose_difference
 from elbowroom.calibrate.refinement.agreement import agreement
+from elbowroom.calibrate.result.change import pose_difference
 from elbowroom.cli.app import app
 from elbowroom.errors import CalibrationError, InputError
-from elbowroom.site import Site, moments
+from elbowroom.site import Site
+from elbowroom.sources import moments
 
 RUNNER = CliRunner()
 

@@ -10,10 +10,18 @@ from elbowroom.calibrate.extrinsics import BoardAnchor, PointsAnchor, SeenPoint,
 from elbowroom.calibrate.extrinsics.known_points import KnownPoints
 from elbowroom.calibrate.extrinsics.unknowns import Index, State
 from elbowroom.calibrate.lens import project
-from elbowroom.calibrate.rigid import exp, log
 from elbowroom.errors import CalibrationError
-from elbowroom.evaluate.board_views import BOARD, EXACT, Shaken, board_poses, measured_corners, ring, views_of
+from elbowroom.evaluate.calibrating.board_views import (
+    BOARD,
+    EXACT,
+    Shaken,
+    board_poses,
+    measured_corners,
+    ring,
+    views_of,
+)
 from elbowroom.geometry import invert_rigid
+from elbowroom.geometry.rigid import exp, log
 from elbowroom.sensing import NOISE_PRESETS
 
 SIGMA_M = 0.002

@@ -8,7 +8,7 @@ import pytest
 from elbowroom.calibrate.boards.trouble import Fault
 from elbowroom.calibrate.extrinsics import BoardAnchor, solve_extrinsics
 from elbowroom.errors import CalibrationError
-from elbowroom.evaluate.board_views import BOARD, board_poses, floor, ring, views_of
+from elbowroom.evaluate.calibrating.board_views import BOARD, board_poses, floor, ring, views_of
 
 FLOOR = BoardAnchor(0, floor())
 POSE, BEHIND = 3, "cam-0"

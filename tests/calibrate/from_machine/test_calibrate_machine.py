@@ -7,16 +7,16 @@ import pytest
 from scipy.stats import chi2
 
 from elbowroom.calibrate.from_machine.target import calibrate_from_machine
-from elbowroom.calibrate.twist import between, moved, sizes
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
+from elbowroom.geometry.twist import between, moved, sizes
 from elbowroom.machine import Machine
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import Moment, render
 from elbowroom.simulate.machine_solids import link_solids, random_joints
 from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Solid
-from elbowroom.site import RecordedMoment
+from elbowroom.sources import RecordedMoment
 from reference.calibrate_machines import camera, cameras, errors, poses_of, record, room, roughly
 
 FAR_OUT = chi2.ppf(0.9999, 6)

@@ -6,9 +6,9 @@ import yaml
 from scipy.stats import chi2
 from typer.testing import CliRunner
 
-from elbowroom.calibrate.twist import between, sizes
 from elbowroom.cli import main
 from elbowroom.cli.app import app
+from elbowroom.geometry.twist import between, sizes
 from elbowroom.site import Site
 
 

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from elbowroom.calibrate.from_machine._kernels_surface import compare
 from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
+from elbowroom.calibrate.from_machine.kernels.surface import compare
 from elbowroom.calibrate.from_machine.surface_sums import TRUST
-from elbowroom.calibrate.planar_images import planar_images
 from elbowroom.machine.rasterise import view_of
+from elbowroom.sensing.planar_images import planar_images
 from reference import calibrate_surface
 from reference.calibrate_machines import PLACES, camera, poses_of, record, room, roughly
 

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from elbowroom.calibrate.planar_images import planar_images
 from elbowroom.calibrate.refinement.agreement import Agreement, agreement, seen_from
 from elbowroom.calibrate.refinement.refine import refine
 from elbowroom.calibrate.refinement.verdict import ALLOWED
-from elbowroom.calibrate.twist import between, sizes
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import invert_rigid
+from elbowroom.geometry.twist import between, sizes
+from elbowroom.sensing.planar_images import planar_images
 from elbowroom.simulate import Moment
 from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Solid
 from elbowroom.site import Site
-from elbowroom.site import moments as recorded_moments
+from elbowroom.sources import moments as recorded_moments
 from reference.calibrate_machines import camera, cameras, errors, record, room, roughly
 
 

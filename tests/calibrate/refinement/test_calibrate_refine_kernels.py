@@ -1,10 +1,10 @@
 import numpy as np
 
-from elbowroom.calibrate.planar_images import planar_images
-from elbowroom.calibrate.refinement._kernels_overlap import Overlap, compare_points, fit_planes
+from elbowroom.calibrate.refinement.kernels.overlap import Overlap, compare_points, fit_planes
 from elbowroom.calibrate.refinement.overlap import surfaces
 from elbowroom.geometry import invert_rigid
 from elbowroom.machine.rasterise import view_of
+from elbowroom.sensing.planar_images import planar_images
 from reference import calibrate_overlap
 from reference.calibrate_machines import PLACES, camera, poses_of, record, room
 

@@ -11,16 +11,16 @@ from typer.testing import CliRunner
 from elbowroom.calibrate import Board
 from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
 from elbowroom.calibrate.lens import project
-from elbowroom.calibrate.rigid import log
 from elbowroom.calibrate.simulated import Start, hand_poses, read_truth, started
 from elbowroom.calibrate.simulated.hand_poses import shown
 from elbowroom.calibrate.simulated.stand_poses import stand_poses
 from elbowroom.cli.app import app
 from elbowroom.errors import CalibrationError, InputError
 from elbowroom.geometry import invert_rigid
+from elbowroom.geometry.rigid import log
 from elbowroom.simulate import wall_cameras
 from elbowroom.site import Site
-from elbowroom.site.images import images_of_cameras
+from elbowroom.sources.images import images_of_cameras
 
 RUNNER = CliRunner()
 BOARD = Board(8, 5, 0.1, "cut_out", 0.04, marked=True, thickness_m=0.003)

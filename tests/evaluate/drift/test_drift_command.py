@@ -2,7 +2,7 @@
 
 import pytest
 
-from elbowroom.cli.bench_calibration_run import MORE, run_bench_calibration
+from elbowroom.cli.evaluate.bench_calibration_run import MORE, run_bench_calibration
 from elbowroom.errors import InputError
 from elbowroom.evaluate.drift.rows import drift_rows
 

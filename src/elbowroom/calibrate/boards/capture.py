@@ -19,9 +19,9 @@ from elbowroom.geometry import DepthCamera, Intrinsics, nearest_rigid
 from elbowroom.geometry.parallel import spread
 from elbowroom.site import Site
 from elbowroom.site.calibration_entry import CaptureImagesEntry
-from elbowroom.site.images import Image, images_of_cameras
 from elbowroom.site.paths import existing_folder, inside
 from elbowroom.site.recording_entry import StampedFolder
+from elbowroom.sources.images import Image, images_of_cameras
 
 LOOKED_AT_AGAIN = 24
 """Images in which a board of another size is looked for where none shows the right one."""

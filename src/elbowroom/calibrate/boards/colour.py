@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.boards.printed import points_within
-from elbowroom.calibrate.extrinsics.seen_board import seen_board
+from elbowroom.calibrate.boards.seen_board import seen_board
 from elbowroom.calibrate.lens import directions, project
 from elbowroom.geometry import DepthCamera, invert_rigid
 

@@ -13,8 +13,8 @@ from elbowroom.calibrate.boards.plate import Plate, View, plates
 from elbowroom.calibrate.boards.registration import Registration, registered
 from elbowroom.calibrate.boards.trouble import Fault, Trouble
 from elbowroom.geometry import DepthCamera
-from elbowroom.sensing.distortion import distorted
-from elbowroom.simulate.rays import PixelRays
+from elbowroom.geometry.lens import distorted
+from elbowroom.sensing.rays import PixelRays
 
 Array = NDArray[np.float64]
 LEAST_SCORE = 0.2

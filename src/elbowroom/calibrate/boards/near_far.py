@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.calibrate.boards.opencv import opencv
 from elbowroom.calibrate.boards.plate import Plate, View
-from elbowroom.calibrate.opencv import opencv
 
 Array = NDArray[np.float64]
 GAP_M = 0.05

@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from elbowroom.geometry import DepthCamera
-from elbowroom.simulate.rays import PixelRays, pixel_rays
+from elbowroom.sensing.rays import PixelRays, pixel_rays
 
 
 @lru_cache(maxsize=64)

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.opencv import opencv
+from elbowroom.calibrate.boards.opencv import opencv
 from elbowroom.geometry import DepthCamera
-from elbowroom.simulate.rays import PixelRays
+from elbowroom.sensing.rays import PixelRays
 
 Image = NDArray[np.float32]
 STEP_M = 0.06

@@ -7,12 +7,12 @@ from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.boards.edge_fit import LEAST_AGREEMENT, edges_fitted
 from elbowroom.calibrate.boards.near_far import NearFar
+from elbowroom.calibrate.boards.opencv import opencv
 from elbowroom.calibrate.boards.pixel_rays import pixel_rays_of
 from elbowroom.calibrate.boards.trouble import Fault, Trouble
-from elbowroom.calibrate.opencv import opencv
 from elbowroom.geometry import DepthCamera
-from elbowroom.sensing.distortion import distorted
-from elbowroom.simulate.rays import undistort
+from elbowroom.geometry.lens import distorted
+from elbowroom.sensing.rays import undistort
 
 Array = NDArray[np.float64]
 LEAST_SIGMA_PX = 0.02

@@ -9,10 +9,10 @@ from scipy.ndimage import gaussian_filter
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.near_far import NearFar
+from elbowroom.calibrate.boards.opencv import opencv
 from elbowroom.calibrate.boards.plate import Plate
-from elbowroom.calibrate.opencv import opencv
 from elbowroom.geometry import DepthCamera
-from elbowroom.sensing.distortion import distorted
+from elbowroom.geometry.lens import distorted
 
 Array = NDArray[np.float64]
 CELLS = 6

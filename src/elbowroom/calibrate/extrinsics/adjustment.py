@@ -16,9 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.calibrate.boards.seen_board import SeenBoard, corner_rows, plane_rows
 from elbowroom.calibrate.extrinsics.anchor import BoardAnchor, CameraAnchor
 from elbowroom.calibrate.extrinsics.known_points import KnownPoints
-from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, corner_rows, plane_rows
 from elbowroom.calibrate.extrinsics.unknowns import Index, State
 from elbowroom.calibrate.extrinsics.variances import Variances, ViewRows
 from elbowroom.errors import CalibrationError

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.seen_board import SeenBoard, spread
 from elbowroom.calibrate.extrinsics.adjustment import Solution
-from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, spread
 from elbowroom.errors import CalibrationError
 
 Array = NDArray[np.float64]

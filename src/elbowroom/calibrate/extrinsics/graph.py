@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, spread
+from elbowroom.calibrate.boards.seen_board import SeenBoard, spread
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import invert_rigid
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.extrinsics.seen_board import SeenBoard
+from elbowroom.calibrate.boards.seen_board import SeenBoard
 from elbowroom.geometry import invert_rigid
 
 Array = NDArray[np.float64]

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.seen_board import SeenBoard, corner_rows, seen_boards
+from elbowroom.calibrate.boards.seen_plane import rays_of
 from elbowroom.calibrate.boards.trouble import Fault, Trouble
-from elbowroom.calibrate.calibrated_camera import CalibratedCamera
 from elbowroom.calibrate.extrinsics.adjustment import Solution, adjust, camera_from_board, fixed_by_points
 from elbowroom.calibrate.extrinsics.anchor import (
     Anchor,
@@ -28,9 +29,8 @@ from elbowroom.calibrate.extrinsics.disagreement import (
 from elbowroom.calibrate.extrinsics.graph import first_solution, require_one_piece, shared_poses
 from elbowroom.calibrate.extrinsics.known_points import KnownPoints
 from elbowroom.calibrate.extrinsics.misread import misread_views
-from elbowroom.calibrate.extrinsics.seen_board import SeenBoard, corner_rows, seen_boards
-from elbowroom.calibrate.extrinsics.seen_plane import rays_of
 from elbowroom.calibrate.extrinsics.unknowns import State
+from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.extrinsics.anchor import BoardAnchor, CameraAnchor
-from elbowroom.calibrate.rigid import exp
+from elbowroom.geometry.rigid import exp
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine import Machine
-from elbowroom.machine._kernels_draw import draw
+from elbowroom.machine.kernels.draw import draw
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
 
 Array = NDArray[np.float64]

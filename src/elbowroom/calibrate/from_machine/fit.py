@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.from_machine._kernels_surface import Trust
 from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
+from elbowroom.calibrate.from_machine.kernels.surface import Trust
 from elbowroom.calibrate.from_machine.surface_sums import (
     TRUST,
     SurfaceSums,
@@ -18,10 +18,10 @@ from elbowroom.calibrate.from_machine.surface_sums import (
     whole,
 )
 from elbowroom.calibrate.from_machine.views import MachineViews
-from elbowroom.calibrate.twist import adjoint, between, moved
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import invert_rigid
 from elbowroom.geometry.parallel import spread
+from elbowroom.geometry.twist import adjoint, between, moved
 from elbowroom.machine import Machine
 
 STAGES: tuple[tuple[int, float, int], ...] = (

@@ -10,9 +10,9 @@ from scipy.spatial import cKDTree
 
 from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
 from elbowroom.calibrate.from_machine.views import MachineViews
-from elbowroom.calibrate.planar_images import PlanarImages, thinned
-from elbowroom.calibrate.twist import between, moved, sizes
 from elbowroom.errors import CalibrationError
+from elbowroom.geometry.twist import between, moved, sizes
+from elbowroom.sensing.planar_images import PlanarImages, thinned
 
 START_WIDTH_PX = 80
 """Points and surface are taken from images thinned to about this."""

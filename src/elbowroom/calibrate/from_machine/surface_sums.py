@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.from_machine._kernels_surface import (
+from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
+from elbowroom.calibrate.from_machine.kernels.surface import (
     AGREES,
     BEFORE,
     BEHIND,
@@ -14,7 +15,6 @@ from elbowroom.calibrate.from_machine._kernels_surface import (
     Trust,
     compare,
 )
-from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
 from elbowroom.calibrate.from_machine.views import MachineViews
 from elbowroom.machine.rasterise import view_of
 

@@ -7,19 +7,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.calibrated_camera import CalibratedCamera
 from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
 from elbowroom.calibrate.from_machine.fit import Known, MachineFit, fit
 from elbowroom.calibrate.from_machine.start import start
 from elbowroom.calibrate.from_machine.surface_sums import SurfaceSums
 from elbowroom.calibrate.from_machine.verdict import check_camera, notes_of
 from elbowroom.calibrate.from_machine.views import MachineViews, machine_views
-from elbowroom.calibrate.surface_picture import SurfacePicture
+from elbowroom.calibrate.pages.surface_picture import SurfacePicture
+from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
-from elbowroom.site import RecordedMoment
+from elbowroom.sources import RecordedMoment
 
 PICTURE_WIDTH_PX = 320
 Progress = Callable[[str], None]

@@ -6,7 +6,7 @@ from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
 from elbowroom.calibrate.from_machine.fit import MachineFit
 from elbowroom.calibrate.from_machine.surface_sums import SurfaceSums
 from elbowroom.calibrate.from_machine.views import MachineViews
-from elbowroom.calibrate.pose_words import deviations, weakest_words
+from elbowroom.calibrate.result.pose_words import deviations, weakest_words
 from elbowroom.errors import CalibrationError
 from elbowroom.machine import Machine
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.planar_images import PlanarImages, planar_images
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.machine import Machine
 from elbowroom.sensing import DepthFrame
-from elbowroom.site import RecordedMoment
+from elbowroom.sensing.planar_images import PlanarImages, planar_images
+from elbowroom.sources import RecordedMoment
 
 LEAST_POSES = 4
 """Fewer poses say too little of how far they agree with each other."""

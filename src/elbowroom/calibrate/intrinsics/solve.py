@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.opencv import opencv
 from elbowroom.calibrate.intrinsics.coverage import advice, tilt_deg
 from elbowroom.calibrate.intrinsics.lens_model import PINHOLE, LensModel
-from elbowroom.calibrate.opencv import opencv
 from elbowroom.errors import CalibrationError, CameraError
 from elbowroom.geometry import DepthCamera
 

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.planar_images import PlanarImages
-from elbowroom.calibrate.refinement._kernels_overlap import COMPARED, Overlap, compare_points, fit_planes
+from elbowroom.calibrate.refinement.kernels.overlap import COMPARED, Overlap, compare_points, fit_planes
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.rasterise import view_of
+from elbowroom.sensing.planar_images import PlanarImages
 
 HALF_WINDOW_PX = 3
 BEND = 0.02

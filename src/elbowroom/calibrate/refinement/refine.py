@@ -7,18 +7,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.calibrated_camera import CalibratedCamera
-from elbowroom.calibrate.planar_images import planar_images
-from elbowroom.calibrate.refinement._kernels_overlap import Overlap
+from elbowroom.calibrate.pages.surface_picture import SurfacePicture
 from elbowroom.calibrate.refinement.agreement import Agreement, agreement, seen_from
+from elbowroom.calibrate.refinement.kernels.overlap import Overlap
 from elbowroom.calibrate.refinement.overlap import PairSums, Surfaces, pair_sums, pairs_of, surfaces
 from elbowroom.calibrate.refinement.step import Before, equations, step
 from elbowroom.calibrate.refinement.verdict import FEWEST_COMMON, check_refined, untouched_notes
-from elbowroom.calibrate.surface_picture import SurfacePicture
+from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import DepthFrame
-from elbowroom.site import RecordedMoment
+from elbowroom.sensing.planar_images import planar_images
+from elbowroom.sources import RecordedMoment
 
 GATES_M = (0.40,) * 6 + (0.25,) * 6 + (0.15,) * 6 + (0.10,) * 6 + (0.05,) * 8
 """How far apart surfaces may be and still be the same, round by round [m]; then by sigmas alone."""

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.refinement.overlap import PairSums
-from elbowroom.calibrate.twist import adjoint, between, moved
 from elbowroom.geometry import invert_rigid
+from elbowroom.geometry.twist import adjoint, between, moved
 
 Array = NDArray[Any]
 NOISIER = 2.0

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from elbowroom.calibrate.pose_words import deviations, weakest_words
-from elbowroom.calibrate.refinement._kernels_overlap import AGREES, COMPARED
+from elbowroom.calibrate.refinement.kernels.overlap import AGREES, COMPARED
 from elbowroom.calibrate.refinement.overlap import PairSums
 from elbowroom.calibrate.refinement.step import Before
-from elbowroom.calibrate.twist import between, sizes
+from elbowroom.calibrate.result.pose_words import deviations, weakest_words
 from elbowroom.errors import CalibrationError
+from elbowroom.geometry.twist import between, sizes
 
 ALLOWED = float(chi2.ppf(0.99, 6))
 """Squared Mahalanobis distance up to which a camera may move: 99 % of the cameras with this covariance are nearer."""

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, invert_rigid
-from elbowroom.sensing.distortion import distorted
+from elbowroom.geometry.lens import distorted
 from elbowroom.simulate.board_plate import LEAST_THICKNESS_M
 from elbowroom.simulate.furniture import CEILING_M, HALF_SIDE_M
 

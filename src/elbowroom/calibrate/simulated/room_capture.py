@@ -11,9 +11,9 @@ from elbowroom.calibrate.simulated.board_capture import GRID
 from elbowroom.calibrate.simulated.start import TrueCamera, moved
 from elbowroom.calibrate.simulated.writer import CaptureWriter
 from elbowroom.errors import CalibrationError
+from elbowroom.files.atomic import whole_file
 from elbowroom.geometry.parallel import spread
 from elbowroom.simulate import InterventionRoom, Moment, render
-from elbowroom.view.atomic import whole_file
 
 PERIOD_S = 2.0
 FRAME_S = 1 / 30

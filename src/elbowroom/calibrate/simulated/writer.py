@@ -11,10 +11,10 @@ from PIL import Image
 
 from elbowroom.calibrate.simulated.start import TrueCamera
 from elbowroom.errors import CalibrationError
+from elbowroom.files.atomic import folder, whole_file
+from elbowroom.files.yaml_file import read_yaml
 from elbowroom.geometry import VoxelGrid
-from elbowroom.site.yaml_file import read_yaml
-from elbowroom.view.atomic import folder, whole_file
-from elbowroom.view.recorder import LARGEST, UNIT_M, as_units
+from elbowroom.sources.recorder import LARGEST, UNIT_M, as_units
 
 INFRARED_FOLDER = "infrared"
 TRUTH_FILE = "truth.yaml"

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from elbowroom.evaluate.drift.scene import BEFORE, KNOCKED_FRAMES, PERIOD_S, Commissioned, Tell, frames_of
-from elbowroom.monitor.health import Condition
-from elbowroom.monitor.watch import TURNS
+from elbowroom.monitor.health.drift.watch import TURNS
+from elbowroom.monitor.health.health import Condition
 from elbowroom.simulate import Moment, Solid
 
 

@@ -14,9 +14,9 @@ from elbowroom.evaluate.drift.scene import (
     frames_of,
     joints_of,
 )
-from elbowroom.monitor.shift import Shift
-from elbowroom.monitor.shown_part import ShownPart
-from elbowroom.monitor.tolerance import Tolerance
+from elbowroom.monitor.health.drift.shift import Shift
+from elbowroom.monitor.health.drift.shown_part import ShownPart
+from elbowroom.monitor.health.drift.tolerance import Tolerance
 from elbowroom.sensing import DepthFrame
 from elbowroom.simulate import render
 from elbowroom.simulate.knock import Knock

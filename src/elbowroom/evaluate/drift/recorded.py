@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.calibrate.commissioning.commission import Commissioning
 from elbowroom.evaluate.drift.knocks import KNOCKS
 from elbowroom.evaluate.drift.scene import Tell
-from elbowroom.monitor.reference import CameraReference
-from elbowroom.monitor.watch import Watch
+from elbowroom.monitor.health.drift.commission import Commissioning
+from elbowroom.monitor.health.drift.reference import CameraReference
+from elbowroom.monitor.health.drift.watch import Watch
 from elbowroom.simulate.knock import Knock
-from elbowroom.site import Site, moments
+from elbowroom.site import Site
+from elbowroom.sources import moments
 
 
 def recorded_rows(site: Site, tell: Tell, passes: int = 90) -> Iterator[dict[str, Any]]:

@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from elbowroom.calibrate.commissioning.commission import Commissioning
 from elbowroom.geometry import DepthCamera
-from elbowroom.monitor.reference import CameraReference
-from elbowroom.monitor.watch import Watch
+from elbowroom.monitor.health.drift.commission import Commissioning
+from elbowroom.monitor.health.drift.reference import CameraReference
+from elbowroom.monitor.health.drift.watch import Watch
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame
 from elbowroom.simulate import InterventionRoom, Moment, render, wall_cameras
 from elbowroom.simulate.person import Person, Walk

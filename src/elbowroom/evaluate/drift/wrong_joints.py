@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.evaluate.drift.scene import BEFORE, KNOCKED_FRAMES, PERIOD_S, Commissioned, Tell, frames_of
-from elbowroom.monitor.watch import BODY
+from elbowroom.monitor.health.drift.watch import BODY
 
 WRONG_JOINTS: dict[str, tuple[float, ...]] = {
     "long": (0.03,),

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 from scipy.sparse import csr_matrix, vstack
 
-from elbowroom.placement.solver import _kernels as kernels
+from elbowroom.placement.solver.kernels import search as kernels
 from elbowroom.placement.solver.model import Model
 
 ROUNDS = 40

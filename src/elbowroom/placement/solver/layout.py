@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.placement.requirement import TIE_RAD
-from elbowroom.placement.solver import _kernels as kernels
+from elbowroom.placement.solver.kernels import search as kernels
 from elbowroom.placement.solver.model import Model
 
 STEEPNESS = 4

@@ -13,8 +13,8 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.lens import distorted, usable_radius
 from elbowroom.placement.requirement import Requirement
-from elbowroom.sensing.distortion import distorted, usable_radius
 
 REACHED = 1.0 - 1e-5
 """A ray that is stopped no earlier than at this share of its way has reached its point."""

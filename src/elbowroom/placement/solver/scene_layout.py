@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.placement.solver import _kernels_scenes as kernels
+from elbowroom.placement.solver.kernels import scenes as kernels
 
 
 @dataclass(frozen=True, slots=True, eq=False)

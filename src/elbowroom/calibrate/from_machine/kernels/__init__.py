@@ -1,0 +1,1 @@
+"""The machine's surface beside what is measured, in compiled loops."""

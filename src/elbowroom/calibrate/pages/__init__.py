@@ -1,0 +1,1 @@
+"""The pages and pictures that say how a calibration went."""

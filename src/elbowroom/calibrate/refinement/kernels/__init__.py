@@ -1,0 +1,1 @@
+"""What two cameras see in common, in compiled loops."""

@@ -1,0 +1,1 @@
+"""What calibration found: cameras, what changed, the margins that follow."""

@@ -1,0 +1,1 @@
+"""`elbowroom calibrate` and its commands."""

@@ -1,0 +1,1 @@
+"""`elbowroom evaluate` and `elbowroom bench`."""

@@ -1,0 +1,1 @@
+"""`elbowroom placement` and its commands."""

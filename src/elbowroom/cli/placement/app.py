@@ -1,0 +1,180 @@
+"""`elbowroom placement`: where to put the cameras."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from elbowroom.cli.options import JsonFile, SitePath, VoxelSize
+
+placement_app = typer.Typer(
+    help="Where to put the cameras: verify a placement, sweep, optimise, simulate.", no_args_is_help=True
+)
+
+OptionalSite = Annotated[
+    Path | None,
+    typer.Argument(metavar="[SITE]", help="A site file (YAML). Default: the room of the thesis."),
+]
+Views = Annotated[
+    int | None,
+    typer.Option(min=1, metavar="COUNT", help="Views that a point needs. Default: the site's, or 3."),
+]
+Angle = Annotated[
+    float | None,
+    typer.Option(
+        metavar="DEGREES", help="Least angle between two views from above. Default: the site's, or 100."
+    ),
+]
+Pictures = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Write pictures into this folder.")
+]
+
+
+@placement_app.command(
+    epilog="Example: elbowroom placement verify my_room.yaml --out pictures --json verify.json"
+)
+def verify(
+    site: SitePath,
+    views: Views = None,
+    angle: Angle = None,
+    voxel_size: VoxelSize = None,
+    worst: Annotated[
+        int, typer.Option(min=0, metavar="COUNT", help="How many of the worst places to list.")
+    ] = 5,
+    out: Pictures = None,
+    json: JsonFile = None,
+) -> None:
+    """Say how many cameras see each point of the empty room, whether they are enough, and where they are not."""
+    from elbowroom.cli.placement.run import run_verify
+
+    run_verify(site, views, angle, voxel_size, worst, out, json)
+
+
+@placement_app.command(
+    epilog="Example: elbowroom placement sweep --sensor thesis --out pictures --json sweep.json"
+)
+def sweep(
+    site: OptionalSite = None,
+    sensor: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="thesis, vga, square, or a sensor that the site names; may be given more than once."
+        ),
+    ] = None,
+    cameras: Annotated[str, typer.Option(metavar="FROM-TO", help="Numbers of cameras.")] = "3-40",
+    walls: Annotated[
+        list[float] | None,
+        typer.Option(
+            metavar="METRES", help="Side of square walls instead of the site's; may be given more than once."
+        ),
+    ] = None,
+    height: Annotated[
+        list[float] | None, typer.Option(metavar="METRES", help="Of the cameras; several are taken in turn.")
+    ] = None,
+    aim: Annotated[
+        float | None, typer.Option(metavar="METRES", help="Height of the middle axis at which they look.")
+    ] = None,
+    share: Annotated[float, typer.Option(metavar="PERCENT", help="Of valid points that is wanted.")] = 98.9,
+    views: Views = None,
+    angle: Angle = None,
+    voxel_size: Annotated[
+        float, typer.Option("--voxel-size", metavar="METRES", help="Edge of a voxel.")
+    ] = 0.1,
+    out: Pictures = None,
+    json: JsonFile = None,
+) -> None:
+    """Spread more and more cameras evenly along the walls: the share of valid points, and the least number."""
+    from elbowroom.cli.placement.run import run_sweep
+
+    run_sweep(
+        site, sensor, cameras, walls, tuple(height or (2.4,)), aim, share, views, angle, voxel_size, out, json
+    )
+
+
+@placement_app.command(
+    epilog="Example: elbowroom placement optimise my_room.yaml --share 98.9 --write placed.yaml --out pictures"
+)
+def optimise(
+    site: OptionalSite = None,
+    share: Annotated[float, typer.Option(metavar="PERCENT", help="Of valid points that is wanted.")] = 98.9,
+    cameras: Annotated[
+        int | None,
+        typer.Option(
+            min=1, max=255, metavar="COUNT", help="So many cameras, with the best share they can have."
+        ),
+    ] = None,
+    price: Annotated[
+        bool, typer.Option("--price", help="The cheapest layout, not the one of fewest cameras.")
+    ] = False,
+    keep: Annotated[bool, typer.Option("--keep", help="Keep the site's cameras, and add to them.")] = False,
+    scenes: Annotated[
+        int,
+        typer.Option(
+            min=0, metavar="COUNT", help="Judge by the free space found in so many random scenes instead."
+        ),
+    ] = 0,
+    seconds: Annotated[float, typer.Option(metavar="SECONDS", help="How long to look.")] = 60.0,
+    points: Annotated[
+        int, typer.Option(min=1, metavar="COUNT", help="Points that the solver looks at.")
+    ] = 20_000,
+    views: Views = None,
+    angle: Angle = None,
+    seed: Annotated[int, typer.Option(min=0, help="Of all random choices.")] = 1,
+    write: Annotated[
+        Path | None, typer.Option("--write", metavar="SITE", help="Write a site file with the new cameras.")
+    ] = None,
+    out: Pictures = None,
+    json: JsonFile = None,
+) -> None:
+    """Find few or cheap cameras that see the empty room well enough, or the best places for a number of them."""
+    if scenes:
+        from elbowroom.cli.placement.in_use import run_in_use
+
+        run_in_use(site, share, cameras, price, keep, scenes, seconds, seed, write, json)
+        return
+    from elbowroom.cli.placement.optimise import run_optimise
+
+    run_optimise(site, share, cameras, price, keep, seconds, points, views, angle, seed, write, out, json)
+
+
+@placement_app.command(
+    epilog="Example: elbowroom placement simulate placed.yaml --scenes 20 --json simulate.json"
+)
+def simulate(
+    site: Annotated[
+        Path | None,
+        typer.Argument(metavar="[SITE]", help="A site file (YAML). Default: the simulated room."),
+    ] = None,
+    scenes: Annotated[int, typer.Option(min=1, metavar="COUNT", help="How many random scenes.")] = 10,
+    people: Annotated[
+        int, typer.Option(min=0, metavar="COUNT", help="In a room that is not the simulated one.")
+    ] = 3,
+    table: Annotated[bool, typer.Option(help="Whether such a room gets a table.")] = True,
+    voxel_size: VoxelSize = None,
+    by_camera: Annotated[bool, typer.Option(help="Also what each camera contributes.")] = True,
+    seed: Annotated[int, typer.Option(min=0, help="Of scenes and noise.")] = 1,
+    json: JsonFile = None,
+) -> None:
+    """Carve many random scenes: free space found, false stops, what each camera is worth."""
+    from elbowroom.cli.placement.simulate import run_simulate
+
+    run_simulate(site, scenes, people, table, voxel_size, by_camera, seed, json)
+
+
+@placement_app.command(epilog="Example: elbowroom placement capability placed.yaml --views 3 --out pictures")
+def capability(
+    site: SitePath,
+    views: Annotated[
+        int, typer.Option(min=1, metavar="COUNT", help="So many cameras must see the object.")
+    ] = 1,
+    voxel_size: VoxelSize = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Write pictures and capability.npz into this folder."),
+    ] = None,
+    json: JsonFile = None,
+) -> None:
+    """Say how small an object the cameras will see, place by place, and what ISO 13855 adds to the distance for it."""
+    from elbowroom.cli.placement.capability import run_capability
+
+    run_capability(site, views, voxel_size, out, json)

@@ -1,0 +1,1 @@
+"""How right in rooms: against exact truth, exact geometry and real recordings."""

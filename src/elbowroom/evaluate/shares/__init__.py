@@ -1,0 +1,1 @@
+"""Work shared out among processes and computers, and kept for going on."""

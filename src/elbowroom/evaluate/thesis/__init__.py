@@ -1,0 +1,1 @@
+"""The thesis' experiments, each a part of one page."""

@@ -1,0 +1,221 @@
+"""Random motions in the six setups: those whose truth lies within L, and false stops among all the others."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from elbowroom.evaluate.rooms.exact import ExactTravel
+from elbowroom.evaluate.rooms.scene import Comparison
+from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
+from elbowroom.evaluate.thesis.bands import counted
+from elbowroom.evaluate.thesis.judged import (
+    LATERAL_PX,
+    SAID,
+    Variant,
+    cameras_of,
+    is_small,
+    judged,
+    motions_of,
+    seen_space,
+)
+from elbowroom.evaluate.thesis.thesis import c_arm
+from elbowroom.motion import check_motions
+from elbowroom.simulate import render, setup
+from elbowroom.simulate.machine_solids import random_joints
+from elbowroom.view.report.blocks import Block, Table, cm, pct
+
+CHUNK = 21
+"""Random motions of one share of the work."""
+CLEAR_M = 0.02
+"""Random poses keep this distance of everything [m]."""
+CAREFUL = 2
+"""One of so many rounds of the setups is judged with an allowance for lateral error as well."""
+EDGE_M = 0.02
+"""Of a voxel, unless the settings say otherwise."""
+
+
+def random_tasks(settings: Settings) -> list[Task]:
+    """One for every 21 random motions, the setups in turn."""
+    chunks = -(-settings.random_motions // CHUNK)
+    return [
+        Task(
+            "motions",
+            f"random{n:02d}",
+            judge_random,
+            {
+                "number": settings.setups[n % len(settings.setups)],
+                "seed": n,
+                "count": min(CHUNK, settings.random_motions - n * CHUNK),
+                "cameras": settings.cameras,
+                "voxel_size_m": min(settings.voxel_sizes_m or (EDGE_M,)),
+                "careful": n // len(settings.setups) % CAREFUL == 0,
+            },
+        )
+        for n in range(chunks)
+    ]
+
+
+def judge_random(
+    number: int, seed: int, count: int, cameras: int, voxel_size_m: float, careful: bool
+) -> Outcome:
+    """Random poses in one setup until so many motions of theirs have a truth within L.
+
+    Each pose is judged without an allowance for lateral error; with `careful` from the same images with it, too.
+    Rows of kind "random" are the motions within L; all other motions of the poses are counted by joint.
+    """
+    scene, machine = setup(number), c_arm()
+    truth = ExactTravel(machine, scene.solids())
+    allowances = (0.0, LATERAL_PX) if careful else (0.0,)
+    variants = [Variant("640x480", voxel_size_m, "pixel", lateral_px=px) for px in allowances]
+    views = cameras_of("640x480", False, cameras)
+    motions = list(motions_of(machine).values())
+    rng = np.random.default_rng([number, seed])
+    rows: list[dict[str, Any]] = []
+    others: list[dict[str, Any]] = []
+    left, pose = count, 0
+    while left:
+        joints = random_joints(machine, rng)
+        if truth.gap(joints, CLEAR_M) < CLEAR_M:
+            continue
+        contacts = [truth.until_contact(joints, motion) for motion in motions]
+        within = [n for n, contact in enumerate(contacts) if contact.touches][:left]
+        if not within:
+            continue
+        left, pose = left - len(within), pose + 1
+        moment = scene.at(machine, joints)
+        frames = render(views, moment, noise=False)
+        for variant in variants:
+            space = seen_space(machine, moment, motions, views, frames, variant)
+            verdicts = check_motions(space, machine, joints, motions)
+            for n, (motion, verdict) in enumerate(zip(motions, verdicts, strict=True)):
+                row = {
+                    "kind": "random" if n in within else "other",
+                    "setup": number,
+                    "motion": f"{seed}-{pose}",
+                    **variant.said(cameras),
+                    **judged(Comparison(motion, verdict, contacts[n]), voxel_size_m),
+                }
+                (rows if n in within else others).append(row)
+    return Outcome(rows + _by_joint(rows, others))
+
+
+def _by_joint(rows: Sequence[Row], others: Sequence[Row]) -> list[dict[str, Any]]:
+    """Of all motions of the poses, by variant and joint: how many stop, and are clear, where the truth is not."""
+    every = [*rows, *others]
+    counts = []
+    for lateral_px, joint in dict.fromkeys((row["lateral_px"], row["joint"]) for row in every):
+        mine = [row for row in every if (row["lateral_px"], row["joint"]) == (lateral_px, joint)]
+        safe = [row for row in mine if row["truth_band"] != "S"]
+        clear = [row for row in mine if row["truth_band"] == "0"]
+        counts.append(
+            {
+                "kind": "joint",
+                "lateral_px": lateral_px,
+                "joint": joint,
+                "motions": len(mine),
+                "not_within_s": len(safe),
+                "false_stops": sum(row["band"] == "S" for row in safe),
+                "clear": len(clear),
+                "found_clear": sum(row["band"] == "0" for row in clear),
+                "more_than_truth": sum(row["more_than_truth"] for row in mine),
+            }
+        )
+    return counts
+
+
+def random_summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """Verdicts and shortfall by the allowance for lateral error; false stops by joint without it."""
+    drawn = [row for row in rows if row["kind"] == "random"]
+    counts = [row for row in rows if row["kind"] == "joint"]
+    result: list[dict[str, Any]] = []
+    for lateral_px in dict.fromkeys(row["lateral_px"] for row in drawn):
+        mine = [row for row in drawn if row["lateral_px"] == lateral_px]
+        small = [row for row in mine if is_small(row)]
+        short = [row["shortfall_voxels"] for row in mine]
+        result.append(
+            {
+                "kind": "summary",
+                "of": "random",
+                **{key: mine[0][key] for key in SAID},
+                "motions": len(mine),
+                **counted([row["verdict"] for row in mine]),
+                "small_objects": len(small),
+                "unsafe_of_small_objects": sum(row["verdict"] == "u" for row in small),
+                "all_motions": sum(row["motions"] for row in counts if row["lateral_px"] == lateral_px),
+                "more_than_truth": sum(
+                    row["more_than_truth"] for row in counts if row["lateral_px"] == lateral_px
+                ),
+                "median_shortfall_voxels": float(np.median(short)),
+                "p90_shortfall_voxels": float(np.percentile(short, 90)),
+                "greatest_shortfall_voxels": max(short),
+            }
+        )
+    for joint in dict.fromkeys(row["joint"] for row in counts):
+        mine = [row for row in counts if row["joint"] == joint and row["lateral_px"] == 0.0]
+        total = {
+            key: sum(row[key] for row in mine)
+            for key in ("not_within_s", "false_stops", "clear", "found_clear")
+        }
+        result.append({"kind": "summary", "of": "false stops", "joint": joint, **total})
+    return result
+
+
+def random_blocks(rows: Sequence[Row]) -> list[Block]:
+    """Verdicts and shortfall; false stops by joint."""
+    summaries = [row for row in rows if row["kind"] == "summary"]
+    blocks: list[Block] = []
+    found = [row for row in summaries if row["of"] == "random"]
+    if found:
+        first = found[0]
+        columns = ("", *(f"+-{row['lateral_px']:g} px" for row in found), "due")
+        lines = [
+            (words, *(form.format(**row) for row in found), due)
+            for words, form, due in (
+                ("motions whose truth is within L", "{motions}", "500"),
+                ("unsafe", "{u}", "0"),
+                ("unsafe, of those that touch what is under 0.10 m", _OF_SMALL, "0"),
+                (
+                    "more free travel than the truth, of all motions",
+                    "{more_than_truth} of {all_motions}",
+                    "0",
+                ),
+                ("same band", "{s}", ""),
+                ("too safe by one band or two", "{ts}", ""),
+                ("too safe by three", "{tts}", ""),
+                ("median shortfall [voxels of the moving point]", "{median_shortfall_voxels:.2f}", "2"),
+                ("90 % shortfall", "{p90_shortfall_voxels:.2f}", ""),
+                ("greatest shortfall", "{greatest_shortfall_voxels:.1f}", ""),
+            )
+        ]
+        words = f"{first['sensor']}, {cm(first['voxel_size_m'])}, {first['detail']}"
+        blocks.append(Table(f"Random motions, {words}, by how much pixels are widened", columns, lines))
+    stops = [row for row in summaries if row["of"] == "false stops"]
+    if stops:
+        blocks.append(_stops_table(stops))
+    return blocks
+
+
+_OF_SMALL = "{unsafe_of_small_objects} of {small_objects}"
+
+
+def _stops_table(stops: Sequence[Row]) -> Table:
+    lines = [
+        (
+            row["joint"],
+            str(row["not_within_s"]),
+            str(row["false_stops"]),
+            _share(row["false_stops"], row["not_within_s"]),
+            _share(row["found_clear"], row["clear"]),
+        )
+        for row in stops
+    ]
+    return Table(
+        "False stops in random poses, by joint: of motions whose truth is not within S",
+        ("joint", "motions", "false stops", "[%]", "0 where the truth is 0 [%]"),
+        lines,
+    )
+
+
+def _share(part: int, whole: int) -> str:
+    return pct(100 * part / whole if whole else None, 1)

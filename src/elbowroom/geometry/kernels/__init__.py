@@ -1,0 +1,1 @@
+"""Bits of voxels, for all kernels."""

@@ -1,0 +1,1 @@
+"""The machine in voxels and in images, in compiled loops."""

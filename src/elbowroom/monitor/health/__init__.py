@@ -1,0 +1,1 @@
+"""What is wrong with a camera, a stream or the machine, and why."""

@@ -1,0 +1,1 @@
+"""The drift watch: what stands still is commissioned, and what no longer stands there is found."""

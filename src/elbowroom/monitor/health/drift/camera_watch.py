@@ -1,0 +1,207 @@
+"""Watches whether one camera stands where it was commissioned."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import InputError
+from elbowroom.geometry import DepthCamera
+from elbowroom.monitor.health.drift.kernels.watch import Memory, Spots, judge_image
+from elbowroom.monitor.health.drift.lasting import Lasting
+from elbowroom.monitor.health.drift.reference import MOVE_PRIOR_M, TURN_PRIOR_RAD, CameraReference
+from elbowroom.monitor.health.drift.sequential import Tally
+from elbowroom.monitor.health.drift.shift import Shift
+from elbowroom.monitor.health.drift.shown_part import ShownPart
+from elbowroom.monitor.health.drift.tolerance import Tolerance
+from elbowroom.monitor.health.health import CameraHealth, Condition
+from elbowroom.sensing import DepthFrame
+
+GATE_M = 0.20
+SIGMAS = 3.0
+LEAST_SEEN = 60
+"""So many spots must be in view for a frame to say anything."""
+LEAST_SEEN_SHARE = 0.15
+FOR_OVER_AGAINST = 5.0
+"""What speaks for a motion must outweigh so much what stands where it was: a table that is pushed moves no wall."""
+LEAST_FOR = 20.0
+LEAST_FIT = 0.5
+"""So much of what is in view must fit the motion."""
+FRAMES = 6
+"""So many more frames must say that it moved than say, counted twice, that it did not."""
+CHANGED_FRAMES = 12
+CHANGED_FIT = 0.5
+COVERED_SHARE = 0.97
+HIDDEN_SHARE = 0.7
+
+
+@dataclass(slots=True, eq=False)
+class CameraWatch:
+    """Hears the frames of one camera and remembers what its tests have come to.
+
+    Args:
+        camera: as the site says.
+        reference: what it was commissioned on.
+        tolerance: what is not yet called moved.
+    """
+
+    camera: DepthCamera
+    reference: CameraReference
+    tolerance: Tolerance = field(default_factory=Tolerance)
+
+    stop: str | None = field(default=None, init=False)
+    """Why nothing may move, once it was found; it stays."""
+    shift: Shift | None = field(default=None, init=False)
+    """By how much it had moved when that was found."""
+    _part: ShownPart | None = field(init=False)
+    _least: Tolerance = field(init=False)
+    """What is not yet called moved in this view."""
+    _spots: Spots = field(init=False)
+    _memory: Memory = field(init=False)
+    _since_moved: Memory = field(init=False)
+    _moved: Tally = field(default_factory=lambda: Tally(FRAMES), init=False)
+    _changed: Tally = field(default_factory=lambda: Tally(CHANGED_FRAMES), init=False)
+    _lasting: Lasting = field(default_factory=Lasting, init=False)
+    _newest: tuple[int | None, CameraHealth] | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        self.reference.require(self.camera)
+        self._part = ShownPart.of(self.reference, self.tolerance)
+        self._least = self.tolerance if self._part is None else self._part.tolerance
+        self._spots = self.reference.spots()
+        self._memory, self._since_moved = _nothing_heard(self._spots), _nothing_heard(self._spots)
+
+    def hear(self, frame: DepthFrame | None, now_ns: int) -> CameraHealth:
+        """Judges the newest frame.
+
+        Args:
+            frame: of this camera; None: it gave none. One that was heard already is no new one, and counts once.
+            now_ns: the time now [ns, the clock of the frames].
+
+        Raises:
+            InputError: the image is of another size than the reference's.
+        """
+        if frame is None or self._was_heard(frame):
+            self._lasting.silent(now_ns)
+            self._stop_if_too_long()
+            return self._silent if frame is None else self.newest
+        now = self._judge(frame)
+        self._newest = frame.stamp_ns, now
+        self._count(frame, now, frame.stamp_ns if frame.stamp_ns is not None else now_ns)
+        return now
+
+    def pass_over(self, frame: DepthFrame | None, now_ns: int) -> CameraHealth:
+        """What was said last, without a look at the newest frame, of which all that counts is whether it is there.
+
+        Args:
+            frame, now_ns: as of `hear`.
+        """
+        if frame is None or self._was_heard(frame):
+            return self.hear(frame, now_ns)
+        self._lasting.not_silent()
+        return self.newest
+
+    def _was_heard(self, frame: DepthFrame) -> bool:
+        return self._newest is not None and frame.stamp_ns is not None and self._newest[0] == frame.stamp_ns
+
+    @property
+    def newest(self) -> CameraHealth:
+        """What was said last; before there was a frame, that it gave none."""
+        return self._newest[1] if self._newest is not None else self._silent
+
+    @property
+    def _silent(self) -> CameraHealth:
+        return CameraHealth(self.camera.name, Condition.SILENT, None, 0.0, 1.0)
+
+    def _judge(self, frame: DepthFrame) -> CameraHealth:
+        """What one frame says by itself."""
+        image, name = frame.depth_m, self.camera.name
+        if image.shape != (self.reference.height, self.reference.width):
+            raise InputError(
+                f"watch: frame of {name} is {image.shape[1]} x {image.shape[0]} pixels, its reference "
+                f"{self.reference.width} x {self.reference.height}"
+            )
+        counted, shift, said = self._listen(frame, self._memory)
+        within, nearer, farther, lost = (int(number) for number in counted)
+        total = len(self.reference.pixel)
+        speaks_for, against, fits_still, fits_moved = (float(share) for share in said)
+        fits = max(fits_still, fits_moved) * within
+        seen, hidden = fits / total, (nearer + lost) / total
+        if lost >= COVERED_SHARE * total:
+            return CameraHealth(name, Condition.BLIND, None, seen, hidden)
+        if hidden >= COVERED_SHARE:
+            return CameraHealth(name, Condition.COVERED, None, seen, hidden)
+        if within + farther < max(LEAST_SEEN, LEAST_SEEN_SHARE * total):
+            little = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.UNSURE
+            return CameraHealth(name, little, None, seen, hidden)
+        if fits < CHANGED_FIT * (within + farther):
+            return CameraHealth(name, Condition.CHANGED, None, seen, hidden)
+        moved = (
+            speaks_for > max(FOR_OVER_AGAINST * against, LEAST_FOR)
+            and fits_moved >= LEAST_FIT
+            and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
+        )
+        still = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.STILL
+        return CameraHealth(name, Condition.MOVED if moved else still, shift, seen, hidden)
+
+    def _listen(
+        self, frame: DepthFrame, memory: Memory
+    ) -> tuple[NDArray[np.int64], Shift, NDArray[np.float64]]:
+        """Adds a frame to a memory: numbers of spots, the shift that fits, and what speaks for it (`fit_motion`)."""
+        counted, said = np.empty(4, dtype=np.int64), np.empty(4)
+        motion, covariance = np.empty(6), np.empty((6, 6))
+        judge_image(
+            frame.depth_m.ravel(), self._spots, float(self.camera.min_depth_m), float(self.camera.max_depth_m),
+            GATE_M, TURN_PRIOR_RAD, MOVE_PRIOR_M, memory, counted, motion, covariance, said,
+        )  # fmt: skip
+        shift = Shift.of(motion, covariance) if self._part is None else self._part.shift(motion, covariance)
+        return counted, shift, said
+
+    def _count(self, frame: DepthFrame, now: CameraHealth, stamp_ns: int) -> None:
+        """Lets the tests hear what the frame said."""
+        condition = now.condition
+        can_tell = now.shift is not None
+        moved = self._moved.add(condition is Condition.MOVED if can_tell else None)
+        changed = self._changed.add(condition is Condition.CHANGED)
+        self._lasting.seen(_hidden_as(now), stamp_ns)
+        if self.stop is not None:
+            return
+        shift = None
+        if self._moved.score == 0:
+            self._since_moved.frames[:] = 0
+        else:
+            # the size is that of frames after the knock: the mean that found it holds some from before
+            _, shift, _ = self._listen(frame, self._since_moved)
+        name = self.camera.name
+        if moved and shift is not None:
+            self.shift = shift
+            self.stop = f"camera {name} has {shift.words(self._least.turn_rad, self._least.move_m)}"
+        elif changed:
+            self.stop = (
+                f"camera {name} {Condition.CHANGED.value}: turned or moved far, or the room was rebuilt"
+            )
+        else:
+            self._stop_if_too_long(now.share_hidden)
+
+    def _stop_if_too_long(self, share_hidden: float | None = None) -> None:
+        """Stops for what has lasted too long; the share of the reference that is hidden is said where it is known."""
+        too_long = self._lasting.too_long
+        if self.stop is not None or too_long is None:
+            return
+        condition, lasted_s = too_long
+        hidden = (
+            "" if share_hidden is None else f": {100 * share_hidden:.0f} % of what it was commissioned on"
+        )
+        self.stop = f"camera {self.camera.name} {condition.value}{hidden}, for {lasted_s:.0f} s"
+
+
+def _hidden_as(now: CameraHealth) -> set[Condition]:
+    """All in which its view is hidden: one that is blind is covered, and one that is covered is hidden."""
+    shares = {Condition.HIDDEN: HIDDEN_SHARE, Condition.COVERED: COVERED_SHARE}
+    said = {condition for condition, share in shares.items() if now.share_hidden >= share}
+    return said | ({now.condition} & {Condition.BLIND})
+
+
+def _nothing_heard(spots: Spots) -> Memory:
+    n = len(spots.pixel)
+    return Memory(np.zeros(n), np.zeros(n), np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64))

@@ -1,0 +1,1 @@
+"""The drift watch in compiled loops."""

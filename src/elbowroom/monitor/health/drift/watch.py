@@ -1,0 +1,114 @@
+"""The watch over cameras and machine while the monitor runs: it remembers what it found, until it is made anew."""
+
+from collections.abc import Mapping, Sequence
+
+from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.parallel import default_threads, spread
+from elbowroom.machine import Machine
+from elbowroom.monitor.health.drift.body_watch import BodyWatch
+from elbowroom.monitor.health.drift.camera_watch import CameraWatch
+from elbowroom.monitor.health.drift.reference import CameraReference, require_references
+from elbowroom.monitor.health.drift.shift import Shift
+from elbowroom.monitor.health.drift.tolerance import Tolerance
+from elbowroom.monitor.health.health import CameraHealth, Condition, Health
+from elbowroom.sensing import DepthFrame, JointRecord
+
+Joints = Mapping[str, float] | JointRecord
+BODY = "machine"
+"""The key of what is wrong with the machine among `Health.stops`."""
+TURNS = 2
+"""At each pass one camera in so many is listened to: their motions last, and reading their images takes time."""
+
+
+class Watch:
+    """Compares each frame with the room as it was commissioned, and the machine's body with its joints.
+
+    This is the one place that latches: what was found stays in `Health.stops`, and whoever wants to go on makes a new
+    watch, after a look at what it named.
+
+    Args:
+        cameras: all of the room.
+        references: one of each camera, in any order.
+        machine: whose body is looked at; None: cameras alone.
+        tolerance: what is not yet called moved.
+        threads: None: all cores. The result does not depend on it.
+
+    Raises:
+        CalibrationError: references of other cameras.
+    """
+
+    def __init__(
+        self,
+        cameras: Sequence[DepthCamera],
+        references: Sequence[CameraReference],
+        machine: Machine | None = None,
+        tolerance: Tolerance | None = None,
+        threads: int | None = None,
+    ) -> None:
+        require_references(references, cameras)
+        by_name = {reference.camera: reference for reference in references}
+        given = tolerance or Tolerance()
+        self._watches = [CameraWatch(camera, by_name[camera.name], given) for camera in cameras]
+        self._body = None if machine is None else BodyWatch(machine, cameras, threads)
+        self._threads = threads
+        self._stops: dict[str, str] = {}
+        self.turn = 0
+        """The next pass listens to the cameras from this one on, one in `TURNS`."""
+
+    def shift_of(self, camera: str) -> Shift | None:
+        """By how much a camera had moved when that was found; None: it was not.
+
+        Raises:
+            KeyError: no camera of this name.
+        """
+        return {watch.camera.name: watch.shift for watch in self._watches}[camera]
+
+    def hear(self, frames: Sequence[DepthFrame], joints: Joints | None, now_ns: int) -> Health:
+        """Judges the newest frames.
+
+        Args:
+            frames: at most one of each camera.
+            joints: of the machine, or a record to be asked at each frame's time [m or rad].
+            now_ns: the time now [ns, the clock of the frames].
+
+        Raises:
+            InputError: an image of another size, joints that are not possible.
+        """
+        newest = {frame.camera: frame for frame in frames}
+        cameras = self._hear_cameras(newest, now_ns)
+        if self._body is not None and joints is not None:
+            still = {
+                health.camera
+                for health, watch in zip(cameras, self._watches, strict=True)
+                if health.condition is Condition.STILL and watch.stop is None
+            }
+            joints_of = {name: _at(joints, newest[name]) for name in still}
+            self._body.hear(newest, joints_of, still)
+        for watch in self._watches:
+            if watch.stop is not None:
+                self._stops.setdefault(watch.camera.name, watch.stop)
+        if self._body is not None and self._body.stop is not None:
+            self._stops.setdefault(BODY, self._body.stop)
+        return Health(cameras, self._body.links if self._body is not None else (), dict(self._stops))
+
+    def _hear_cameras(self, newest: Mapping[str, DepthFrame], now_ns: int) -> tuple[CameraHealth, ...]:
+        """Listens to the cameras whose turn it is; of the others, what they said last."""
+        threads = self._threads or default_threads()
+        turn, self.turn = self._watches[self.turn :: TURNS], (self.turn + 1) % TURNS
+
+        def hear(share: list[CameraWatch]) -> list[CameraHealth]:
+            return [watch.hear(newest.get(watch.camera.name), now_ns) for watch in share]
+
+        shares = [turn[first::threads] for first in range(threads)]
+        heard = {health.camera: health for part in spread(hear, shares, threads) for health in part}
+        return tuple(
+            heard[name] if name in heard else watch.pass_over(newest.get(name), now_ns)
+            for watch in self._watches
+            for name in [watch.camera.name]
+        )
+
+
+def _at(joints: Joints, frame: DepthFrame) -> Mapping[str, float]:
+    if not isinstance(joints, JointRecord):
+        return joints
+    return joints.at(frame.stamp_ns or 0)

@@ -1,0 +1,152 @@
+"""What is compiled before the first cycle, in jobs that can run beside each other.
+
+Run as a program it does the jobs that are named on its standard input, one a line, and says of each when it is done.
+Numba compiles one function at a time in a process, but several processes fill one cache on disk.
+"""
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Literal
+
+Needs = Literal["always", "machine", "motion", "simulator"]
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """Kernels that are compiled together.
+
+    Args:
+        name: what the screen calls them.
+        run: runs each of them once, on something tiny.
+        last: module and name of the kernel that is compiled last.
+        needs: what a run must have for them to be of use.
+        after: name of a job whose kernels these ones call; if both ran at once, its work would be done twice.
+    """
+
+    name: str
+    run: Callable[[], None]
+    last: tuple[str, str]
+    needs: Needs = "always"
+    after: str | None = None
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether the cache on disk knows its last kernel."""
+        module, kernel = self.last
+        where = Path(getattr(import_module(module), kernel).stats.cache_path)
+        return any(where.glob(f"{module.rpartition('.')[2]}.{kernel}-*.nbi"))
+
+
+def _pixel_test() -> None:
+    from elbowroom.reconstruct.warm_up import warm_up_pixel_test
+
+    warm_up_pixel_test()
+
+
+def _carving() -> None:
+    from elbowroom.reconstruct.warm_up import warm_up
+
+    warm_up(details=("pixel",))
+
+
+def _body() -> None:
+    from elbowroom.geometry import VoxelGrid
+    from elbowroom.machine import body_words
+    from elbowroom.machine.probe import probe
+
+    body_words(probe(), {"slide": 0.0}, VoxelGrid((-0.2, -0.2, -0.2), (8, 8, 8), 0.05))
+
+
+def _machine_in_images() -> None:
+    import numpy as np
+
+    from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
+    from elbowroom.machine import explain_frames
+    from elbowroom.machine.probe import probe
+
+    camera = DepthCamera("one", 32, 24, np.eye(4), Intrinsics(30, 30, 15.5, 11.5))
+    depth = np.ones((24, 32), dtype=np.float32)
+    depth.setflags(write=False)  # as frames have it; to numba that is another type
+    grid = VoxelGrid((-0.2, -0.2, -0.2), (8, 8, 8), 0.05)
+    explain_frames(probe(), [camera], [depth], [{"slide": 0.0}], grid=grid, threads=1)
+
+
+def _motion() -> None:
+    from elbowroom.geometry import VoxelGrid, bits
+    from elbowroom.machine.probe import probe
+    from elbowroom.motion import Motion, blocks_in_reach, check_motion
+    from elbowroom.reconstruct import FreeSpace
+
+    grid = VoxelGrid((-0.2, -0.2, -0.2), (8, 8, 8), 0.05)
+    nothing = bits.empty(grid)
+    space = FreeSpace(grid, nothing, nothing, nothing, nothing)
+    motion = Motion("slide", 1, 0.01)
+    check_motion(space, probe(), {"slide": 0.0}, motion)
+    blocks_in_reach(grid, probe(), {"slide": 0.0}, [motion])
+
+
+def _watch() -> None:
+    from elbowroom.monitor.start.warm_up import warm_up_watch
+
+    warm_up_watch()
+
+
+def _simulated_cameras() -> None:
+    from elbowroom.simulate import InterventionRoom, render, wall_cameras
+
+    render(wall_cameras(1, width=32, height=24), InterventionRoom().at(0.0), seed=0)
+
+
+JOBS = (
+    Job("the machine's body", _body, ("elbowroom.machine.kernels.body", "mark_points"), "machine"),
+    Job("the pixel test", _pixel_test, ("elbowroom.reconstruct.kernels.pixel", "settle_word")),
+    Job(
+        "the machine in images",
+        _machine_in_images,
+        ("elbowroom.machine.kernels.explain", "explain"),
+        "machine",
+        "the machine's body",
+    ),
+    Job(
+        "motions",
+        _motion,
+        ("elbowroom.motion.kernels.sweep", "first_block"),
+        "motion",
+        "the machine's body",
+    ),
+    Job(
+        "the watch",
+        _watch,
+        ("elbowroom.monitor.health.drift.kernels.body", "surface_spots"),
+        "motion",
+        "the machine in images",
+    ),
+    Job(
+        "carving",
+        _carving,
+        ("elbowroom.reconstruct.kernels.carve", "carve_cubes"),
+        after="the pixel test",
+    ),
+    Job(
+        "simulated cameras",
+        _simulated_cameras,
+        ("elbowroom.simulate.kernels.sensor", "as_delivered"),
+        "simulator",
+    ),
+)
+"""In the order in which they are begun: what others wait for first, the shortest last."""
+
+
+def main() -> None:
+    """Does the jobs that come in, by name, until there are no more."""
+    by_name = {job.name: job for job in JOBS}
+    for line in sys.stdin:
+        by_name[line.strip()].run()
+        print(line.strip(), flush=True)
+
+
+if __name__ == "__main__":
+    main()

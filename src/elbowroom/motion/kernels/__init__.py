@@ -1,0 +1,1 @@
+"""The swept check in compiled loops."""

@@ -1,0 +1,1 @@
+"""Pyramid, footprint test, pixel test and counting in compiled loops."""

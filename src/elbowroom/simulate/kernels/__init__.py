@@ -1,0 +1,1 @@
+"""Sensors and exact truth in compiled loops."""

@@ -1,0 +1,120 @@
+"""A moment of a simulated room written as a recording: images, joints, and a site file that reads them."""
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+from PIL import Image
+
+from elbowroom.files.atomic import folder, whole_file
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.sensing import DepthFrame
+from elbowroom.site import Site
+
+UNIT_M = 0.0002
+"""Metres per unit of the images: 65534 of them reach 13 m."""
+LARGEST = 65534
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """What a recording's site file says besides cameras and images.
+
+    Args:
+        name: of the room.
+        grid: the watched box.
+        joints: of the ceiling C-arm, by name [m or rad]; None: there is no machine.
+        noise: name of the sensors' noise, such as "tof"; "exact": none.
+    """
+
+    name: str
+    grid: VoxelGrid
+    joints: dict[str, float] | None
+    noise: str
+
+
+def write_recording(
+    out: Path, what: Recording, cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]
+) -> Path:
+    """Writes `images/<camera>/<stamp_ns>.png`, `images/joints.csv` and `site.yaml`.
+
+    Depth is rounded down to units of 0.2 mm: what is read back is never farther than what was rendered.
+
+    Args:
+        out: folder, made if it is not there.
+        what: the rest of the site file.
+        cameras: in the order of the frames.
+        frames: one of each camera.
+
+    Returns:
+        The site file.
+
+    Raises:
+        InputError: the folder cannot be made or written to.
+    """
+    images = folder(out / "images")
+    for camera, frame in zip(cameras, frames, strict=True):
+        with whole_file(folder(images / camera.name) / f"{frame.stamp_ns}.png") as unfinished:
+            Image.fromarray(as_units(frame.depth_m)).save(unfinished, format="PNG", compress_level=3)
+    if what.joints is not None:
+        with whole_file(images / "joints.csv") as unfinished, unfinished.open("w", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(["stamp_ns", *what.joints])
+            writer.writerow([frames[0].stamp_ns, *(repr(float(value)) for value in what.joints.values())])
+    with whole_file(out / "site.yaml") as unfinished:
+        unfinished.write_text(
+            "# written by elbowroom simulate\n" + yaml.safe_dump(_site(what, cameras), sort_keys=False),
+            encoding="utf-8",
+        )
+    return out / "site.yaml"
+
+
+def as_units(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:
+    """Depth in whole units, rounded down, shape (height, width); 0 where there is no return or it is too far."""
+    units = np.floor(np.where(np.isfinite(depth_m), depth_m, 0.0) / UNIT_M + 1e-6)
+    return np.where(units <= LARGEST, units, 0).astype(np.uint16)
+
+
+def _site(what: Recording, cameras: Sequence[DepthCamera]) -> dict[str, Any]:
+    first = cameras[0]
+    intrinsics = first.intrinsics
+    machine = {} if what.joints is None else {"machine": {"builtin": "ceiling_c_arm"}, "joints": _speeds()}
+    defaults: dict[str, Any] = {
+        "width": first.width,
+        "height": first.height,
+        **{name: float(getattr(intrinsics, name)) for name in ("fx", "fy", "cx", "cy")},
+        "depth_kind": first.depth_kind,
+        "depth_scale_m": UNIT_M,
+        "noise": what.noise,
+        "min_depth_m": first.min_depth_m,
+        "max_depth_m": min(first.max_depth_m, LARGEST * UNIT_M),
+    }
+    return {
+        "name": what.name,
+        "grid": {
+            "origin_m": what.grid.lower_m.tolist(),
+            "shape": list(what.grid.shape),
+            "voxel_size_m": what.grid.voxel_size_m,
+        },
+        "camera_defaults": defaults,
+        "cameras": [
+            {"name": camera.name, "world_from_camera": camera.world_from_camera.tolist()}
+            for camera in cameras
+        ],
+        **machine,
+        "rule": "three",
+        "detail": "pixel",
+        "margin": {"sigmas": 3.0, "bias_m": 0.0, "lateral_px": 0.5},
+        "recording": {"layout": "folder", "folder": "images"},
+    }
+
+
+def _speeds() -> dict[str, Any]:
+    """Of the ceiling C-arm, as the site file of the simulated room has them."""
+    entries = Site.simulated_room().entry.joints
+    return {name: entry.model_dump(exclude_none=True) for name, entry in entries.items()}

@@ -1,0 +1,135 @@
+"""What a run of the monitor came to: rates, times, levels, faults."""
+
+import time
+from collections import Counter, deque
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from elbowroom.monitor import CycleResult
+from elbowroom.motion import Level
+from elbowroom.view.screen.words import LEVEL_WORDS, NOT_CERTIFIED
+
+RECENT = 15
+"""So many passes are looked at for figures that are shown live."""
+KEPT = 100_000
+"""So many passes are looked at for the summary: the latest ones, some two hours at 12 Hz."""
+
+
+@dataclass(slots=True, eq=False)
+class RunLog:
+    """Times and levels of the passes of a run. Frame age: of the oldest frame, when the verdicts are out.
+
+    Args:
+        source: what brings the frames, such as "simulator".
+        unchecked_links: links of the machine that are not checked; every summary names them.
+    """
+
+    source: str = "source"
+    unchecked_links: Sequence[str] = ()
+    cycle_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
+    source_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
+    age_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
+    stages: deque[dict[str, float]] = field(default_factory=lambda: deque(maxlen=RECENT), init=False)
+    ends_s: deque[float] = field(default_factory=lambda: deque(maxlen=RECENT + 1), init=False)
+    levels: dict[str, Counter[Level]] = field(default_factory=dict, init=False)
+    faults: Counter[str] = field(default_factory=Counter, init=False)
+    stops: dict[str, str] = field(default_factory=dict, init=False)
+    is_watched: bool = field(default=False, init=False)
+    cycles: int = field(default=0, init=False)
+    start_s: float = field(default_factory=time.perf_counter, init=False)
+
+    def add(self, result: CycleResult, source_ms: float) -> None:
+        """Notes one pass, just ended.
+
+        Args:
+            result: of the pass.
+            source_ms: what the simulator or the reader of files took to bring its frames [ms].
+        """
+        self.cycles += 1
+        self.cycle_ms.append(result.cycle_ms)
+        self.source_ms.append(source_ms)
+        if result.oldest_age_ms is not None:
+            self.age_ms.append(result.oldest_age_ms + result.cycle_ms)
+        self.stages.append(dict(result.stage_ms))
+        self.ends_s.append(time.perf_counter())
+        for verdict in result.verdicts:
+            self.levels.setdefault(verdict.motion.name, Counter())[verdict.level] += 1
+        if result.fault is not None:
+            self.faults[result.fault] += 1
+        if result.health is not None:
+            self.is_watched = True
+            self.stops = dict(result.health.stops)
+
+    @property
+    def rate_hz(self) -> float:
+        """Passes per second of late; 0 before there were two."""
+        if len(self.ends_s) < 2:
+            return 0.0
+        return (len(self.ends_s) - 1) / max(self.ends_s[-1] - self.ends_s[0], 1e-9)
+
+    @property
+    def whole_rate_hz(self) -> float:
+        """Passes per second of the whole run."""
+        if self.cycles == 0:
+            return 0.0
+        return self.cycles / max(self.ends_s[-1] - self.start_s, 1e-9)
+
+    @property
+    def recent_stage_ms(self) -> dict[str, float]:
+        """Median time of each stage of late [ms], in the order of the stages."""
+        names = dict.fromkeys(name for stages in self.stages for name in stages)
+        return {name: float(np.median([s[name] for s in self.stages if name in s])) for name in names}
+
+    def recent(self, values: Sequence[float]) -> float:
+        """Median of the latest of some values; NaN if there are none."""
+        latest = list(values)[-RECENT:]
+        return float(np.median(latest)) if latest else float("nan")
+
+    def summary(self) -> RenderableType:
+        """What is printed at the end."""
+        seconds = max(self.ends_s[-1] - self.start_s, 0.0) if self.ends_s else 0.0
+        head = Text(f"{self.cycles} cycles in {seconds:.1f} s, {self.whole_rate_hz:.1f} Hz", style="bold")
+        if self.cycles == 0:
+            return Group(head, Text("no verdict was given"))
+        times = Table("", "median", "99 %", "worst", box=None, pad_edge=False, header_style="dim")
+        for name, values in (
+            ("cycle", self.cycle_ms),
+            ("frame age", self.age_ms),
+            (self.source, self.source_ms),
+        ):
+            if values:
+                p50, p99, worst = np.percentile(values, (50, 99, 100))
+                times.add_row(name, f"{p50:.1f} ms", f"{p99:.1f} ms", f"{worst:.1f} ms")
+        shares = Table("movement", *LEVEL_WORDS.values(), box=None, pad_edge=False, header_style="dim")
+        for name, counts in self.levels.items():
+            total = counts.total()
+            shares.add_row(
+                name, *(f"{counts[level] / total:.0%}" if counts[level] else "-" for level in Level)
+            )
+        lines: list[RenderableType] = [head, times, Text(), shares, Text()]
+        if self.faults:
+            fault, times_seen = self.faults.most_common(1)[0]
+            count = self.faults.total()
+            lines.append(
+                Text(f"{count} cycles failed and said stop; most often ({times_seen}): {fault}", "bold red")
+            )
+        lines += [Text(f"Every motion was stopped: {reason}", "bold red") for reason in self.stops.values()]
+        if self.stops:
+            lines.append(
+                Text("Look at it; commission again if it stays where it is. Starting again clears the stop.")
+            )
+        if not self.is_watched:
+            lines.append(
+                Text("Cameras were not watched: one that is knocked would not have been noticed.", "dim")
+            )
+        elif not self.stops:
+            lines.append(Text("No camera moved, and the machine was where its joints said."))
+        if self.unchecked_links:
+            lines.append(Text(f"Not checked, by the site's word: {', '.join(self.unchecked_links)}"))
+        lines.append(Text(NOT_CERTIFIED, "dim"))
+        return Group(*lines)

@@ -1,0 +1,207 @@
+"""The live view: a row for each joint and direction, and how fast and how fresh the answers are."""
+
+import time
+from collections.abc import Sequence
+from types import TracebackType
+
+from rich.console import Console, Group, RenderableType
+from rich.live import Live
+from rich.padding import Padding
+from rich.rule import Rule
+from rich.table import Table
+from rich.text import Text
+
+from elbowroom.monitor import CycleResult
+from elbowroom.motion import Cause, Level, Motion, Verdict
+from elbowroom.view.screen.run_log import RunLog
+from elbowroom.view.screen.watched import Watched
+from elbowroom.view.screen.words import (
+    CAUSE_WORDS,
+    LEVEL_WORDS,
+    MARKS,
+    NOT_CERTIFIED,
+    counts_text,
+    health_text,
+    place_text,
+    plain_line,
+    travel_bar,
+    travel_text,
+)
+
+STYLES: dict[Level, str] = {
+    Level.STOP: "bold white on red3",
+    Level.DECELERATE: "bold black on orange1",
+    Level.INFORM: "black on sky_blue2",
+    Level.CLEAR: "green",
+}
+BAR_STYLES: dict[Level, str] = {
+    Level.STOP: "red3",
+    Level.DECELERATE: "orange1",
+    Level.INFORM: "sky_blue2",
+    Level.CLEAR: "green",
+}
+REFRESH_S = 0.125
+"""The screen is drawn anew no more often than this: eyes need no more, and drawing takes milliseconds."""
+PLAIN_EVERY_S = 1.0
+
+
+class TerminalView:
+    """Shows passes as they come: a live screen on a terminal, a line a second elsewhere.
+
+    As a context, it stops the screen at its end.
+
+    Args:
+        watched: what the run watches.
+        console: where to show it; None: standard output.
+    """
+
+    def __init__(self, watched: Watched, console: Console | None = None) -> None:
+        self.watched = watched
+        self.log = RunLog(watched.source, watched.unchecked_links)
+        self.console = console or Console()
+        # a screen of its own: what the keyboard echoes there does not stay behind
+        live = (
+            Live(console=self.console, auto_refresh=False, screen=True) if self.console.is_terminal else None
+        )
+        self._live = live
+        self._last_screen: RenderableType | None = None
+        self._last_shown_s = float("-inf")
+
+    def __enter__(self) -> "TerminalView":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def start(self) -> None:
+        """Begins the screen and the time that rates are counted over."""
+        self.log.start_s = time.perf_counter()
+        if self._live is not None:
+            self._live.start()
+        else:
+            self.console.print(f"{self.watched.title}: {self.watched.room}", soft_wrap=True, highlight=False)
+
+    def stop(self) -> None:
+        """Ends the screen and prints what it showed last. Does nothing the second time."""
+        if self._live is not None and self._live.is_started:
+            self._live.stop()
+            if self._last_screen is not None:
+                self.console.print(self._last_screen)
+
+    def show(self, result: CycleResult, source_ms: float) -> None:
+        """Notes a pass and, if it is time, shows it.
+
+        Args:
+            result: of the pass.
+            source_ms: what the simulator or the reader of files took to bring its frames [ms].
+        """
+        self.log.add(result, source_ms)
+        now = time.perf_counter()
+        if now - self._last_shown_s < (REFRESH_S if self._live is not None else PLAIN_EVERY_S):
+            return
+        self._last_shown_s = now
+        if self._live is not None:
+            self._last_screen = self.screen(result)
+            self._live.update(self._last_screen, refresh=True)
+        else:
+            self.console.print(self.line(result), soft_wrap=True, highlight=False, markup=False)
+
+    def print_summary(self) -> None:
+        """Prints what the run came to."""
+        self.console.print(self.log.summary())
+
+    def screen(self, result: CycleResult) -> RenderableType:
+        """All of the live screen for one pass."""
+        wide = self.console.width >= 100
+        lines: list[RenderableType] = [
+            Rule(Text(f"elbowroom  ·  {self.watched.title}", "bold"), style="dim"),
+            Text(self.watched.room, "dim"),
+            self._speed(result),
+            Text(),
+            self._table(result.verdicts, wide),
+            Text(),
+            Text(health_text(result.health), "dim"),
+        ]
+        if result.health is not None:
+            lines += [
+                Text(f" Stop: {reason}. Stays until the monitor is started again. ", STYLES[Level.STOP])
+                for reason in result.health.stops.values()
+            ]
+        if result.fault is not None:
+            lines.append(Text(f" Stop, since the cycle failed: {result.fault} ", STYLES[Level.STOP]))
+        if self.watched.unchecked_links:
+            lines.append(
+                Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
+            )
+        lines.append(Text(NOT_CERTIFIED, "dim"))
+        return Padding(Group(*lines), (0, 1))
+
+    def line(self, result: CycleResult) -> str:
+        """One pass in one plain line."""
+        age = "" if result.oldest_age_ms is None else f" age {result.oldest_age_ms:.0f} ms"
+        head = (
+            f"{result.stamp_ns / 1e9:8.2f} s {self.log.rate_hz:5.1f} Hz cycle {result.cycle_ms:.0f} ms{age}"
+        )
+        if result.fault is not None:
+            return f"{head} | STOP, the cycle failed: {result.fault}"
+        if result.stopped_by is not None:
+            return f"{head} | STOP: {result.stopped_by}"
+        return " | ".join([head, *map(plain_line, result.verdicts)])
+
+    def _speed(self, result: CycleResult) -> Text:
+        log = self.log
+        age = log.recent(log.age_ms)
+        stages = " + ".join(f"{name} {ms:.0f}" for name, ms in log.recent_stage_ms.items())
+        levels = [verdict.level for verdict in result.verdicts]
+        text = Text()
+        text.append(f"{log.rate_hz:.1f} Hz", "bold")
+        text.append("  frame age ")
+        text.append("unknown" if result.oldest_age_ms is None else f"{age:.0f} ms", "bold")
+        text.append("  cycle ")
+        text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
+        text.append(f" = {stages}", "dim")
+        text.append(f"\n{result.stamp_ns / 1e9:.1f} s, cycle {result.sequence + 1}: {counts_text(levels)}")
+        text.append(
+            f"  ({self.watched.source} apart: {log.recent(log.source_ms):.0f} ms; Ctrl-C ends)", "dim"
+        )
+        return text
+
+    def _table(self, verdicts: Sequence[Verdict], wide: bool) -> Table:
+        table = Table(box=None, pad_edge=False, header_style="dim", padding=(0, 2, 0, 0))
+        table.add_column("movement", no_wrap=True)
+        table.add_column("level", no_wrap=True, width=14)
+        table.add_column("free", justify="right", no_wrap=True, width=9)
+        if wide:
+            table.add_column("   S   M           L", no_wrap=True, width=20)
+        table.add_column("cause", no_wrap=True)
+        table.add_column("where", no_wrap=True, overflow="ellipsis", ratio=1)
+        for verdict in verdicts:
+            table.add_row(*self._row(verdict, wide))
+        return table
+
+    def _row(self, verdict: Verdict, wide: bool) -> list[Text]:
+        level = verdict.level
+        filled, rest = travel_bar(verdict)
+        whole_reach = verdict.free_travel >= _looked_at(verdict) * (1 - 1e-9)
+        more = "≥ " if whole_reach else ""
+        at_limit = verdict.cause is Cause.NONE and not whole_reach
+        cells = [
+            Text(verdict.motion.name),
+            Text(f" {MARKS[level]} {LEVEL_WORDS[level]} ".ljust(14), STYLES[level]),
+            Text(more + travel_text(verdict.free_travel, verdict.free_travel_unit), "bold"),
+        ]
+        if wide:
+            cells.append(Text.assemble((filled, BAR_STYLES[level]), (rest, "dim")))
+        return [
+            *cells,
+            Text("joint limit" if at_limit else CAUSE_WORDS[verdict.cause]),
+            Text(place_text(verdict), "dim"),
+        ]
+
+
+def _looked_at(verdict: Verdict) -> float:
+    """How far a verdict could have said to go [m or rad along the joint]."""
+    motion = verdict.motion
+    return motion.looked_at if isinstance(motion, Motion) else motion.reach or float("inf")

@@ -1,0 +1,72 @@
+"""Result files say what was run on what, and are whole or not there."""
+
+import json
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from elbowroom.errors import InputError
+from elbowroom.files.json_rows import json_rows, meta, write_json
+
+
+class Colour(Enum):
+    RED = "red"
+
+
+def test_rows_come_back_as_plain_values(tmp_path):
+    row = {
+        "a": np.float64(1.5),
+        "b": np.arange(2),
+        "c": (1, None),
+        "d": {"e": Path("x")},
+        "f": np.bool_(True),
+    }
+    write_json(tmp_path / "out.json", [row, {"name": "grün"}])
+    content = json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))
+    assert content["rows"] == [
+        {"a": 1.5, "b": [0, 1], "c": [1, None], "d": {"e": "x"}, "f": True},
+        {"name": "grün"},
+    ]
+    assert set(content["meta"]) == {"command", "commit", "processor", "versions"}
+
+
+@pytest.mark.parametrize("number", [float("nan"), float("inf"), np.float64("-inf"), np.array([np.nan])])
+def test_numbers_that_json_does_not_know_are_null(tmp_path, number):
+    write_json(tmp_path / "out.json", [{"x": number}])
+    (row,) = json.loads((tmp_path / "out.json").read_text())["rows"]
+    assert row["x"] in (None, [None])
+
+
+def test_no_rows_are_a_whole_file_too(tmp_path):
+    write_json(tmp_path / "out.json", [])
+    assert json.loads((tmp_path / "out.json").read_text())["rows"] == []
+
+
+@pytest.mark.parametrize("interruption", [ValueError, KeyboardInterrupt])
+def test_an_interrupted_command_leaves_no_file(tmp_path, interruption):
+    with pytest.raises(interruption), json_rows(tmp_path / "out.json") as add:
+        add({"x": 1})
+        raise interruption
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missing_folder_is_said_before_the_work(tmp_path):
+    with (
+        pytest.raises(InputError, match="name a folder that exists"),
+        json_rows(tmp_path / "no" / "out.json"),
+    ):
+        pytest.fail("the block must not begin")
+
+
+def test_without_a_file_rows_are_dropped():
+    with json_rows(None) as add:
+        add({"x": object()})
+
+
+def test_meta_names_versions_processor_and_source():
+    found = meta()
+    assert {"elbowroom", "python", "numpy", "numba"} <= set(found["versions"])
+    assert "cores" in found["processor"]
+    assert found["commit"] and found["command"].startswith("elbowroom")
