@@ -15,8 +15,8 @@ from elbowroom.monitor.health.drift.watch import Watch
 from elbowroom.monitor.result import CycleResult
 from elbowroom.motion import Cause, Level, Motion, Verdict, blocks_in_reach, check_motions
 from elbowroom.reconstruct import Detail, Rule, reconstruct
-from elbowroom.reconstruct.reconstruct import young_enough
 from elbowroom.sensing import DepthFrame, JointRecord
+from elbowroom.sensing.snapshot import young_enough
 
 
 @dataclass(slots=True, eq=False)

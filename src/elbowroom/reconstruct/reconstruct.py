@@ -15,6 +15,7 @@ from elbowroom.reconstruct.free_space import FreeSpace, Source
 from elbowroom.reconstruct.images import frames_by_camera, room_images
 from elbowroom.reconstruct.resolve import Rule, needs_complete, resolve
 from elbowroom.sensing import DepthFrame, JointRecord
+from elbowroom.sensing.snapshot import young_enough
 
 Joints = Mapping[str, float] | JointRecord
 Timer = Callable[[str], AbstractContextManager[None]]
@@ -114,23 +115,6 @@ def reconstruct(
             source=Source(images, margin or Margin(), detail, rule, model_depth or {}, focus),
             threads=threads,
         )
-
-
-def young_enough(
-    frames: Sequence[DepthFrame], now_ns: int | None, max_age_ns: int | None
-) -> list[DepthFrame]:
-    """The frames within their age limit: neither older, nor so far ahead of the clock, nor without a time.
-
-    Raises:
-        InputError: an age limit without the time now, or one below zero.
-    """
-    if max_age_ns is None:
-        return list(frames)
-    if now_ns is None:
-        raise InputError("max_age_ns: an age limit needs the time, give now_ns")
-    if max_age_ns < 0:
-        raise InputError(f"max_age_ns: is {max_age_ns}, must be at least 0")
-    return [f for f in frames if f.stamp_ns is not None and abs(now_ns - f.stamp_ns) <= max_age_ns]
 
 
 @contextmanager

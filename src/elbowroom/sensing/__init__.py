@@ -5,5 +5,15 @@ from elbowroom.geometry.noise import NOISE_PRESETS, NoiseModel
 from elbowroom.sensing.frame import DepthFrame
 from elbowroom.sensing.joints import JointRecord
 from elbowroom.sensing.rectify import rectified, rectify
+from elbowroom.sensing.snapshot import Snapshot
 
-__all__ = ["NOISE_PRESETS", "DepthFrame", "JointRecord", "Margin", "NoiseModel", "rectified", "rectify"]
+__all__ = [
+    "NOISE_PRESETS",
+    "DepthFrame",
+    "JointRecord",
+    "Margin",
+    "NoiseModel",
+    "Snapshot",
+    "rectified",
+    "rectify",
+]
