@@ -1,4 +1,4 @@
-"""A whole room, and whether the answer is right: people and a C-arm, eight cameras with noise, the exact truth beside it.
+"""A whole room, and whether the answer is right: people and a C-arm, eight cameras with noise, and the exact truth.
 
     python examples/02_room_and_truth.py
 

@@ -14,8 +14,12 @@ import elbowroom as er
 
 URDF = """<robot name="arm">
   <link name="foot"><collision><geometry><cylinder radius="0.08" length="0.3"/></geometry></collision></link>
-  <link name="upper"><collision><origin xyz="0.25 0 0"/><geometry><box size="0.5 0.08 0.08"/></geometry></collision></link>
-  <link name="fore"><collision><origin xyz="0.2 0 0"/><geometry><box size="0.4 0.06 0.06"/></geometry></collision></link>
+  <link name="upper">
+    <collision><origin xyz="0.25 0 0"/><geometry><box size="0.5 0.08 0.08"/></geometry></collision>
+  </link>
+  <link name="fore">
+    <collision><origin xyz="0.2 0 0"/><geometry><box size="0.4 0.06 0.06"/></geometry></collision>
+  </link>
   <joint name="shoulder" type="revolute">
     <parent link="foot"/><child link="upper"/><origin xyz="0 0 0.25"/><axis xyz="0 0 1"/>
     <limit lower="-3" upper="3" effort="1" velocity="1"/>

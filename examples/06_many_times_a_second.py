@@ -19,6 +19,6 @@ for snapshot in itertools.islice(room.source(), 5):
     result = cycle.run(snapshot)
     worst = min(result.verdicts, key=lambda verdict: verdict.free_travel)
     print(
-        f"cycle {result.sequence}: {result.cycle_ms:5.1f} ms, level {result.level.name}; least room: {worst.motion.name}, "
-        f"{worst.free_travel:.3f} {worst.free_travel_unit}, {worst.cause.value}"
+        f"cycle {result.sequence}: {result.cycle_ms:5.1f} ms, level {result.level.name}; "
+        f"least room: {worst.motion.name}, {worst.free_travel:.3f} {worst.free_travel_unit}, {worst.cause.value}"
     )

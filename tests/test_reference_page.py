@@ -16,7 +16,8 @@ def test_the_reference_has_a_page_for_each_module_and_every_public_name(tmp_path
         assert (tmp_path / f"{name.replace('.', '/')}.html").is_file(), name
     page = (tmp_path / "elbowroom.html").read_text(encoding="utf-8")
     for public in elbowroom.__all__:
-        assert f'id="{public}"' in page, public
+        # `reconstruct` is a folder too, which has a page of its own
+        assert f'id="{public}"' in page or (tmp_path / "elbowroom" / f"{public}.html").is_file(), public
     verdict = (tmp_path / "elbowroom" / "motion" / "verdict.html").read_text(encoding="utf-8")
     assert "How far the motion may go" in verdict or "how far the motion may go" in verdict
 
