@@ -13,8 +13,6 @@ from pathlib import Path
 
 import elbowroom
 
-LEFT_OUT = ("elbowroom.machine.assets",)
-
 
 def modules() -> list[str]:
     """Names of all modules that the reference shows, the package first."""
@@ -24,7 +22,7 @@ def modules() -> list[str]:
 
 def _is_shown(name: str) -> bool:
     words = name.split(".")
-    return "kernels" not in words and not words[-1].startswith("_") and not name.startswith(LEFT_OUT)
+    return "kernels" not in words and not words[-1].startswith("_")
 
 
 def write(out: Path) -> None:
