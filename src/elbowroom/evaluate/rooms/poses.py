@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.evaluate.rooms.exact import ExactTravel
-from elbowroom.evaluate.rooms.scene import WELL_KNOWN, Comparison, room_grid, room_motions, settings_of
+from elbowroom.evaluate.rooms.scene import WELL_KNOWN, Comparison, only, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.carve import Detail
@@ -78,7 +78,7 @@ def poses_rows(
                 "width": views[0].width,
                 "height": views[0].height,
                 "heights_m": list(heights_m),
-                **{name: compared[name] for name in COMPARED},
+                **only(compared, COMPARED),
             }
 
 

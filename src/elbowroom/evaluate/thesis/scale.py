@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.evaluate.rooms.exact import Contact, load_coal
-from elbowroom.evaluate.rooms.scene import DECIMALS, SAME, WELL_KNOWN
+from elbowroom.evaluate.rooms.scene import DECIMALS, SAME, WELL_KNOWN, lean, only
 from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.thesis.part import Part
 from elbowroom.evaluate.thesis.scale_model import (
@@ -165,11 +165,9 @@ def _compared(
     hidden_mm = short_mm(travel_in_view)
     return {
         "in_view": hidden_mm <= 1000 * near_m(voxel_size_m),
-        "free_travel": round(verdict.free_travel, DECIMALS),
-        "free_travel_unit": verdict.free_travel_unit,
+        **only(lean(verdict.row()), ("free_travel", "free_travel_unit", "cause")),
         "truth_travel": round(contact.travel, DECIMALS),
         "travel_in_view": round(travel_in_view, DECIMALS),
-        "cause": verdict.cause.name.lower(),
         "true_solid": contact.solid,
         "short_mm": round(short_mm(verdict.free_travel), 3),
         "short_of_view_mm": round(short_mm(verdict.free_travel) - hidden_mm, 3),
