@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from elbowroom.evaluate.due import Due
 from elbowroom.evaluate.rooms.scene import WELL_KNOWN, only, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
@@ -14,6 +15,7 @@ from elbowroom.simulate import InterventionRoom, render, wall_cameras
 
 SAID = ("joint", "direction", "level", "band", "cause", "free_travel", "free_travel_unit")
 """What is kept of a verdict."""
+DUE = (Due("clear_pct", "≥", 100.0, words="all clear"),)
 
 
 def alone_rows(

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from elbowroom.evaluate.due import Due
 from elbowroom.evaluate.rooms.exact import ExactTravel
 from elbowroom.evaluate.rooms.scene import WELL_KNOWN, Comparison, only, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
@@ -18,6 +19,7 @@ COMPARED = (
     *("true_level", "true_travel", "truly_clear", "milder"),
 )
 """What is kept of a comparison; joints, places and solids follow from seed and number of the pose."""
+DUE = (Due("milder", "≤", 0), Due("stop_where_clear_pct", "≤", 10.0))
 
 
 def poses_rows(

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from elbowroom.evaluate.due import Due
 from elbowroom.evaluate.rooms.exact import ExactTravel
 from elbowroom.evaluate.rooms.scene import SAME, only, room_grid, room_motions, settings_of
 from elbowroom.motion import check_motions
@@ -15,6 +16,7 @@ CLEAR_VOXELS = 2.0
 """So many voxels must be between machine and solids at the start."""
 SAID = ("joint", "direction", "free_travel", "free_travel_unit", "cause")
 """What is kept of a verdict."""
+DUE = (Due("more_than_truth", "≤", 0), Due("median_shortfall_voxels", "≤", 1.5))
 
 
 def travel_rows(
