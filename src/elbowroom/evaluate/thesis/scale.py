@@ -8,8 +8,8 @@ by exact rays and not by verdicts, whether its way is *in view*: each voxel that
 two voxels before the contact and at least 5 mm, is wholly seen by one camera, but for what the body covers. Where it is
 not, free travel ends at the first voxel that no one camera sees all of, unless several see it between them; how much
 earlier it ends is *short of the view*, below zero where it goes on. The cameras were placed for these motions and for
-the smaller voxels (`elbowroom evaluate scale-cameras`). With these the body is grown by more than half a voxel, so that it
-takes the same space as with the larger ones. *Noise* is sigma(z) of Kinect v1; *and losses* adds to it what the
+the smaller voxels (`elbowroom evaluate scale-cameras`). With these the body is grown by more than half a voxel, so that
+it takes the same space as with the larger ones. *Noise* is sigma(z) of Kinect v1; *and losses* adds to it what the
 simulated time-of-flight sensors suffer: mixed pixels at edges, and pixels without a return.
 """
 
