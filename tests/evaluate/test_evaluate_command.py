@@ -9,7 +9,7 @@ from elbowroom.cli import run
 from elbowroom.errors import InputError
 from elbowroom.evaluate.examples import example
 
-COMMANDS = ["room", "sevenscenes", "alone", "poses", "travel"]
+COMMANDS = ["room", "sevenscenes", "alone", "poses", "travel", "bits"]
 SMALL = ["--cameras", "5", "--size", "thesis", "--voxel-size", "0.1"]
 ROUNDED = 1.5e-6
 """What two numbers of a file may differ by, each rounded to six digits after the point."""

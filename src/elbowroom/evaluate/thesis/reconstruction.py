@@ -8,6 +8,7 @@ centre some camera of the sensor sees, without the layer that touches the floor.
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from elbowroom.choices import Detail
 from elbowroom.evaluate.due import Due, where
 from elbowroom.evaluate.rooms.scene import room_grid
 from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
@@ -16,7 +17,6 @@ from elbowroom.evaluate.thesis.part import Part, about
 from elbowroom.evaluate.thesis.reconstruction_blocks import reconstruction_blocks
 from elbowroom.evaluate.thesis.setup_voxels import Images, SetupVoxels
 from elbowroom.evaluate.thesis.thesis import c_arm, sensor_cameras
-from elbowroom.reconstruct.carve import Detail
 from elbowroom.sensing import Margin
 from elbowroom.simulate import render, setup
 from elbowroom.view.report.blocks import Block, cm, mean, pct
