@@ -26,6 +26,7 @@ from elbowroom.monitor.rows import cycle_rows, health_rows
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
+from elbowroom.site.notes import notes_of
 from elbowroom.view import save_sections
 from elbowroom.view.screen.run_log import RunLog
 from elbowroom.view.screen.terminal import TerminalView
@@ -59,7 +60,7 @@ def watch(room: Room, *, seconds: float | None, json_file: Path | None, out_dir:
     )
     console = Console()
     with json_rows(json_file) as add, TerminalView(room.watched, console) as view:
-        for note in room.site.notes:
+        for note in notes_of(room.site):
             console.print(f"note: {note}", highlight=False, soft_wrap=True)
         unwatched = _warm_up(room, cycle, console)
         if unwatched is not None:

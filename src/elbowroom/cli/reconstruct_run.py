@@ -15,6 +15,7 @@ from elbowroom.files.json_rows import json_rows
 from elbowroom.monitor.rows import shares_pct
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.reconstruct import FreeSpace, reconstruct, warm_up
+from elbowroom.site.notes import notes_of
 from elbowroom.view import save_npz, save_ply, save_sections
 from elbowroom.view.screen.words import NOT_CERTIFIED
 
@@ -100,7 +101,7 @@ def _row(
         "read_ms": seconds["reading images"] * 1e3,
         "reconstruct_ms": seconds["reconstructing"] * 1e3,
         "files": [str(path) for path in files],
-        "notes": list(room.site.notes),
+        "notes": list(notes_of(room.site)),
     }
 
 
