@@ -50,6 +50,7 @@ def frames(*stamps_ns: int | None) -> list[DepthFrame]:
 def assert_all_stop(result, reason: str):
     assert [v.motion for v in result.verdicts] == list(MOTIONS)
     assert all(v.level is Level.STOP and v.free_travel == 0 and not v.overridable for v in result.verdicts)
+    assert {v.cause for v in result.verdicts} == {Cause.FAULT}
     assert result.level is Level.STOP
     assert reason in result.fault
 
@@ -103,6 +104,7 @@ def test_a_missing_or_meaningless_verdict_is_a_stop_for_its_motion(a_cycle, monk
     result = a_cycle.run([], {}, 0)
     assert [v.level for v in result.verdicts] == [Level.CLEAR, Level.STOP]
     assert result.verdicts[1].free_travel_unit == "m"
+    assert result.verdicts[1].cause is Cause.FAULT
     assert "slide -" in result.fault and "slide +" not in result.fault
 
 
@@ -138,6 +140,7 @@ def test_what_the_watch_found_stops_every_motion_and_is_no_fault(a_cycle):
     result = a_cycle.run(frames(1), {"slide": 0.0}, 1)
     assert [v.level for v in result.verdicts] == [Level.STOP] * 2
     assert all(v.free_travel == 0 and not v.overridable for v in result.verdicts)
+    assert {v.cause for v in result.verdicts} == {Cause.WATCH}
     assert result.fault is None and result.stopped_by == "camera c0 has turned by 0.9 degrees"
     assert result.space is SPACE and list(result.stage_ms) == ["watch", "carve", "motion"]
 

@@ -114,13 +114,13 @@ class Cycle:
             fault = f"no usable verdict for {', '.join(missing)}"
         if health is not None and health.reason is not None:
             # free space that comes from a camera that is elsewhere is no free space
-            given = {}
-        verdicts = tuple(given.get(motion) or self._stop(motion) for motion in self.motions)
+            given = {motion: self._stop(motion, Cause.WATCH) for motion in self.motions}
+        verdicts = tuple(given.get(motion) or self._stop(motion, Cause.FAULT) for motion in self.motions)
         return CycleResult(sequence, now_ns, space, verdicts, stage_ms, oldest, fault, health)
 
-    def _stop(self, motion: Motion) -> Verdict:
+    def _stop(self, motion: Motion, cause: Cause) -> Verdict:
         units = {joint.name: joint.unit for joint in self.machine.joints}
-        return Verdict(motion, Level.STOP, 0.0, units.get(motion.joint, "m or rad"), None, None, Cause.BLIND)
+        return Verdict.stop(motion, units.get(motion.joint, "m or rad"), cause)
 
 
 def _usable(verdicts: Sequence[Verdict]) -> dict[Motion, Verdict]:
