@@ -32,7 +32,7 @@ def stamped(folder, plain):
 def test_frames_near_in_time_make_a_moment(folder, stamped):
     site = Site.load(folder.write(stamped))
     found = list(moments(site))
-    assert [moment.stamp_ns for moment in found] == [1 * MS, 10 * MS, 21 * MS, 30 * MS]
+    assert [moment.now_ns for moment in found] == [1 * MS, 10 * MS, 21 * MS, 30 * MS]
     assert [[frame.camera for frame in moment.frames] for moment in found] == [
         ["north", "south"], ["north"], ["north", "south"], ["north"],
     ]  # fmt: skip
@@ -44,7 +44,7 @@ def test_frames_near_in_time_make_a_moment(folder, stamped):
 
 def test_a_moment_is_as_late_as_its_latest_frame(folder, stamped):
     for moment in moments(Site.load(folder.write(stamped))):
-        assert moment.stamp_ns == max(frame.stamp_ns for frame in moment.frames)
+        assert moment.now_ns == max(frame.stamp_ns for frame in moment.frames)
 
 
 def test_a_camera_without_a_folder_gave_nothing(folder, stamped):
@@ -89,9 +89,9 @@ def test_a_machine_needs_its_joints(folder, stamped, arm_urdf):
     assert "gap of 40 ms" in refusal(Site.load(folder.write(stamped)))
     stamped["recording"] = {"layout": "stampless", "folder": "rec", "files": {"south": "north/*.png"}}
     site = Site.load(folder.write(stamped))
-    assert "give them with --joints" in refusal(site)
+    assert "records none of its machine; give positions" in refusal(site)
     record = JointRecord(np.array([0]), {"turn": np.zeros(1), "slide": np.zeros(1)})
-    assert "frames have no times" in refusal(site, joints=record)
+    assert "has no time, so a joint record" in refusal(site, joints=record)
     assert len(list(moments(site, joints))) == 4
 
 
@@ -111,7 +111,7 @@ def test_stampless_images_meet_in_order_of_names(folder, plain):
     assert [[round(frame.depth_m[0, 0] * 1000) for frame in moment.frames] for moment in found] == [
         [1, 1], [2, 2], [10, 10],
     ]  # fmt: skip
-    assert all(moment.stamp_ns is None for moment in found)
+    assert all(moment.now_ns is None for moment in found)
     assert check_images(site) == (3, 6)
 
 
@@ -207,7 +207,7 @@ def test_each_frame_of_seven_scenes_is_a_camera_of_its_own_at_one_moment(folder,
     assert [frame.camera for frame in moment.frames] == [camera.name for camera in site.cameras()]
     assert [camera.centre_in_world[0] for camera in site.cameras()] == [0, 25, 50]
     assert site.cameras()[0].intrinsics.cx == 3.5 and site.cameras()[0].min_depth_m == 0.4
-    assert moment.stamp_ns is None and moment.frames[1].depth_m[0, 0] == pytest.approx(1.025)
+    assert moment.now_ns is None and moment.frames[1].depth_m[0, 0] == pytest.approx(1.025)
     assert any("frame-000025" in note and "brought to the nearest" in note for note in notes_of(site))
     assert excluded_frames(site) == ()
 

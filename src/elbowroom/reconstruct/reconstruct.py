@@ -15,7 +15,7 @@ from elbowroom.reconstruct.free_space import FreeSpace, Source
 from elbowroom.reconstruct.images import frames_by_camera, room_images
 from elbowroom.reconstruct.resolve import Rule, needs_complete, resolve
 from elbowroom.sensing import DepthFrame, JointRecord
-from elbowroom.sensing.snapshot import young_enough
+from elbowroom.sensing.snapshot import Snapshot, young_enough
 
 Joints = Mapping[str, float] | JointRecord
 Timer = Callable[[str], AbstractContextManager[None]]
@@ -66,24 +66,57 @@ def reconstruct(
         MachineError: joints that are unknown, missing or out of their limits, or a growth below a quarter voxel.
         InputError: an unknown rule or detail, a machine without joints, an age limit without the time.
     """
-    stage = timer or _untimed
-    complete = needs_complete(rule)
     frames_by_camera(cameras, frames)
     fresh = young_enough(frames, now_ns, max_age_ns)
-    images = room_images(cameras, fresh)
+    return free_space_of(
+        grid,
+        cameras,
+        Snapshot.taken(fresh, joints if machine is not None else None, now_ns),
+        machine,
+        rule=rule,
+        detail=detail,
+        margin=margin,
+        explain_tolerance_m=explain_tolerance_m,
+        body_growth_m=body_growth_m,
+        focus=focus,
+        threads=threads,
+        timer=timer,
+    )
+
+
+def free_space_of(
+    grid: VoxelGrid,
+    cameras: Sequence[DepthCamera],
+    snapshot: Snapshot,
+    machine: Machine | None,
+    *,
+    rule: Rule = "three",
+    detail: Detail = "pixel",
+    margin: Margin | None = None,
+    max_age_ns: int | None = None,
+    explain_tolerance_m: float = 0.01,
+    body_growth_m: float | None = None,
+    focus: NDArray[np.bool_] | None = None,
+    threads: int | None = None,
+    timer: Timer | None = None,
+) -> FreeSpace:
+    """Space seen to be free at one moment; arguments as of `reconstruct`."""
+    stage = timer or _untimed
+    complete = needs_complete(rule)
+    frames_by_camera(cameras, snapshot.frames)
+    images = room_images(cameras, snapshot.fresh(max_age_ns).frames)
     model_depth, unexplained, here = None, None, None
     if machine is not None:
-        if joints is None:
+        here = snapshot.joints
+        if here is None:
             raise InputError("reconstruct: a machine without joints; give its joint positions by name")
-        here = _positions_now(joints, fresh, now_ns)
         with stage("explain"):
             seen = [camera for camera in images.cameras if camera.name in images.least_m]
-            stamps = {frame.camera: frame.stamp_ns for frame in fresh}
             explained = explain_frames(
                 machine,
                 seen,
                 [images.least_m[camera.name] for camera in seen],
-                [_positions_at(joints, stamps[camera.name], camera.name) for camera in seen],
+                [snapshot.joints_at(camera.name) or {} for camera in seen],
                 tolerance_m=explain_tolerance_m,
                 grid=grid,
                 threads=threads,
@@ -120,24 +153,3 @@ def reconstruct(
 @contextmanager
 def _untimed(_: str) -> Iterator[None]:
     yield
-
-
-def _positions_at(joints: Joints, stamp_ns: int | None, camera: str) -> Mapping[str, float]:
-    if not isinstance(joints, JointRecord):
-        return joints
-    if stamp_ns is None:
-        raise InputError(
-            f"frame of {camera}: has no time, so a joint record cannot say where the machine was"
-        )
-    return joints.at(stamp_ns)
-
-
-def _positions_now(joints: Joints, frames: Sequence[DepthFrame], now_ns: int | None) -> Mapping[str, float]:
-    if not isinstance(joints, JointRecord):
-        return joints
-    newest = [frame.stamp_ns for frame in frames if frame.stamp_ns is not None]
-    if newest:
-        return joints.at(max(newest))
-    if now_ns is None:
-        raise InputError("joints: a record needs frames with times, or now_ns")
-    return joints.at(now_ns)

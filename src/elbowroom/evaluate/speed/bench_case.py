@@ -17,7 +17,7 @@ from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
 from elbowroom.motion import joint_motions
 from elbowroom.reconstruct import carve
-from elbowroom.sensing import NOISE_PRESETS, DepthFrame
+from elbowroom.sensing import NOISE_PRESETS, DepthFrame, Snapshot
 
 SPEEDS = {"long": 0.15, "larm": np.radians(12), "propeller": np.radians(25), "carc": np.radians(25)}
 """Full speeds of the ceiling C-arm [m/s or rad/s]."""
@@ -84,7 +84,7 @@ def run_case(
 
     def pass_once(n: int) -> None:
         m = n % len(moments)
-        result = cycle.run(moments[m], positions[m], m)
+        result = cycle.run(Snapshot.taken(moments[m], positions[m], m))
         if result.fault is not None:
             raise RuntimeError(result.fault)
         stages.append(result.stage_ms)
