@@ -30,8 +30,7 @@ from elbowroom.placement import (
     sweep,
     verify,
 )
-from elbowroom.reconstruct import reconstruct
-from elbowroom.sensing import Margin
+from elbowroom.reconstruct import Terms, reconstruct
 from elbowroom.simulate import InterventionRoom, Moment, render, true_occupancy, wall_cameras
 from elbowroom.simulate.setups import SETUPS
 from elbowroom.site import Site
@@ -137,9 +136,8 @@ def setups_row() -> dict[str, Any]:
 def in_use(site: Site) -> Settings:
     """How the site declares space free, at 5 cm."""
     machine = site.machine()
-    return Settings(
-        VoxelGrid.covering((-2, -2, 0), (2, 2, 2.5), VOXEL_M), machine=machine, margin=site.margin()
-    )
+    grid = VoxelGrid.covering((-2, -2, 0), (2, 2, 2.5), VOXEL_M)
+    return Settings(grid, Terms(margin=site.margin()), machine)
 
 
 def found_pct(cameras: Sequence[DepthCamera], moment: Moment, settings: Settings) -> float:
@@ -150,7 +148,7 @@ def found_pct(cameras: Sequence[DepthCamera], moment: Moment, settings: Settings
         render(cameras, moment),
         settings.machine,
         moment.joints,
-        margin=settings.margin or Margin(),
+        margin=settings.terms.margin,
     )
     truth = true_occupancy(settings.grid, moment)
     truly = ~truth.occupied & ~truth.machine

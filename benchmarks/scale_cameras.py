@@ -41,6 +41,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.machine import explain_frames
 from elbowroom.reconstruct.carve import carve_images
 from elbowroom.reconstruct.images import room_images
+from elbowroom.reconstruct.terms import Terms
 from elbowroom.sensing import DepthFrame
 from elbowroom.simulate import Moment, render
 from elbowroom.simulate.machine_solids import link_solids
@@ -144,7 +145,6 @@ def _evidence(
         [joints],
         tolerance_m=EXPLAIN_M,
         grid=grid,
-        threads=1,
         growth_m=body_growth(VOXEL_M),
     )
     at = [_words_and_bits(grid, centres) for centres in ways]
@@ -154,12 +154,9 @@ def _evidence(
     evidence = carve_images(
         grid,
         images,
-        detail="pixel",
-        margin=WELL_KNOWN,
-        model_depth=explained.model_depth,
-        unexplained=explained.unexplained_words,
+        explained,
+        Terms(margin=WELL_KNOWN),
         focus=focus,
-        threads=1,
     )
     through, disputed = evidence.through[0], evidence.disputed | evidence.unexplained
     return [((through[words] & bit) > 0, (disputed[words] & bit) > 0) for words, bit in at]

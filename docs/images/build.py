@@ -27,16 +27,7 @@ def main() -> None:
     """Judges a second of the room, then draws its last pass."""
     room = open_room(Site.simulated_room())
     machine, motions = room.machine_and_motions()
-    cycle = Cycle(
-        room.grid,
-        room.cameras,
-        machine,
-        motions,
-        rule=room.rule,
-        detail=room.detail,
-        margin=room.margin,
-        focused=False,
-    )
+    cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms, focused=False)
     assert isinstance(room.source, Simulated)
     warm_up(machine)
     # recorded as on a terminal, shown nowhere

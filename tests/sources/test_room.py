@@ -18,11 +18,11 @@ def refusal(site, **otherwise):
 def test_a_run_may_say_otherwise_than_the_site():
     site = Site.simulated_room()
     room = open_room(site, voxel_size_m=0.2, rule="veto", detail="point", cameras=3, resolution=(40, 30))
-    assert (room.grid.voxel_size_m, room.rule, room.detail) == (0.2, "veto", "point")
+    assert (room.grid.voxel_size_m, room.terms.rule, room.terms.detail) == (0.2, "veto", "point")
     assert [(camera.width, camera.height) for camera in room.cameras] == [(40, 30)] * 3
     assert isinstance(room.source, Simulated) and room.source.name == "simulator"
     as_it_is = open_room(site)
-    assert (as_it_is.rule, as_it_is.detail) == (site.rule, site.detail)
+    assert as_it_is.terms == site.terms()
 
 
 @pytest.fixture

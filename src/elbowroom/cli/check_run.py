@@ -38,7 +38,7 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
         compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
         with Steps(console, 4) as steps:
             steps.begin("compiling kernels")
-            warm_up(machine, [room.detail])
+            warm_up(machine, [room.terms.detail])
             steps.begin("reading images")
             snapshot = room.snapshot(moment)
             steps.begin("reconstructing")
@@ -51,8 +51,8 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
                 "site": room.site.name,
                 "moment": moment,
                 "voxel_size_m": room.grid.voxel_size_m,
-                "rule": room.rule,
-                "detail": room.detail,
+                "rule": room.terms.rule,
+                "detail": room.terms.detail,
                 "joints": snapshot.joints,
                 **verdict_row(verdict),
                 "explanation": reasons,

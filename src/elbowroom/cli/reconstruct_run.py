@@ -42,7 +42,7 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
         )
         with Steps(console, 6) as steps:
             steps.begin("compiling kernels")
-            warm_up(room.machine, [room.detail])
+            warm_up(room.machine, [room.terms.detail])
             steps.begin("reading images")
             snapshot = room.snapshot(moment)
             steps.begin("reconstructing")
@@ -74,8 +74,8 @@ def _row(
         "shape": space.grid.shape,
         "cameras": len(room.cameras),
         "frames": len(snapshot.frames),
-        "rule": room.rule,
-        "detail": room.detail,
+        "rule": room.terms.rule,
+        "detail": room.terms.detail,
         **shares_pct(space),
         "joints": snapshot.joints,
         "read_ms": seconds["reading images"] * 1e3,

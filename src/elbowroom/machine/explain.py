@@ -59,7 +59,6 @@ def explain_frames(
     tolerance_m: float = 0.01,
     tolerance_sigmas: float = 5.5,
     grid: VoxelGrid | None = None,
-    threads: int | None = None,
     growth_m: float | None = None,
 ) -> Explained:
     """Finds the pixels whose measured point lies on the machine's model.
@@ -80,7 +79,6 @@ def explain_frames(
         joints_per_camera: for each camera, joint positions at its frame's time, by name [m or rad].
         tolerance_m, tolerance_sigmas: as above; not the margin of carving.
         grid: for `unexplained_words`; None: without.
-        threads: how many to use; None: all cores.
         growth_m: by how much the body is grown where voxels are cleared [m]; None: half a voxel.
 
     Raises:
@@ -114,7 +112,7 @@ def explain_frames(
         near_body.give_back(around)
         return model
 
-    models = spread(explain_one, range(len(cameras)), threads)
+    models = spread(explain_one, range(len(cameras)))
     return Explained(
         model_depth={camera.name: model for camera, model in zip(cameras, models, strict=True)},
         unexplained_words=near_body.words,

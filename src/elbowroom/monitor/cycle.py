@@ -1,19 +1,17 @@
 """One pass: a snapshot in, a verdict for each motion out. Whatever goes wrong on the way is a stop."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
-from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.stages import timed
 from elbowroom.motion import Cause, Level, Motion, Verdict, blocks_in_reach, check_motions
-from elbowroom.reconstruct import Detail, FreeSpace, Rule
-from elbowroom.reconstruct.reconstruct import free_space_of
+from elbowroom.reconstruct import FreeSpace, Terms, free_space_of
 from elbowroom.sensing import Snapshot
 
 
@@ -26,10 +24,7 @@ class Cycle:
         cameras: all cameras of the room, also those that may deliver nothing.
         machine: what moves.
         motions: what is asked in each pass; at least one.
-        rule, detail, margin: as of `reconstruct`.
-        max_age_ns: frames older than this are not used [ns]; None: no limit.
-        explain_tolerance_m: as of `reconstruct` [m].
-        threads: None: all cores.
+        terms: how strictly space is judged.
         focused: only the space where the motions can go is looked at, all other space stays unseen.
         keeps_images: results keep the images that their free space was made of, so that it can be explained.
 
@@ -41,12 +36,7 @@ class Cycle:
     cameras: Sequence[DepthCamera]
     machine: Machine
     motions: Sequence[Motion]
-    rule: Rule = "three"
-    detail: Detail = "pixel"
-    margin: Margin = field(default_factory=Margin)
-    max_age_ns: int | None = None
-    explain_tolerance_m: float = 0.01
-    threads: int | None = None
+    terms: Terms = field(default_factory=Terms)
     focused: bool = True
     keeps_images: bool = False
     sequence: int = field(default=0, init=False)
@@ -72,7 +62,7 @@ class Cycle:
         missing = [motion.name for motion in self.motions if motion not in given]
         fault = f"no usable verdict for {', '.join(missing)}" if missing else None
         verdicts = tuple(given.get(motion) or self._stop(motion) for motion in self.motions)
-        kept = space if self.keeps_images else replace(space, source=None)
+        kept = space if self.keeps_images else space.released()
         return CycleResult(self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault)
 
     def failed(
@@ -94,20 +84,16 @@ class Cycle:
         return CycleResult(self._number(), now_ns, None, verdicts, stage_ms or {}, oldest_ms, fault)
 
     def _space_of(self, snapshot: Snapshot, stage_ms: dict[str, float]) -> FreeSpace:
+        reach = None
+        if self.focused:
+            reach = blocks_in_reach(self.grid, self.machine, snapshot.joints or {}, self.motions)
         return free_space_of(
             self.grid,
             self.cameras,
             snapshot,
             self.machine,
-            rule=self.rule,
-            detail=self.detail,
-            margin=self.margin,
-            max_age_ns=self.max_age_ns,
-            explain_tolerance_m=self.explain_tolerance_m,
-            focus=blocks_in_reach(self.grid, self.machine, snapshot.joints or {}, self.motions)
-            if self.focused
-            else None,
-            threads=self.threads,
+            self.terms,
+            focus=reach,
             timer=lambda stage: timed(stage, stage_ms),
         )
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.files.json_rows import AddRow
-from elbowroom.geometry.parallel import default_threads
+from elbowroom.geometry.parallel import thread_count
 from elbowroom.monitor.face import Pass
 from elbowroom.monitor.health.drift.watch import BODY
 from elbowroom.monitor.health.health import CameraHealth, LinkHealth
@@ -68,9 +68,9 @@ def room_row(room: Room) -> dict[str, Any]:
         "cameras": len(room.cameras),
         "width": max(camera.width for camera in room.cameras),
         "height": max(camera.height for camera in room.cameras),
-        "rule": room.rule,
-        "detail": room.detail,
-        "threads": default_threads(),
+        "rule": room.terms.rule,
+        "detail": room.terms.detail,
+        "threads": thread_count(),
         "unchecked_links": room.machine.unchecked_links if room.machine else (),
     }
 

@@ -3,15 +3,14 @@
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import cast
 
+from elbowroom.choices import Detail, Rule
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.motion import Motion
-from elbowroom.reconstruct import Detail, FreeSpace, Rule
-from elbowroom.reconstruct.reconstruct import free_space_of
-from elbowroom.sensing import Margin, Snapshot
+from elbowroom.reconstruct import FreeSpace, Terms, free_space_of
+from elbowroom.sensing import Snapshot
 from elbowroom.site import Site
 from elbowroom.sources.recorded import Recorded
 from elbowroom.sources.source import Source
@@ -23,7 +22,7 @@ class Room:
 
     Args:
         site: the file.
-        grid, cameras, machine, rule, detail: of the site, or as the run says otherwise.
+        grid, cameras, machine, terms: of the site, or as the run says otherwise.
         source: of its snapshots; without end where the room is simulated.
     """
 
@@ -31,14 +30,8 @@ class Room:
     grid: VoxelGrid
     cameras: tuple[DepthCamera, ...]
     machine: Machine | None
-    rule: Rule
-    detail: Detail
+    terms: Terms
     source: Source
-
-    @property
-    def margin(self) -> Margin:
-        """The margin of cameras that have none of their own."""
-        return self.site.margin()
 
     def machine_and_motions(self) -> tuple[Machine, tuple[Motion, ...]]:
         """The machine, and each joint that has a speed in both directions.
@@ -72,17 +65,7 @@ class Room:
 
     def space_of(self, snapshot: Snapshot) -> FreeSpace:
         """The free space of a moment, all of it; raises as `reconstruct`."""
-        return free_space_of(
-            self.grid,
-            self.cameras,
-            snapshot,
-            self.machine,
-            rule=self.rule,
-            detail=self.detail,
-            margin=self.margin,
-            max_age_ns=self.site.max_age_ns,
-            explain_tolerance_m=self.site.explain_tolerance_m,
-        )
+        return free_space_of(self.grid, self.cameras, snapshot, self.machine, self.terms)
 
 
 def open_room(
@@ -123,9 +106,7 @@ def open_room(
         raise InputError(f"knocks: for simulated rooms, and {site.path} is none; leave them out")
     else:
         source = Recorded(site, joints)
-    # the file's words are among those that are allowed: its schema says so
-    rule, detail = rule or cast(Rule, site.rule), detail or cast(Detail, site.detail)
-    return Room(site, grid, made, machine, rule, detail, source)
+    return Room(site, grid, made, machine, site.terms(rule, detail), source)
 
 
 def _cameras(site: Site, count: int | None, resolution: tuple[int, int] | None) -> tuple[DepthCamera, ...]:

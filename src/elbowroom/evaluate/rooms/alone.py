@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from elbowroom.choices import Detail
 from elbowroom.evaluate.rooms.scene import WELL_KNOWN, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
-from elbowroom.reconstruct.carve import Detail
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
 

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from elbowroom.choices import Detail
 from elbowroom.evaluate.rooms.exact import ExactTravel
 from elbowroom.evaluate.rooms.scene import WELL_KNOWN, Comparison, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
-from elbowroom.reconstruct.carve import Detail
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
 from elbowroom.simulate.inside import hung_clear
 

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.choices import Detail, Rule
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.reconstruct import reconstruct
-from elbowroom.reconstruct.carve import Detail
-from elbowroom.reconstruct.resolve import Rule
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame
 from elbowroom.simulate import InterventionRoom, Moment, render, true_occupancy, wall_cameras
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+from elbowroom.choices import Detail
 from elbowroom.evaluate.rooms.scene import DECIMALS, Comparison, room_grid, room_motions
 from elbowroom.evaluate.thesis.bands import compared
 from elbowroom.evaluate.thesis.thesis import sensor_cameras
@@ -12,7 +13,6 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.machine import Machine
 from elbowroom.motion import Motion, blocks_in_reach
 from elbowroom.reconstruct import FreeSpace, reconstruct
-from elbowroom.reconstruct.carve import Detail
 from elbowroom.sensing import DepthFrame, Margin
 from elbowroom.simulate import Moment
 

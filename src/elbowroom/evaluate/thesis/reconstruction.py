@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.choices import Detail
 from elbowroom.evaluate.rooms.room import Tally
 from elbowroom.evaluate.rooms.scene import room_grid
 from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
@@ -20,7 +21,6 @@ from elbowroom.evaluate.thesis.thesis import TABLE_2, c_arm, sensor_cameras
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.reconstruct import FreeSpace, reconstruct
-from elbowroom.reconstruct.carve import Detail
 from elbowroom.sensing import DepthFrame, Margin
 from elbowroom.simulate import Moment, Truth, render, setup, true_occupancy
 from elbowroom.simulate.truth import true_centres

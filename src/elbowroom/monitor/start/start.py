@@ -26,20 +26,9 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
         SiteError, CalibrationError: as `checks_of`.
     """
     machine, motions = room.machine_and_motions()
-    cycle = Cycle(
-        room.grid,
-        room.cameras,
-        machine,
-        motions,
-        rule=room.rule,
-        detail=room.detail,
-        margin=room.margin,
-        max_age_ns=room.site.max_age_ns,
-        explain_tolerance_m=room.site.explain_tolerance_m,
-    )
-    checks = checks_of(room, begin)
+    cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
     pace = Pace().wait if isinstance(room.source, Recorded) else None
-    loop = Loop(room.source, checks, cycle, pace)
+    loop = Loop(room.source, checks_of(room, begin), cycle, pace)
     _warm_up(loop, begin)
     return loop
 

@@ -34,7 +34,7 @@ def checks_of(room: Room, begin: Callable[[str], None]) -> Checks:
     Raises:
         SiteError, CalibrationError: the site names a reference that is missing, damaged, or of other cameras.
     """
-    max_age_ns = room.site.max_age_ns
+    max_age_ns = room.terms.max_age_ns
     if room.site.entry.watch is not None:
         return Checks(_referenced(room), max_age_ns)
     if room.site.simulated is None:

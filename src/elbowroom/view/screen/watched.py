@@ -41,4 +41,6 @@ def watched_of(room: Room) -> Watched:
     sizes = sorted({f"{camera.width}x{camera.height}" for camera in room.cameras})
     cameras = f"{len(room.cameras)} camera{'s' * (len(room.cameras) > 1)} {', '.join(sizes)}"
     unchecked = room.machine.unchecked_links if room.machine else ()
-    return Watched(room.site.name, room.grid, cameras, room.rule, room.detail, room.source.name, unchecked)
+    return Watched(
+        room.site.name, room.grid, cameras, room.terms.rule, room.terms.detail, room.source.name, unchecked
+    )

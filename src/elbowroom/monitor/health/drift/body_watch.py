@@ -37,12 +37,10 @@ class BodyWatch:
     Args:
         machine: the machine.
         cameras: of the room.
-        threads: None: all cores.
     """
 
     machine: Machine
     cameras: Sequence[DepthCamera]
-    threads: int | None = None
     stop: str | None = field(default=None, init=False)
     """Why nothing may move, once it was found; it stays."""
     _links: dict[str, LinkHealth] = field(default_factory=dict, init=False)
@@ -80,7 +78,7 @@ class BodyWatch:
                 name = looking[number]
                 return self._views[name].look(frames[name].depth_m, placed[number])
 
-            looked = spread(look, range(len(looking)), self.threads)
+            looked = spread(look, range(len(looking)))
             self._seen.update(zip(looking, looked, strict=True))
         for number in range(self._turn, len(self._tallies), ROUND):
             self._judge(number, still)
