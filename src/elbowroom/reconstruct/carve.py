@@ -14,9 +14,10 @@ from elbowroom.geometry.parallel import spread
 from elbowroom.reconstruct.evidence import Counts, Evidence
 from elbowroom.reconstruct.images import RoomImages, room_images
 from elbowroom.reconstruct.kernels.carve import carve_cubes
-from elbowroom.reconstruct.kernels.planes import PLANES
+from elbowroom.reconstruct.kernels.planes import PLANES, Answers
 from elbowroom.reconstruct.kernels.points import carve_points
-from elbowroom.reconstruct.views import fill, layout_of
+from elbowroom.reconstruct.layout import layout_of
+from elbowroom.reconstruct.views import fill
 from elbowroom.sensing import DepthFrame
 
 Detail = Literal["footprint", "pixel", "point"]
@@ -101,20 +102,11 @@ def carve_images(
     fine = np.full(cubes * 64, detail == "pixel")
     asked = layout.inside.copy() if focus is None else np.where(focus, layout.inside, np.uint64(0))
     worth = np.flatnonzero(asked.reshape(cubes, 64).any(axis=1))
+    answers = Answers(asked, fine, complete, planes, through, disputes)
     views, buffers = fill(layout, images, model_depth or {}, threads)
     try:
         spread(
-            lambda share: kernel(
-                np.ascontiguousarray(worth[share::SHARES]),
-                cells,
-                asked,
-                views,
-                fine,
-                complete,
-                planes,
-                through,
-                disputes,
-            ),
+            lambda share: kernel(np.ascontiguousarray(worth[share::SHARES]), cells, views, answers),
             range(min(SHARES, len(worth))),
             threads,
         )

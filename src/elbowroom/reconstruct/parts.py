@@ -8,10 +8,14 @@ from numpy.typing import NDArray
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.reconstruct.free_space import FreeSpace, Source
 from elbowroom.reconstruct.images import Image
-from elbowroom.reconstruct.kernels import box as box
 from elbowroom.reconstruct.kernels import pyramid as pyramid
-from elbowroom.reconstruct.kernels.pixel import PIXEL_FLOATS, settle_word
-from elbowroom.reconstruct.views import layout_of, texels_of
+from elbowroom.reconstruct.kernels.box import ALL
+from elbowroom.reconstruct.kernels.camera import Texels
+from elbowroom.reconstruct.kernels.pixel import VOXEL, settle_word
+from elbowroom.reconstruct.kernels.place import Boxes
+from elbowroom.reconstruct.layout import layout_of
+from elbowroom.reconstruct.records import counting_of, cut_out
+from elbowroom.reconstruct.views import NO_TEXELS, texels_of
 
 PARTS = 4
 """Along each axis a voxel is cut into so many parts: 64 in all, the bits of one word."""
@@ -141,42 +145,21 @@ def _parts_seen(
     if corners[2].min() <= NEAREST_M:
         return np.zeros(len(STEPS), dtype=np.bool_)
     rows, columns = _window(camera, source, corners)
-    numbers = layout_of(grid, source.images.cameras, source.margin).numbers[row : row + 1].copy()
-    numbers[0, box.LENS + 2] -= columns.start
-    numbers[0, box.LENS + 3] -= rows.start
-    numbers[0, box.SIZE : box.SIZE + 2] = columns.stop - columns.start, rows.stop - rows.start
-    turn = numbers[0, box.TURN : box.TURN + 12].reshape(4, 3)
-    turn[0] += turn[1] * columns.start + turn[2] * rows.start
+    record = layout_of(grid, source.images.cameras, source.margin).records[row]
+    part = cut_out(record, rows, columns)
 
-    def cut_out(image: Image) -> Image:
+    def of(image: Image) -> Image:
         return np.ascontiguousarray(image[rows, columns])
 
+    bounds_m = of(source.images.least_m[camera.name]), of(source.images.greatest_m[camera.name])
     model = source.model_depth.get(camera.name)
     trust = np.empty((rows.stop - rows.start, columns.stop - columns.start), dtype=np.uint32)
     doubt = np.empty_like(trust)
-    texels_of(
-        camera,
-        numbers[0],
-        cut_out(source.images.least_m[camera.name]),
-        cut_out(source.images.greatest_m[camera.name]),
-        None if model is None else cut_out(model),
-        trust,
-        doubt,
-    )
-    words = settle_word(
-        numbers,
-        0,
-        trust.reshape(-1),
-        doubt.reshape(-1),
-        0,
-        _tiles(trust),
-        _tiles(doubt),
-        0,
-        box.ALL,
-        *first,
-        edge,
-        np.empty(PIXEL_FLOATS),
-    )
+    model_m = None if model is None else of(model)
+    texels_of(camera, counting_of(camera, part), bounds_m, model_m, (trust, doubt))
+    texels = Texels(trust.reshape(-1), doubt.reshape(-1), _tiles(trust), _tiles(doubt), NO_TEXELS)
+    x, y, z = first.tolist()
+    words = settle_word(part, texels, ALL, Boxes(x, y, z, edge, 0), np.empty(1, VOXEL)[0])
     return np.unpackbits(np.array(words[:1]).view(np.uint8), bitorder="little").view(np.bool_)
 
 
@@ -200,5 +183,5 @@ def _tiles(texels: NDArray[np.uint32]) -> NDArray[np.uint32]:
     """The least of 4 x 4 texels each, in one row."""
     rows, columns = texels.shape
     tiles = np.empty((-(-rows // 4), -(-columns // 4)), dtype=np.uint32)
-    pyramid.fill_tiles(texels, 0, rows, 0, columns, tiles)
+    pyramid.fill_tiles(texels, (0, rows, 0, columns), tiles)
     return tiles.reshape(-1)

@@ -5,6 +5,7 @@ All of it in the precision of what comes in: float32 numbers give float32, as lo
 
 from typing import NamedTuple
 
+import numpy as np
 from numba import njit
 
 
@@ -32,4 +33,16 @@ def margin_at(margin, depth):
     beyond = max(depth, margin.offset) - margin.offset
     return (
         margin.constant + depth * (margin.linear + depth * margin.quadratic) + margin.beyond * beyond * beyond
+    )
+
+
+@njit(inline="always")
+def in_float32(margin):
+    """The same margin for float32 depths, as numbers of its own: a loop then need not read them again."""
+    return DepthMargin(
+        np.float32(margin.constant),
+        np.float32(margin.linear),
+        np.float32(margin.quadratic),
+        np.float32(margin.beyond),
+        np.float32(margin.offset),
     )
