@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from elbowroom.geometry import VoxelGrid
+from elbowroom.geometry import VoxelGrid, parallel
 from elbowroom.simulate import Moment, Solid, true_occupancy
 from elbowroom.simulate.kernels import touch as kernels
 from elbowroom.simulate.shapes import box, capsule, cylinder, ellipsoid, join
@@ -147,8 +147,10 @@ def test_random_points_on_surfaces_lie_in_occupied_voxels(room, grid):
 
 
 def test_machine_is_kept_apart_and_threads_leave_the_same_voxels(room, grid):
-    alone = true_occupancy(grid, room.at(3.0), threads=1)
-    both = true_occupancy(grid, room.at(3.0), threads=2)
+    with parallel.threads(1):
+        alone = true_occupancy(grid, room.at(3.0))
+    with parallel.threads(2):
+        both = true_occupancy(grid, room.at(3.0))
     assert (alone.occupied == both.occupied).all()
     assert (alone.machine == both.machine).all()
     assert alone.machine.any()

@@ -33,16 +33,13 @@ Pair = tuple[NDArray[np.uint32], NDArray[np.uint32]]
 """Of trust and of doubt."""
 
 
-def fill(
-    layout: Layout, images: RoomImages, model_depth: Mapping[str, Image], threads: int | None
-) -> tuple[Views, Buffers]:
+def fill(layout: Layout, images: RoomImages, model_depth: Mapping[str, Image]) -> tuple[Views, Buffers]:
     """Builds the windows of all cameras; a camera without images is blank.
 
     Args:
         layout: cameras in a grid.
         images: of those cameras.
         model_depth: by camera, depth up to which the machine explains the pixel [m], 0 where it does not.
-        threads: None: all cores.
 
     Returns:
         What kernels take, and the buffers behind it, to be given back after the carve.
@@ -66,7 +63,7 @@ def fill(
             own[0][:], own[1][:] = 0, 0
         _fill_levels(record, buffers, layout.tiles[c], own, apart)
 
-    spread(build, range(len(layout.cameras)), threads)
+    spread(build, range(len(layout.cameras)))
     return Views(records, buffers.texels, buffers.windows), buffers
 
 
