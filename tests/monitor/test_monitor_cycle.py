@@ -38,7 +38,7 @@ def a_cycle(monkeypatch) -> Cycle:
 
     monkeypatch.setattr(cycle, "reconstruct", reconstruct)
     monkeypatch.setattr(
-        cycle, "check_motions", lambda space, machine, joints, motions, _: [*map(clear, motions)]
+        cycle, "check_motions", lambda space, machine, joints, motions: [*map(clear, motions)]
     )
     return Cycle(GRID, (), OneJoint(), MOTIONS, focused=False)
 
