@@ -7,11 +7,10 @@ from rich.console import Console
 from elbowroom.cli.progress import Steps
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
-from elbowroom.monitor.rows import verdict_row
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.motion import Motion, Verdict, check_motion
 from elbowroom.reconstruct import FreeSpace, warm_up
-from elbowroom.sources.room import Room
+from elbowroom.sources import Room
 from elbowroom.view.screen.words import NOT_CERTIFIED, travel_text
 
 
@@ -54,7 +53,7 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
                 "rule": room.terms.rule,
                 "detail": room.terms.detail,
                 "joints": snapshot.joints,
-                **verdict_row(verdict),
+                **verdict.row(),
                 "explanation": reasons,
                 "unchecked_links": machine.unchecked_links,
             }
