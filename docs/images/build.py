@@ -12,7 +12,7 @@ from elbowroom.monitor import Cycle
 from elbowroom.monitor.loop import timed_source
 from elbowroom.reconstruct import warm_up
 from elbowroom.site import Site
-from elbowroom.sources.room import open_room
+from elbowroom.sources import open_room
 from elbowroom.sources.simulated import Simulated
 from elbowroom.view import save_sections
 from elbowroom.view.screen.terminal import TerminalView

@@ -4,8 +4,7 @@ import pytest
 
 from elbowroom.errors import InputError
 from elbowroom.site import Site
-from elbowroom.sources import Recorded
-from elbowroom.sources.room import open_room
+from elbowroom.sources import Recorded, open_room
 from elbowroom.sources.simulated import Simulated
 
 

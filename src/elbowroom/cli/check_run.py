@@ -10,7 +10,7 @@ from elbowroom.files.json_rows import json_rows
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.motion import Motion, Verdict, check_motion
 from elbowroom.reconstruct import FreeSpace, warm_up
-from elbowroom.sources.room import Room
+from elbowroom.sources import Room
 from elbowroom.view.screen.words import NOT_CERTIFIED, travel_text
 
 

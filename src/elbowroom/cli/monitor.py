@@ -77,7 +77,7 @@ def monitor(
     from elbowroom.monitor.start.start import started
     from elbowroom.site import Site
     from elbowroom.site.notes import notes_of
-    from elbowroom.sources.room import open_room
+    from elbowroom.sources import open_room
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
     from elbowroom.view.screen.watched import watched_of

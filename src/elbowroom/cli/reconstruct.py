@@ -38,7 +38,7 @@ def reconstruct(
 
     from elbowroom.cli.reconstruct_run import export
     from elbowroom.site import Site
-    from elbowroom.sources.room import open_room
+    from elbowroom.sources import open_room
 
     with options_named(joints="--joints", moment="--moment"):
         room = open_room(Site.load(site), voxel_size_m=voxel_size, rule=rule, detail=detail, joints=positions)

@@ -14,7 +14,7 @@ from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.reconstruct import FreeSpace, warm_up
 from elbowroom.sensing import Snapshot
 from elbowroom.site.notes import notes_of
-from elbowroom.sources.room import Room
+from elbowroom.sources import Room
 from elbowroom.view import save_npz, save_ply, save_sections
 from elbowroom.view.screen.words import NOT_CERTIFIED
 

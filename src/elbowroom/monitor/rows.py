@@ -11,7 +11,7 @@ from elbowroom.monitor.health.drift.watch import BODY
 from elbowroom.monitor.health.health import CameraHealth, LinkHealth
 from elbowroom.monitor.result import CycleResult
 from elbowroom.reconstruct.free_space import FreeSpace
-from elbowroom.sources.room import Room
+from elbowroom.sources import Room
 
 
 class Rows:

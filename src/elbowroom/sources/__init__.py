@@ -2,14 +2,17 @@
 
 from elbowroom.sources.depth_png import read_depth_png
 from elbowroom.sources.recorded import Recorded, check_images, excluded_frames, moments, silent_cameras
+from elbowroom.sources.room import Room, open_room
 from elbowroom.sources.source import Source
 
 __all__ = [
     "Recorded",
+    "Room",
     "Source",
     "check_images",
     "excluded_frames",
     "moments",
+    "open_room",
     "read_depth_png",
     "silent_cameras",
 ]

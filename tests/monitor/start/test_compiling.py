@@ -9,7 +9,7 @@ from elbowroom.monitor.start.compiling import run_jobs
 from elbowroom.monitor.start.kernel_jobs import JOBS, Job
 from elbowroom.monitor.start.start import started
 from elbowroom.site import Site
-from elbowroom.sources.room import open_room
+from elbowroom.sources import open_room
 
 ECHO = (sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line.strip(), flush=True)")
 DIES = (sys.executable, "-c", "input()")

@@ -17,8 +17,8 @@ from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.site_file import write_commissioned
 from elbowroom.sensing import Snapshot
 from elbowroom.site import Site
+from elbowroom.sources import Room, open_room
 from elbowroom.sources.layouts.layout import layout_of
-from elbowroom.sources.room import Room, open_room
 
 
 def run_commission(

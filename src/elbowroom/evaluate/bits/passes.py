@@ -62,24 +62,24 @@ def cycle_rows() -> Iterator[Row]:
         "majority ": make(replace(terms, rule="majority", detail="footprint")),
     }
     for name, cycle in cycles.items():
-        for what, snapshot in _passes(room, shot, frames).items():
-            yield from _cycle_rows(cycle.run(snapshot), cycle, name + what)
+        for what, snapshot in _snapshots(room, shot, frames).items():
+            yield from _cycle_rows(cycle.run(snapshot), cycle.terms, name + what)
 
 
-def _passes(room: InterventionRoom, shot: Shot, frames: list[DepthFrame]) -> dict[str, Snapshot]:
-    now_ns = frames[0].stamp_ns or 0
+def _snapshots(room: InterventionRoom, shot: Shot, frames: list[DepthFrame]) -> dict[str, Snapshot]:
     now, before, long_ago = (room.at(NOW_S - back_s) for back_s in (0.0, 0.1, 1.0))
     _, earlier = images_of(before, shot)
     _, stale = images_of(long_ago, shot)
     by_turns = [pair[n % 2] for n, pair in enumerate(zip(frames, earlier, strict=True))]
-    return {
-        "whole": Snapshot.taken(frames, now.joints, now_ns),
-        "stale frame": Snapshot.taken([stale[0], *frames[1:]], now.joints, now_ns),
-        "silent camera": Snapshot.taken(frames[1:], now.joints, now_ns),
-        "no stamp": Snapshot.taken([replace(frames[0], stamp_ns=None), *frames[1:]], now.joints, now_ns),
-        "joint record": Snapshot.taken(by_turns, _record([long_ago, before, now]), now_ns),
-        "fault": Snapshot.taken(frames, {}, now_ns),
+    given: dict[str, tuple[Sequence[DepthFrame], Mapping[str, float] | JointRecord]] = {
+        "whole": (frames, now.joints),
+        "stale frame": ([stale[0], *frames[1:]], now.joints),
+        "silent camera": (frames[1:], now.joints),
+        "no stamp": ([replace(frames[0], stamp_ns=None), *frames[1:]], now.joints),
+        "joint record": (by_turns, _record([long_ago, before, now])),
+        "fault": (frames, {}),
     }
+    return {what: Snapshot.taken(*moment, frames[0].stamp_ns, AGE_NS) for what, moment in given.items()}
 
 
 def _record(moments: Sequence[Moment]) -> JointRecord:
@@ -90,16 +90,16 @@ def _record(moments: Sequence[Moment]) -> JointRecord:
     )
 
 
-def _cycle_rows(result: CycleResult, cycle: Cycle, what: str) -> Iterator[Row]:
+def _cycle_rows(result: CycleResult, terms: Terms, what: str) -> Iterator[Row]:
     if result.space is not None:
-        yield space_row(result.space, cycle.terms.rule, cycle.terms.detail, f"{what}: space")
+        yield space_row(result.space, terms.rule, terms.detail, f"{what}: space")
     told = [
         ("verdicts", "\n".join(verdict_text(verdict) for verdict in result.verdicts)),
         ("level", result.level.name),
         ("oldest", result.oldest_age_ms),
         ("fault", result.fault is not None),
     ]
-    yield row(f"{what}: verdicts", told, cycle.terms.rule, cycle.terms.detail)
+    yield row(f"{what}: verdicts", told, terms.rule, terms.detail)
 
 
 def merge_rows() -> Iterator[Row]:

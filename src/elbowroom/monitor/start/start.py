@@ -9,9 +9,8 @@ from elbowroom.monitor.loop import Loop
 from elbowroom.monitor.start.watching import checks_of
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
-from elbowroom.sources import Recorded
+from elbowroom.sources import Recorded, Room
 from elbowroom.sources.pace import Pace
-from elbowroom.sources.room import Room
 
 
 def started(room: Room, begin: Callable[[str], None]) -> Loop:

@@ -12,7 +12,7 @@ from elbowroom.monitor.health.drift.reference import CameraReference
 from elbowroom.monitor.health.drift.reference_file import load_references
 from elbowroom.monitor.health.drift.tolerance import Tolerance
 from elbowroom.monitor.health.drift.watch import Watch
-from elbowroom.sources.room import Room
+from elbowroom.sources import Room
 
 FRAMES = 12
 EVERY_S = 0.9

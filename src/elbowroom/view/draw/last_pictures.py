@@ -7,7 +7,7 @@ from rich.console import Console
 from elbowroom.files.atomic import folder
 from elbowroom.monitor import Pass
 from elbowroom.sensing import Snapshot
-from elbowroom.sources.room import Room
+from elbowroom.sources import Room
 from elbowroom.view.draw.pictures import save_sections
 
 

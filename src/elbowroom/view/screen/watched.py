@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from elbowroom.geometry import VoxelGrid
-from elbowroom.sources.room import Room
+from elbowroom.sources import Room
 
 
 @dataclass(frozen=True, slots=True)
