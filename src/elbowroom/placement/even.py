@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,6 +99,29 @@ class Sweep:
         return next(
             (n for n, valid in zip(self.counts, self.valid_pct, strict=True) if valid >= share_pct), None
         )
+
+    def rows(self) -> list[dict[str, Any]]:
+        """A row of kind "layout" for each number of cameras: shares [%], and where they look."""
+        return [
+            {
+                "kind": "layout",
+                "cameras": count,
+                "valid_pct": valid,
+                "seen_by_views_pct": seen,
+                "aim_m": self.aim_m,
+            }
+            for count, valid, seen in zip(self.counts, self.valid_pct, self.seen_pct, strict=True)
+        ]
+
+    def row(self, share_pct: float) -> dict[str, Any]:
+        """A row of kind "sweep": the least number of cameras with a share of valid points, and the best share [%]."""
+        return {
+            "kind": "sweep",
+            "share_pct": share_pct,
+            "least_cameras": self.least(share_pct),
+            "layouts": len(self.counts),
+            "best_valid_pct": max(self.valid_pct),
+        }
 
 
 def even_verification(

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,13 @@ class Goal:
         if self.cameras is not None and self.by_price:
             raise InputError("placement: either a number of cameras or the least price, not both")
 
+    @property
+    def bound_of(self) -> str:
+        """What a bound is of: "valid_pct", "price" or "cameras"."""
+        if self.cameras is not None:
+            return "valid_pct"
+        return "price" if self.by_price else "cameras"
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Optimised:
@@ -88,6 +96,35 @@ class Optimised:
     def price(self) -> float:
         """Of all new cameras with their mounts and cables."""
         return sum(candidate.price for candidate in self.bought)
+
+    def row(self) -> dict[str, Any]:
+        """How good the layout is, how much better one could be, and what it took."""
+        return {
+            "bound": self.bound,
+            "sector_bound": self.sector_bound,
+            "price": self.price,
+            "model_valid_pct": self.model_pct,
+            "solver_points": self.points,
+            "candidates": self.candidates,
+            "seconds": self.seconds,
+        }
+
+    def step_rows(self) -> list[dict[str, Any]]:
+        """A row of kind "step" for every better layout on the way."""
+        return step_rows(self.steps, "valid_pct")
+
+
+def step_rows(steps: Sequence[tuple[float, int, float, float]], share: str) -> list[dict[str, Any]]:
+    """Rows of kind "step".
+
+    Args:
+        steps: seconds, cameras, price and share (0 to 1) of each.
+        share: what the share is of, such as "valid_pct".
+    """
+    return [
+        {"kind": "step", "seconds": at, "cameras": count, "price": price, share: 100 * part}
+        for at, count, price, part in steps
+    ]
 
 
 def optimise(
