@@ -15,7 +15,7 @@ room = open_room(Site.simulated_room(), cameras=8, resolution=(160, 120))
 machine, motions = room.machine_and_motions()
 cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
 
-for snapshot in itertools.islice(room.source(), 5):
+for snapshot in itertools.islice(room.source, 5):
     result = cycle.run(snapshot)
     worst = min(result.verdicts, key=lambda verdict: verdict.free_travel)
     print(

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -87,6 +88,25 @@ def test_levels_end_at_one_two_and_five_braking_distances(travel, level, band):
 
 def test_only_unseen_space_may_be_overridden():
     assert [cause for cause in Cause if verdict_of(0.1, cause).overridable] == [Cause.UNSEEN]
+
+
+def test_a_fault_wins_over_all_and_what_the_watch_found_over_what_was_seen():
+    motion = Motion("larm", 1, 0.1)
+    at_once = verdict_of(0.0)
+    watch, fault = (Verdict.stop(motion, "rad", cause) for cause in (Cause.WATCH, Cause.FAULT))
+    assert most_cautious([at_once, watch, fault]) is fault
+    assert most_cautious([at_once, watch, verdict_of(0.0, Cause.BLIND)]) is watch
+    assert (fault.level, fault.free_travel, fault.overridable) == (Level.STOP, 0.0, False)
+
+
+def test_a_row_says_joint_and_direction_of_a_motion_and_the_name_of_a_path():
+    verdict = verdict_of(0.15)
+    row = verdict.row()
+    assert (row["joint"], row["direction"], row["level"], row["band"]) == ("larm", "+", "decelerate", "M")
+    assert (row["cause"], row["braking_distance"], row["place_m"]) == ("surface", 0.1, (0.0, 0.0, 1.0))
+    path = JointPath([{"larm": 0.0}, {"larm": 0.1}], 0.1)
+    row = replace(verdict, motion=path).row()
+    assert (row["joint"], row["direction"], row["braking_distance"]) == (path.name, None, 0.1)
 
 
 def test_no_verdicts_are_an_error_and_never_clear():

@@ -66,12 +66,13 @@ def _findings(site: "Site") -> dict[str, Any]:
     """All that can be said of a site without carving; raises on whatever is wrong with it."""
     from elbowroom.placement.cameras import cameras_of
     from elbowroom.site import memory_of
+    from elbowroom.site.notes import notes_of
     from elbowroom.sources import check_images, silent_cameras
 
     grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
     motions = site.motions(machine) if machine is not None else ()
     moments = images = None
-    notes = list(site.notes)
+    notes = list(notes_of(site))
     if site.entry.recording is not None:
         moments, images = check_images(site)
         notes += [

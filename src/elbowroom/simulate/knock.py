@@ -51,7 +51,7 @@ class Knock:
             size = at_s = math.nan
         if match is None or not (math.isfinite(size) and math.isfinite(at_s)):
             raise InputError(
-                f"--knock: {text!r} is no knock; write camera:size[axis]@seconds, as cam03:1deg@5 or cam03:20mmz@5, "
+                f"knocks: {text!r} is no knock; write camera:size[axis]@seconds, as cam03:1deg@5 or cam03:20mmz@5, "
                 "or joint:size@seconds, as larm:2deg@5"
             )
         axis = "xyz".index(match["axis"] or USUAL_AXIS[match["unit"]])
@@ -89,7 +89,7 @@ def require_known(knocks: Sequence[Knock], cameras: Sequence[DepthCamera], joint
     for knock in knocks:
         if knock.what not in names and knock.what not in joints:
             raise InputError(
-                f"--knock: nothing is called {knock.what!r}; cameras are {', '.join(names)}, joints "
+                f"knocks: nothing is called {knock.what!r}; cameras are {', '.join(names)}, joints "
                 f"{', '.join(joints) or 'none'}"
             )
 

@@ -22,7 +22,8 @@ from elbowroom.site import Site
 from elbowroom.site.calibration_entry import CaptureImagesEntry
 from elbowroom.site.paths import existing_folder, inside
 from elbowroom.site.recording_entry import StampedFolder
-from elbowroom.sources.images import Image, images_of_cameras
+from elbowroom.sources.layouts.image import Image
+from elbowroom.sources.layouts.layout import layout_of
 
 LOOKED_AT_AGAIN = 24
 """Images in which a board of another size is looked for where none shows the right one."""
@@ -85,7 +86,7 @@ def images_by_pose(site: Site) -> list[list[Image]]:
     Raises:
         SiteError: no recording, or not laid out as the site says.
     """
-    by_camera = images_of_cameras(site)
+    by_camera = layout_of(site).by_camera()
     recording = site.entry.recording
     if not isinstance(recording, StampedFolder):
         return [list(group) for group in zip(*by_camera.values(), strict=True)]

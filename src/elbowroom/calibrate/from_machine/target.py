@@ -19,7 +19,7 @@ from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
-from elbowroom.sources import RecordedMoment
+from elbowroom.sensing import Snapshot
 
 PICTURE_WIDTH_PX = 320
 Progress = Callable[[str], None]
@@ -63,7 +63,7 @@ class MachineCalibration:
 def calibrate_from_machine(
     machine: Machine,
     cameras: Sequence[DepthCamera],
-    moments: Iterable[RecordedMoment],
+    moments: Iterable[Snapshot],
     *,
     hold: Mapping[str, NDArray[np.float64] | None] | None = None,
     free_base: bool = False,

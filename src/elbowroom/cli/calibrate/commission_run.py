@@ -8,20 +8,18 @@ import numpy as np
 from rich.console import Console
 from rich.progress import track
 
-from elbowroom.cli.room import open_room
+from elbowroom.cli.options import options_named
 from elbowroom.cli.screen import show
 from elbowroom.errors import CalibrationError
 from elbowroom.files.json_rows import json_rows
 from elbowroom.monitor import Tolerance
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.site_file import write_commissioned
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import Snapshot
 from elbowroom.site import Site
-from elbowroom.sources import moments
-from elbowroom.sources.images import image_groups
+from elbowroom.sources import Room, open_room
+from elbowroom.sources.layouts.layout import layout_of
 from elbowroom.view.report.blocks import Table
-
-Moment = tuple[Sequence[DepthFrame], Mapping[str, float] | None]
 
 
 def run_commission(
@@ -46,14 +44,13 @@ def run_commission(
         InputError: a site, a recording or a file that is not usable, or too little that stands still.
     """
     site = Site.simulated_room() if path is None else Site.load(path)
-    room = open_room(site, joints=joints)
-    wanted, given = _moments(site, joints, frames, every_s)
+    with options_named(joints="--joints"):
+        room = open_room(site, joints=joints)
+        wanted, given = _moments(room, frames, every_s)
     commissioning = Commissioning(room.cameras, room.machine, wanted)
     with json_rows(json_file) as add:
-        for seen, positions in track(
-            given, "looking", total=wanted, console=Console(stderr=True), transient=True
-        ):
-            commissioning.add(seen, positions)
+        for snapshot in track(given, "looking", total=wanted, console=Console(stderr=True), transient=True):
+            commissioning.add(snapshot)
         references = [
             commissioning.reference_of(camera)
             for camera in track(
@@ -68,36 +65,20 @@ def run_commission(
     print(f"{written} and {beside.name}: try `elbowroom monitor {written}`")
 
 
-def _moments(
-    site: Site, joints: Mapping[str, float] | None, frames: int, every_s: float
-) -> tuple[int, Iterator[Moment]]:
+def _moments(room: Room, frames: int, every_s: float) -> tuple[int, Iterator[Snapshot]]:
     """How many moments there will be, and each: of the simulated room, or evenly of a recording."""
-    if site.simulated is not None:
-        return frames, _simulated(site, joints, frames, every_s)
-    total = len(image_groups(site))
+    if room.site.simulated is not None:
+        from elbowroom.sources.simulated import Simulated
+
+        assert isinstance(room.source, Simulated)
+        return frames, room.source.at(number * every_s for number in range(frames))
+    total = len(layout_of(room.site).moments())
     if total < 5:
         raise CalibrationError(
-            f"{site.path}: a recording of {total} moments, at least 5 are needed to see what stands still"
+            f"{room.site.path}: a recording of {total} moments, at least 5 are needed to see what stands still"
         )
     chosen = set(np.unique(np.linspace(0, total - 1, min(frames, total)).round().astype(int)).tolist())
-    recorded = (
-        (moment.frames, moment.joints)
-        for number, moment in enumerate(moments(site, joints))
-        if number in chosen
-    )
-    return len(chosen), recorded
-
-
-def _simulated(
-    site: Site, joints: Mapping[str, float] | None, frames: int, every_s: float
-) -> Iterator[Moment]:
-    from elbowroom.simulate import InterventionRoom, render
-
-    assert site.simulated is not None
-    room, opened = InterventionRoom(machine=site.machine()), open_room(site)
-    for number in range(frames):
-        moment = room.at(number * every_s, joints=joints)
-        yield render(opened.cameras, moment, seed=site.simulated.seed + number), moment.joints
+    return len(chosen), (moment for number, moment in enumerate(room.source) if number in chosen)
 
 
 def reference_table(rows: Sequence[Mapping[str, Any]]) -> Table:

@@ -16,11 +16,11 @@ from elbowroom.errors import SiteError
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.rigid import exp
 from elbowroom.geometry.twist import between, sizes
-from elbowroom.sensing import NOISE_PRESETS
+from elbowroom.sensing import NOISE_PRESETS, Snapshot
 from elbowroom.sensing.planar_images import planar_images
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
 from elbowroom.site import Site
-from elbowroom.sources import RecordedMoment, moments
+from elbowroom.sources import moments
 
 ROUGH_M, ROUGH_DEG = 0.10, 5.0
 """How far the rough poses for `calibrate machine` are off, in a random direction each."""
@@ -65,7 +65,7 @@ def machine_row(
     for _ in range(poses):
         moment = room.random_moment(random)
         frames = tuple(render(true, moment, seed=seed))
-        recorded.append(RecordedMoment(moment.stamp_ns, frames, dict(moment.joints)))
+        recorded.append(Snapshot(frames, dict(moment.joints), now_ns=moment.stamp_ns))
     rough = [_off(camera, ROUGH_M, ROUGH_DEG, random) for camera in true]
     # a first call that compiles
     calibrate_from_machine(room.machine, rough[:1], recorded)
@@ -122,7 +122,7 @@ def room_refine_row(
     true = wall_cameras(cameras, size=size, noise=NOISE_PRESETS[noise], min_depth_m=0.1, max_depth_m=8.0)
     said(f"refining {cameras} cameras of the simulated room")
     moment = room.random_moment(random)
-    recorded = [RecordedMoment(moment.stamp_ns, tuple(render(true, moment, seed=seed)), {})]
+    recorded = [Snapshot(tuple(render(true, moment, seed=seed)), {}, now_ns=moment.stamp_ns)]
     given = (true[0], *(_off(camera, ROOM_M, ROOM_DEG, random) for camera in true[1:]))
     sure = np.diag([np.radians(ROOM_DEG) ** 2] * 3 + [ROOM_M**2] * 3)
     held = {camera.name: None if camera is true[0] else sure for camera in given}

@@ -8,7 +8,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.reference import CameraReference
 from elbowroom.monitor.health.drift.watch import Watch
-from elbowroom.sensing import NOISE_PRESETS, DepthFrame
+from elbowroom.sensing import NOISE_PRESETS, DepthFrame, Snapshot
 from elbowroom.simulate import InterventionRoom, Moment, render, wall_cameras
 from elbowroom.simulate.person import Person, Walk
 from elbowroom.simulate.room import STAFF
@@ -68,7 +68,7 @@ def commissioned(
     commissioning = Commissioning(cameras, room.machine, COMMISSION_FRAMES)
     for number in range(COMMISSION_FRAMES):
         moment = room.at(200 + 0.7 * number)
-        commissioning.add(render(cameras, moment, seed=number), moment.joints)
+        commissioning.add(Snapshot.taken(render(cameras, moment, seed=number), moment.joints))
     return Commissioned(room, cameras, commissioning.references(), noise)
 
 

@@ -16,8 +16,8 @@ from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, parallel
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
 from elbowroom.motion import joint_motions
-from elbowroom.reconstruct import carve
-from elbowroom.sensing import NOISE_PRESETS, DepthFrame
+from elbowroom.reconstruct import Terms, carve
+from elbowroom.sensing import NOISE_PRESETS, DepthFrame, Snapshot
 
 SPEEDS = {"long": 0.15, "larm": np.radians(12), "propeller": np.radians(25), "carc": np.radians(25)}
 """Full speeds of the ceiling C-arm [m/s or rad/s]."""
@@ -80,12 +80,12 @@ def run_case(
     positions = [dict(zip(machine.joint_names, row, strict=True)) for row in joints.tolist()]
     grid = VoxelGrid.covering((-2.0, -2.0, 0.0), (2.0, 2.0, 2.5), voxel_size_m)
     motions = joint_motions(machine, SPEEDS, BRAKING_TIME_S)
-    cycle = Cycle(grid, cameras, machine, motions, detail=detail)  # type: ignore[arg-type]
+    cycle = Cycle(grid, cameras, machine, motions, Terms(detail=detail))  # type: ignore[arg-type]
     stages: list[Mapping[str, float]] = []
 
     def pass_once(n: int) -> None:
         m = n % len(moments)
-        result = cycle.run(moments[m], positions[m], m)
+        result = cycle.run(Snapshot.taken(moments[m], positions[m], m))
         if result.fault is not None:
             raise RuntimeError(result.fault)
         stages.append(result.stage_ms)

@@ -1,9 +1,12 @@
 """What a run of the monitor came to: rates, times, levels, faults."""
 
+import resource
+import sys
 import time
 from collections import Counter, deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from rich.console import Group, RenderableType
@@ -84,6 +87,23 @@ class RunLog:
         """Median time of each stage of late [ms], in the order of the stages."""
         names = dict.fromkeys(name for stages in self.stages for name in stages)
         return {name: float(np.median([s[name] for s in self.stages if name in s])) for name in names}
+
+    def row(self) -> dict[str, Any]:
+        """The run as the row of kind "summary", after all others; with the most memory that this process has taken."""
+        row: dict[str, Any] = {
+            "kind": "summary",
+            "cycles": self.cycles,
+            "rate_hz": self.whole_rate_hz,
+            "faults": self.faults.total(),
+            "watched": self.is_watched,
+            "stop_reasons": list(self.stops.values()),
+        }
+        for name, values in (("cycle", self.cycle_ms), ("source", self.source_ms)):
+            for statistic, share in (("median", 50), ("p99", 99), ("max", 100)):
+                row[f"{name}_{statistic}_ms"] = float(np.percentile(values, share)) if values else None
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        row["peak_rss_mb"] = peak / (1e6 if sys.platform == "darwin" else 1e3)
+        return row
 
     def recent(self, values: Sequence[float]) -> float:
         """Median of the latest of some values; NaN if there are none."""

@@ -1,4 +1,4 @@
-"""The live view: a row for each joint and direction, and how fast and how fresh the answers are."""
+"""The face on the terminal: a row for each joint and direction, and how fast and how fresh the answers are."""
 
 import time
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from rich.rule import Rule
 from rich.table import Table
 from rich.text import Text
 
-from elbowroom.monitor import CycleResult
+from elbowroom.monitor import CycleResult, Pass
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.view.screen.run_log import RunLog
 from elbowroom.view.screen.watched import Watched
@@ -90,14 +90,10 @@ class TerminalView:
             if self._last_screen is not None:
                 self.console.print(self._last_screen)
 
-    def show(self, result: CycleResult, source_ms: float) -> None:
-        """Notes a pass and, if it is time, shows it.
-
-        Args:
-            result: of the pass.
-            source_ms: what the simulator or the reader of files took to bring its frames [ms].
-        """
-        self.log.add(result, source_ms)
+    def show(self, done: Pass) -> None:
+        """Notes a pass and, if it is time, shows it."""
+        result = done.result
+        self.log.add(result, done.source_ms)
         now = time.perf_counter()
         if now - self._last_shown_s < (REFRESH_S if self._live is not None else PLAIN_EVERY_S):
             return
@@ -108,9 +104,14 @@ class TerminalView:
         else:
             self.console.print(self.line(result), soft_wrap=True, highlight=False, markup=False)
 
-    def print_summary(self) -> None:
-        """Prints what the run came to."""
+    def end(self) -> None:
+        """Ends the screen and prints what the run came to."""
+        self.stop()
         self.console.print(self.log.summary())
+
+    def note(self, text: str) -> None:
+        """Prints a line that the user should know before it starts."""
+        self.console.print(f"note: {text}", highlight=False, soft_wrap=True)
 
     def screen(self, result: CycleResult) -> RenderableType:
         """All of the live screen for one pass."""

@@ -5,6 +5,7 @@ import pytest
 
 from elbowroom.monitor import Condition, Tolerance, Watch
 from elbowroom.monitor.health.drift.shown_part import ShownPart
+from elbowroom.sensing import Snapshot
 from reference.watch_twins import NOISE_M, camera_at, commissioned, frame, knocked, walls
 
 TOLERANCE = Tolerance()
@@ -21,7 +22,7 @@ def heard(move_m, moments=60):
     for k in range(moments):
         truly = knocked(CORNER, (0, 0, 0), move_m) if k >= 12 else CORNER
         seen = frame(truly, k * 33_000_000, 0.001, np.random.default_rng(k))
-        health = watch.hear([seen], None, k * 33_000_000)
+        health = watch.hear(Snapshot.taken([seen], None, k * 33_000_000))
     return health, watch.shift_of("corner")
 
 
@@ -55,7 +56,7 @@ def test_a_camera_that_sees_all_is_not_named_for_so_little():
     watch = Watch([OPEN], references)
     for k in range(60):
         truly = knocked(OPEN, (0, 0, 0), (0.0, 0.0, 0.006))
-        health = watch.hear([frame(truly, k, 0.001, np.random.default_rng(k))], None, k)
+        health = watch.hear(Snapshot.taken([frame(truly, k, 0.001, np.random.default_rng(k))], None, k))
     assert health.reason is None
 
 
@@ -89,5 +90,5 @@ def _reference(camera, depth):
 
     room = Commissioning([camera], None, 6)
     for number in range(6):
-        room.add([frame(camera, number, 0.001, depth=depth)], None)
+        room.add(Snapshot.taken([frame(camera, number, 0.001, depth=depth)]))
     return room.reference_of(camera)
