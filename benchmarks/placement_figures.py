@@ -20,6 +20,7 @@ from elbowroom.placement import (
     FixedRoom,
     Goal,
     Rehearsal,
+    Search,
     Settings,
     candidates_of,
     even_cameras,
@@ -85,7 +86,7 @@ def optimise_row(share_pct: float, seconds: float, what: str) -> dict[str, Any]:
     site = Site.load(THESIS_ROOM)
     room, grid = FixedRoom.of_site(site), site.grid()
     candidates = candidates_of(site, grid, room)
-    done = optimise(grid, room, candidates, goal=Goal(share_pct), seconds=seconds)
+    done = optimise(grid, room, candidates, goal=Goal(share_pct), search=Search(seconds))
     first = next((at for at, count, _, _ in done.steps if count <= 19), None)
     return {
         "kind": "optimise",

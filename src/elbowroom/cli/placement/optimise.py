@@ -15,7 +15,7 @@ from elbowroom.placement.bill import bill
 from elbowroom.placement.cameras import cameras_of, requirement_of
 from elbowroom.placement.candidates import Candidate, candidates_of
 from elbowroom.placement.fixed_room import FixedRoom
-from elbowroom.placement.optimisation import Goal, Optimised, optimise
+from elbowroom.placement.optimisation import Goal, Optimised, Search, optimise
 from elbowroom.placement.pictures import save_pictures
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
@@ -59,9 +59,7 @@ def run_optimise(
                 requirement,
                 goal,
                 existing=existing,
-                points=points,
-                seconds=seconds,
-                seed=seed,
+                search=Search(seconds, points, seed),
                 progress=show,
             )
         row = _row(done, site, goal, len(existing)) | {"walls_known": room is not None}
