@@ -18,7 +18,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.sensing import DepthFrame
-from elbowroom.simulate import Moment, render, setup, solids_of_glb, wall_cameras
+from elbowroom.simulate import Moment, Walls, render, setup, solids_of_glb, wall_cameras
 from elbowroom.simulate.inside import check_outside
 from elbowroom.simulate.machine_solids import link_solids
 from elbowroom.sources.recorder import Recording, write_recording
@@ -107,9 +107,11 @@ def _cameras(options: RoomOptions, grid: VoxelGrid) -> tuple[DepthCamera, ...]:
         options.cameras,
         options.heights_m,
         size=options.size,
-        half_side_m=(float(half[0]), float(half[1])),
-        centre_m=(float(middle[0]), float(middle[1])),
-        aim_m=float(grid.lower_m[2] + 0.44 * (grid.upper_m - grid.lower_m)[2]),
+        walls=Walls(
+            half_side_m=(float(half[0]), float(half[1])),
+            centre_m=(float(middle[0]), float(middle[1])),
+            aim_m=float(grid.lower_m[2] + 0.44 * (grid.upper_m - grid.lower_m)[2]),
+        ),
         noise=noise,
     )
 

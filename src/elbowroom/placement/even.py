@@ -133,7 +133,14 @@ def even_verification(
     heights_m: Sequence[float],
     aim_m: float,
 ) -> Verification:
-    """The verification of evenly spread cameras; arguments as of `even_cameras` and `verify`.
+    """The verification of evenly spread cameras.
+
+    Args:
+        grid: the watched box.
+        room: with walls.
+        sensor, count: kind and number of the cameras.
+        requirement: what a point must have to be valid.
+        heights_m, aim_m: of the cameras, and where they look; as of `even_cameras` [m].
 
     Raises:
         InputError: the room has no walls along which cameras could be spread.
@@ -154,7 +161,19 @@ def best_aim(
     count: int = AIMED_WITH,
     aims_m: Sequence[float] = AIMS_M,
 ) -> float:
-    """Of some aims the one with which evenly spread cameras leave most points valid; the lowest of equals [m]."""
+    """Of some aims the one with which evenly spread cameras leave most points valid; the lowest of equals [m].
+
+    Args:
+        grid: the watched box.
+        room: with walls.
+        sensor, count: kind and number of the cameras.
+        requirement: what a point must have to be valid.
+        heights_m: of the cameras; neighbours take them in turn [m].
+        aims_m: heights of the middle axis to choose from, ascending [m].
+
+    Raises:
+        InputError: a room without walls.
+    """
     shares = [
         even_verification(grid, room, sensor, count, requirement, heights_m, aim).valid_pct for aim in aims_m
     ]

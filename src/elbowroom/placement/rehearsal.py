@@ -216,7 +216,14 @@ def _scene(
 def evidence_by_camera(
     cameras: Sequence[DepthCamera], moment: Moment, settings: Settings, seed: int
 ) -> list[Evidence]:
-    """What each camera knows of a scene as `reconstruct` carves it; merged, it is what `reconstruct` decides by."""
+    """What each camera knows of a scene as `reconstruct` carves it; merged, it is what `reconstruct` decides by.
+
+    Args:
+        cameras: all of the room.
+        moment: the scene.
+        settings: how space is declared free.
+        seed: of the sensors' noise.
+    """
     frames = render(cameras, moment, seed=seed)
     grid, terms, images = settings.grid, settings.terms, room_images(cameras, frames)
     explained = explain(grid, settings.machine, images, Snapshot(tuple(frames), moment.joints), terms)

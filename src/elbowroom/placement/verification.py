@@ -101,7 +101,14 @@ def judge(
     asked: NDArray[np.bool_],
     requirement: Requirement,
 ) -> Verification:
-    """The verification of sights that are known already; arguments as of `Verification`.
+    """The verification of sights that are known already.
+
+    Args:
+        grid: the watched box.
+        cameras: 1 to 255.
+        seen: bool, shape (cameras, *grid.shape): the camera sees the voxel's centre; read-only from here on.
+        asked: bool, shape of the grid: the requirement is asked of the voxel; read-only from here on.
+        requirement: what a point must have to be valid.
 
     Raises:
         InputError: no camera, or more than 255.

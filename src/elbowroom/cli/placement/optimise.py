@@ -16,7 +16,7 @@ from elbowroom.placement.bill import bill, bill_table
 from elbowroom.placement.cameras import cameras_of, requirement_of
 from elbowroom.placement.candidates import candidates_of
 from elbowroom.placement.fixed_room import FixedRoom
-from elbowroom.placement.optimisation import Goal, Optimised, optimise
+from elbowroom.placement.optimisation import Goal, Optimised, Search, optimise
 from elbowroom.placement.pictures import save_pictures
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
@@ -60,9 +60,7 @@ def _optimised(site: Site, room: FixedRoom | None, goal: Goal, options: Optimise
             requirement_of(site, options.required.views, options.required.angle_deg),
             goal,
             existing=cameras_of(site) if options.keep else (),
-            points=options.points,
-            seconds=options.seconds,
-            seed=options.seed,
+            search=Search(seconds=options.seconds, points=options.points, seed=options.seed),
             progress=lambda text: status.update(text),
         )
 
