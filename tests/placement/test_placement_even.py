@@ -9,7 +9,7 @@ from elbowroom.placement.even import best_aim, even_cameras, sweep
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.requirement import Requirement
 from elbowroom.placement.sensor import across_deg, known_sensors
-from elbowroom.simulate import wall_cameras
+from elbowroom.simulate import Walls, wall_cameras
 from reference.placement_rooms import room_of
 
 COARSE = VoxelGrid((-2.0, -2.0, 0.0), (16, 16, 10), 0.25)
@@ -17,7 +17,7 @@ COARSE = VoxelGrid((-2.0, -2.0, 0.0), (16, 16, 10), 0.25)
 
 def test_in_a_square_room_they_hang_where_the_simulators_cameras_hang():
     made = even_cameras(room_of().walls_m, known_sensors()["vga"], 21, heights_m=(2.4, 0.4), aim_m=1.1)
-    for one, other in zip(made, wall_cameras(21, (2.4, 0.4), half_side_m=2.49), strict=True):
+    for one, other in zip(made, wall_cameras(21, (2.4, 0.4), walls=Walls(half_side_m=2.49)), strict=True):
         assert one.name == other.name
         np.testing.assert_allclose(one.world_from_camera, other.world_from_camera, atol=1e-12)
 

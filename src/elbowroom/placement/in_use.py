@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.placement.candidates import Candidate
 from elbowroom.placement.coarse import with_joined_pixels
-from elbowroom.placement.optimisation import Goal, free_candidates, named, places_of
+from elbowroom.placement.optimisation import Goal, free_candidates, named, places_of, step_rows
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera
 from elbowroom.placement.solver.run import Course, in_scenes
 from elbowroom.placement.solver.scene_layout import SceneModel
@@ -40,6 +41,19 @@ class FoundInUse:
     bound: float
     steps: tuple[tuple[float, int, float, float], ...]
     seconds: float
+
+    def row(self) -> dict[str, Any]:
+        """How good the layout is in its own scenes, how much better one could be, and what it took."""
+        return {
+            "cameras": len(self.cameras),
+            "free_in_own_scenes_pct": self.free_pct,
+            "bound": self.bound,
+            "seconds": self.seconds,
+        }
+
+    def step_rows(self) -> list[dict[str, Any]]:
+        """A row of kind "step" for every better layout on the way."""
+        return step_rows(self.steps, "free_pct")
 
 
 def optimise_in_use(

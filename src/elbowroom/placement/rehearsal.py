@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from elbowroom.reconstruct.images import room_images
 from elbowroom.reconstruct.resolve import decide
 from elbowroom.sensing import Snapshot
 from elbowroom.simulate import Moment, render, true_occupancy
+from elbowroom.site import Site
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,6 +37,21 @@ class Settings:
     terms: Terms = field(default_factory=Terms)
     machine: Machine | None = None
     motions: tuple[Motion, ...] = ()
+
+    @classmethod
+    def of_site(cls, site: Site, voxel_size_m: float | None = None) -> "Settings":
+        """As a site declares space free, with its machine and motions.
+
+        Args:
+            site: the file.
+            voxel_size_m: edge of a voxel instead of the site's [m].
+
+        Raises:
+            SiteError: a machine that none can be.
+        """
+        machine = site.machine()
+        motions = site.motions(machine) if machine is not None else ()
+        return cls(site.grid(voxel_size_m), site.terms(), machine, motions)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,6 +118,32 @@ class Rehearsal:
             going = [found for found, true in here if true is not Level.STOP]
             counts[name] = (sum(found is Level.STOP for found in going), len(going))
         return counts
+
+    def row(self) -> dict[str, Any]:
+        """A row of kind "simulate": means of all scenes [%]."""
+        stops = self.false_stops().values()
+        going = sum(of for _, of in stops)
+        return {
+            "kind": "simulate",
+            "scenes": len(self.scenes),
+            "free_pct": self.free_pct,
+            "free_error_pct": self.free_error_pct,
+            "occupied_pct": self.occupied_pct,
+            "false_stop_pct": 100.0 * sum(stopped for stopped, _ in stops) / going if going else None,
+            "judged_motions": going,
+        }
+
+    def part_rows(self) -> list[dict[str, Any]]:
+        """A row of kind "camera" for each camera that was left out in turn, and of kind "motion" for each motion."""
+        cameras = [
+            {"kind": "camera", "camera": name, "contributes_pct": contributes, "loss_pct": loss}
+            for name, (contributes, loss) in self.by_camera().items()
+        ]
+        motions = [
+            {"kind": "motion", "motion": name, "false_stops": stops, "scenes_without_stop": of}
+            for name, (stops, of) in self.false_stops().items()
+        ]
+        return [*cameras, *motions]
 
 
 def rehearse(
@@ -173,7 +216,14 @@ def _scene(
 def evidence_by_camera(
     cameras: Sequence[DepthCamera], moment: Moment, settings: Settings, seed: int
 ) -> list[Evidence]:
-    """What each camera knows of a scene as `reconstruct` carves it; merged, it is what `reconstruct` decides by."""
+    """What each camera knows of a scene as `reconstruct` carves it; merged, it is what `reconstruct` decides by.
+
+    Args:
+        cameras: all of the room.
+        moment: the scene.
+        settings: how space is declared free.
+        seed: of the sensors' noise.
+    """
     frames = render(cameras, moment, seed=seed)
     grid, terms, images = settings.grid, settings.terms, room_images(cameras, frames)
     explained = explain(grid, settings.machine, images, Snapshot(tuple(frames), moment.joints), terms)

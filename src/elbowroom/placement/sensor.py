@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import SiteError
 from elbowroom.geometry import DepthCamera
-from elbowroom.simulate import wall_cameras
+from elbowroom.simulate import Optics, wall_cameras
 from elbowroom.site import Site
 from elbowroom.site.camera_entry import CameraSettings, build_camera
 
@@ -43,7 +43,9 @@ def known_sensors() -> dict[str, Sensor]:
     `thesis` (64x48, distance from the camera's centre, up to 7 m), `vga` (640x480), `square` (480x480).
     """
     return {
-        "thesis": Sensor("thesis", wall_cameras(1, size="thesis", max_depth_m=THESIS_RANGE_M)[0]),
+        "thesis": Sensor(
+            "thesis", wall_cameras(1, size="thesis", optics=Optics(max_depth_m=THESIS_RANGE_M))[0]
+        ),
         "vga": Sensor("vga", wall_cameras(1, size="vga")[0]),
         "square": Sensor("square", wall_cameras(1, width=480, height=480)[0]),
     }

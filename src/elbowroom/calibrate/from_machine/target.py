@@ -49,6 +49,16 @@ class MachineCalibration:
     rows: tuple[dict[str, Any], ...]
     pictures: tuple[SurfacePicture, ...]
 
+    def row(self) -> dict[str, Any]:
+        """A row of kind "base": where the machine stands."""
+        return {
+            "kind": "base",
+            "machine": self.machine.name,
+            "world_from_base": self.machine.world_from_base.tolist(),
+            "covariance": None if self.base_covariance is None else self.base_covariance.tolist(),
+            "poses": self.poses,
+        }
+
 
 def calibrate_from_machine(
     machine: Machine,

@@ -52,6 +52,19 @@ class PairAgreement:
     before: Agreement
     after: Agreement
 
+    def row(self) -> dict[str, Any]:
+        """A row of kind "pair": shares of pixels that agree, before and after [%]."""
+        return {
+            "kind": "pair",
+            "one": self.one,
+            "other": self.other,
+            "compared": self.after.compared,
+            "agree_before_pct": self.before.agree_pct,
+            "agree_pct": self.after.agree_pct,
+            "hidden_pct": self.after.hidden_pct,
+            "conflict_pct": self.after.conflict_pct,
+        }
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Refinement:

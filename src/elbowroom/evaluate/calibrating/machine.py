@@ -18,7 +18,7 @@ from elbowroom.geometry.rigid import exp
 from elbowroom.geometry.twist import between, sizes
 from elbowroom.sensing import NOISE_PRESETS, Snapshot
 from elbowroom.sensing.planar_images import planar_images
-from elbowroom.simulate import InterventionRoom, render, wall_cameras
+from elbowroom.simulate import InterventionRoom, Optics, render, wall_cameras
 from elbowroom.site import Site
 from elbowroom.sources import moments
 
@@ -30,6 +30,7 @@ ROOM_M, ROOM_DEG = 0.02, 0.5
 """How far simulated cameras are off before they are refined."""
 REAL_SITE = Path(__file__).parents[4] / "examples" / "piv_table_2cam.yaml"
 """Two real cameras; only a checkout has it."""
+RANGE = Optics(min_depth_m=0.1, max_depth_m=8.0)
 DUE_MACHINE = {"worst_mm": 8.0, "worst_deg": 0.2}
 DUE_REAL = {"cam1 to cam2": 60.0, "cam2 to cam1": 77.0}
 """Share of co-visible pixels within 5 cm that the recording's README gives for its own poses [%]."""
@@ -59,7 +60,7 @@ def machine_row(
         seconds from images to poses.
     """
     room, random = InterventionRoom(), np.random.default_rng([seed, 71])
-    true = wall_cameras(cameras, size=size, noise=NOISE_PRESETS[noise], min_depth_m=0.1, max_depth_m=8.0)
+    true = wall_cameras(cameras, size=size, noise=NOISE_PRESETS[noise], optics=RANGE)
     said(f"rendering {poses} poses")
     recorded = []
     for _ in range(poses):
@@ -119,7 +120,7 @@ def room_refine_row(
         A row of kind "refine": worst and median of the poses' errors [mm, degrees] before and after, seconds.
     """
     room, random = InterventionRoom(), np.random.default_rng([seed, 79])
-    true = wall_cameras(cameras, size=size, noise=NOISE_PRESETS[noise], min_depth_m=0.1, max_depth_m=8.0)
+    true = wall_cameras(cameras, size=size, noise=NOISE_PRESETS[noise], optics=RANGE)
     said(f"refining {cameras} cameras of the simulated room")
     moment = room.random_moment(random)
     recorded = [Snapshot(tuple(render(true, moment, seed=seed)), {}, now_ns=moment.stamp_ns)]

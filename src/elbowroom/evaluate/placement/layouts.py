@@ -13,6 +13,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.placement import (
     FixedRoom,
     Goal,
+    Search,
     candidates_of,
     even_cameras,
     known_sensors,
@@ -93,7 +94,7 @@ def optimise_rows(effort: Effort) -> Iterator[dict[str, Any]]:
     }
     for what, share_pct in wanted.items():
         done = optimise(
-            grid, room, candidates_of(site, grid, room), goal=Goal(share_pct), seconds=effort.seconds
+            grid, room, candidates_of(site, grid, room), goal=Goal(share_pct), search=Search(effort.seconds)
         )
         yield {
             "kind": "optimise",

@@ -101,7 +101,16 @@ def fullest(
     seed: int = 1,
     progress: Callable[[str], None],
 ) -> Layout:
-    """The layout with most valid points that is found for at most this price; arguments as of `cheapest`."""
+    """The layout with most valid points that is found for at most this price.
+
+    Args:
+        model: candidates and points.
+        budget: greatest price of all that is new.
+        until: when time is up, as `time.perf_counter` counts [s].
+        course: better layouts on the way are noted here.
+        seed: of all random choices.
+        progress: called with what is being done.
+    """
     rng = np.random.default_rng(seed)
     progress("choosing by CP-SAT on a few points")
     exact = _exact(model, rng, until, course, budget=budget) or ()
@@ -136,7 +145,14 @@ def in_scenes(
 ) -> SceneLayout:
     """The cheapest layout with a share of the free space of scenes, or with None the one that finds most for a price.
 
-    The other arguments are as of `cheapest`.
+    Args:
+        model: candidates, and what each sees in the scenes.
+        share: of the free space that is wanted, 0 to 1; None: as much as can be.
+        budget: greatest price of all that is new.
+        until: when time is up, as `time.perf_counter` counts [s].
+        course: better layouts on the way are noted here.
+        seed: of all random choices.
+        progress: called with what is being done.
     """
     rng = np.random.default_rng(seed)
     wanted = 1.0 if share is None else share
