@@ -62,11 +62,7 @@ def _list(
     for link in np.unique(samples.cluster_link):
         first, last = np.searchsorted(samples.cluster_link, [link, link + 1])
         written += list_patches(
-            samples.points,
-            samples.cluster_start,
-            samples.cluster_stop,
-            samples.cluster_centre,
-            samples.cluster_radius,
+            samples.clusters,
             samples.cover_m + ROUNDING_M,
             first,
             last,

@@ -1,25 +1,16 @@
 """The machine's model drawn as a camera would see it, at a base that may still move."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine import Machine
-from elbowroom.machine.kernels.draw import draw
+from elbowroom.machine.kernels.draw import Canvas, draw
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
 
 Array = NDArray[np.float64]
-
-
-class Drawing(NamedTuple):
-    """Inverse planar depth, shape (height, width), float32, 0 where nothing is; columns drawn in each row."""
-
-    inverse: NDArray[np.float32]
-    first: NDArray[np.int64]
-    last: NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,16 +25,16 @@ class DrawnMachine:
     machine: Machine
     world_from_base: Array
 
-    def image(self, camera: DepthCamera, base_from_links: Array) -> Drawing:
+    def image(self, camera: DepthCamera, base_from_links: Array) -> Canvas:
         """The machine in a pinhole camera's view.
 
         Args:
             camera: without distortion.
             base_from_links: shape (links, 4, 4).
         """
-        drawing = Drawing(*canvas(camera.height, camera.width))
+        drawing = canvas(camera.height, camera.width)
         camera_from_links = camera.camera_from_world @ self.world_from_base @ base_from_links
-        draw(mesh_of(self.machine), camera_from_links, view_of(camera), *drawing)
+        draw(mesh_of(self.machine), camera_from_links, view_of(camera), drawing)
         return drawing
 
     def links_seen(self, camera: DepthCamera, base_from_links: Array) -> dict[str, int]:
@@ -56,13 +47,9 @@ class DrawnMachine:
                     np.arange(len(mesh.face_start)) <= row, mesh.face_start[row], mesh.face_start[row + 1]
                 )
             )
-            drawing = Drawing(*canvas(camera.height, camera.width))
-            draw(
-                only,
-                camera.camera_from_world @ self.world_from_base @ base_from_links,
-                view_of(camera),
-                *drawing,
-            )
+            drawing = canvas(camera.height, camera.width)
+            camera_from_links = camera.camera_from_world @ self.world_from_base @ base_from_links
+            draw(only, camera_from_links, view_of(camera), drawing)
             count = int(((drawing.inverse > 0) & (drawing.inverse >= whole)).sum())
             if count:
                 found[link.name] = count

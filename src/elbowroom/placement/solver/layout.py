@@ -64,20 +64,23 @@ class Layout:
         """Of all that is chosen and not there already."""
         return float(sum(self.model.price[c] for c in self.chosen if c not in self.model.kept))
 
+    @property
+    def _chosen(self) -> NDArray[np.int64]:
+        return np.array(self.chosen, dtype=np.int64)
+
+    @property
+    def _sights(self) -> kernels.Sights:
+        return kernels.Sights(self.model.sees, self.model.azimuth, self.model.place_of)
+
+    @property
+    def _rule(self) -> kernels.Apart:
+        requirement = self.model.requirement
+        return kernels.Apart(math.radians(requirement.angle_deg), TIE_RAD, requirement.views)
+
     def update(self, points: NDArray[np.int64] | None = None) -> None:
         """Counts again, at some points or all."""
-        model = self.model
-        kernels.apart_of_points(
-            model.sees,
-            model.azimuth,
-            model.place_of,
-            np.array(self.chosen, dtype=np.int64),
-            math.radians(model.requirement.angle_deg),
-            TIE_RAD,
-            model.requirement.views,
-            np.arange(model.points) if points is None else points,
-            self.apart,
-        )
+        asked = np.arange(self.model.points) if points is None else points
+        kernels.apart_of_points(self._sights, self._chosen, self._rule, asked, self.apart)
 
     def without(self, members: Sequence[int]) -> "Layout":
         """The layout without some of its candidates."""
@@ -97,37 +100,14 @@ class Layout:
         """What each candidate would add to the sum of worths, shape (candidates,); -1 where its place is taken."""
         model = self.model
         gain = np.zeros(model.candidates)
-        kernels.gains(
-            model.sees,
-            model.azimuth,
-            model.place_of,
-            np.array(self.chosen, dtype=np.int64),
-            math.radians(model.requirement.angle_deg),
-            TIE_RAD,
-            model.requirement.views,
-            np.flatnonzero(self.apart < model.requirement.views),
-            self.apart,
-            self.worth,
-            gain,
-        )
+        asked = np.flatnonzero(self.apart < model.requirement.views)
+        kernels.gains(self._sights, self._chosen, self._rule, asked, self.apart, self.worth, gain)
         if self.chosen:
             gain[np.isin(model.place_of, model.place_of[self.chosen])] = -1.0
         return gain
 
     def losses(self) -> NDArray[np.float64]:
         """What the sum of worths would lose without each member, shape (len(chosen),)."""
-        model = self.model
         loss = np.zeros(len(self.chosen))
-        kernels.losses(
-            model.sees,
-            model.azimuth,
-            model.place_of,
-            np.array(self.chosen, dtype=np.int64),
-            math.radians(model.requirement.angle_deg),
-            TIE_RAD,
-            model.requirement.views,
-            self.apart,
-            self.worth,
-            loss,
-        )
+        kernels.losses(self._sights, self._chosen, self._rule, self.apart, self.worth, loss)
         return loss
