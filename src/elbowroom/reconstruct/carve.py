@@ -83,8 +83,8 @@ def carve_images(
         CameraError: more than 255 cameras.
     """
     layout = layout_of(grid, images.cameras, terms.margin)
-    cells = bits.lattice(grid)
-    cubes = cells.cubes_x * cells.cubes_y * cells.cubes_z
+    lattice = bits.lattice(grid)
+    cubes = lattice.cubes_x * lattice.cubes_y * lattice.cubes_z
     planes = np.zeros((PLANES, cubes * 64), dtype=np.uint64)
     through, disputes = (np.zeros((cubes * 64 if complete else 0, 64), dtype=np.uint8) for _ in range(2))
     kernel = carve_points if terms.detail == "point" else carve_cubes
@@ -95,7 +95,7 @@ def carve_images(
     views, buffers = fill(layout, images, explained.model_depth)
     try:
         spread(
-            lambda share: kernel(np.ascontiguousarray(worth[share::SHARES]), cells, views, answers),
+            lambda share: kernel(np.ascontiguousarray(worth[share::SHARES]), lattice, views, answers),
             range(min(SHARES, len(worth))),
         )
     finally:

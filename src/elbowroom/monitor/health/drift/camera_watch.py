@@ -3,12 +3,18 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
-from elbowroom.monitor.health.drift.kernels.body import Limits
-from elbowroom.monitor.health.drift.kernels.watch import Fitted, Memory, Prior, Spots, judge_image
+from elbowroom.monitor.health.drift.kernels.watch import (
+    Counts,
+    Gate,
+    Memory,
+    Prior,
+    Spots,
+    Support,
+    judge_image,
+)
 from elbowroom.monitor.health.drift.lasting import Lasting
 from elbowroom.monitor.health.drift.reference import MOVE_PRIOR_M, TURN_PRIOR_RAD, CameraReference
 from elbowroom.monitor.health.drift.sequential import Tally
@@ -19,6 +25,7 @@ from elbowroom.monitor.health.health import CameraHealth, Condition
 from elbowroom.sensing import DepthFrame
 
 GATE_M = 0.20
+PRIOR = Prior(turn=TURN_PRIOR_RAD, move=MOVE_PRIOR_M)
 SIGMAS = 3.0
 LEAST_SEEN = 60
 """So many spots must be in view for a frame to say anything."""
@@ -122,11 +129,9 @@ class CameraWatch:
                 f"watch: frame of {name} is {image.shape[1]} x {image.shape[0]} pixels, its reference "
                 f"{self.reference.width} x {self.reference.height}"
             )
-        counted, shift, said = self._listen(frame, self._memory)
-        within, nearer, farther, lost = (int(number) for number in counted)
+        (within, nearer, farther, lost), shift, support = self._listen(frame, self._memory)
         total = len(self.reference.pixel)
-        speaks_for, against, fits_still, fits_moved = (float(share) for share in said)
-        fits = max(fits_still, fits_moved) * within
+        fits = max(support.fits_still, support.fits_moved) * within
         seen, hidden = fits / total, (nearer + lost) / total
         if lost >= COVERED_SHARE * total:
             return CameraHealth(name, Condition.BLIND, None, seen, hidden)
@@ -138,25 +143,19 @@ class CameraWatch:
         if fits < CHANGED_FIT * (within + farther):
             return CameraHealth(name, Condition.CHANGED, None, seen, hidden)
         moved = (
-            speaks_for > max(FOR_OVER_AGAINST * against, LEAST_FOR)
-            and fits_moved >= LEAST_FIT
+            support.speaks_for > max(FOR_OVER_AGAINST * support.against, LEAST_FOR)
+            and support.fits_moved >= LEAST_FIT
             and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
         )
         still = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.STILL
         return CameraHealth(name, Condition.MOVED if moved else still, shift, seen, hidden)
 
-    def _listen(
-        self, frame: DepthFrame, memory: Memory
-    ) -> tuple[NDArray[np.int64], Shift, NDArray[np.float64]]:
-        """Adds a frame to a memory: numbers of spots, the shift that fits, and what speaks for it (`fit_motion`)."""
-        counted = np.empty(4, dtype=np.int64)
-        fitted = Fitted(np.empty(6), np.empty((6, 6)), np.empty(4))
-        limits = Limits(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
-        prior = Prior(TURN_PRIOR_RAD, MOVE_PRIOR_M)
-        judge_image(frame.depth_m.ravel(), self._spots, limits, prior, memory, counted, fitted)
-        motion, covariance, said = fitted
-        shift = Shift.of(motion, covariance) if self._part is None else self._part.shift(motion, covariance)
-        return counted, shift, said
+    def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[Counts, Shift, Support]:
+        """Adds a frame to a memory: numbers of spots, the shift that fits, and what speaks for it."""
+        gate = Gate(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
+        counts, fit = judge_image(frame.depth_m.ravel(), self._spots, gate, PRIOR, memory)
+        by_fit = Shift.of if self._part is None else self._part.shift
+        return counts, by_fit(fit.motion, fit.covariance), fit.support
 
     def _count(self, frame: DepthFrame, now: CameraHealth, stamp_ns: int) -> None:
         """Lets the tests hear what the frame said."""
