@@ -1,6 +1,7 @@
 import importlib.util
 import itertools
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.machine import body_words
 from elbowroom.machine.c_arm import CEILING_C_ARM_URDF, UNCHECKED_LINKS, ceiling_c_arm
 
-BUILD = CEILING_C_ARM_URDF.parents[1] / "build_ceiling_c_arm.py"
+BUILD = Path(__file__).resolve().parents[2] / "assets" / "ceiling_c_arm" / "build.py"
 ISOCENTRE = np.array([0, 0, 1.1])
 
 
@@ -22,7 +23,7 @@ def c_arm():
 
 @pytest.fixture(scope="module")
 def builder():
-    spec = importlib.util.spec_from_file_location("build_ceiling_c_arm", BUILD)
+    spec = importlib.util.spec_from_file_location("build", BUILD)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from elbowroom.errors import MachineError
-from elbowroom.geometry import VoxelGrid, bits
+from elbowroom.geometry import VoxelGrid, bits, parallel
 from elbowroom.machine import Machine, body_samples, body_words, default_growth
 from elbowroom.machine import body as body_module
 from elbowroom.machine.samples import surface_points
@@ -93,7 +93,10 @@ def test_a_solid_is_covered_to_its_middle(arm):
 def test_threads_leave_the_same_bits(arm, monkeypatch):
     monkeypatch.setattr(body_module, "POINTS_PER_THREAD", 100)
     grid = grid_about(0.04)
-    one, many = (body_words(arm, AT_REST, grid, threads=n) for n in (1, 3))
+    with parallel.threads(1):
+        one = body_words(arm, AT_REST, grid)
+    with parallel.threads(3):
+        many = body_words(arm, AT_REST, grid)
     assert np.array_equal(one, many)
     assert one.any()
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from elbowroom.errors import CameraError, FrameError, MachineError
-from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, bits
+from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, bits, parallel
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.machine import Machine, body_words, ceiling_c_arm, explain_frames
 from elbowroom.machine.rasterise import mesh_of, rasterise
@@ -199,7 +199,10 @@ def test_threads_and_cameras_looking_away_change_nothing(arm):
     rng = np.random.default_rng(5)
     depths = [np.float32(rng.uniform(0.3, 2, (c.height, c.width))) for c in cameras]
     where = [{**AT_REST, "slide": s} for s in (0.0, 0.1, 0.2, 0.3)]
-    one, many = (explain_frames(arm, cameras, depths, where, grid=GRID, threads=n) for n in (1, 3))
+    with parallel.threads(1):
+        one = explain_frames(arm, cameras, depths, where, grid=GRID)
+    with parallel.threads(3):
+        many = explain_frames(arm, cameras, depths, where, grid=GRID)
     assert np.array_equal(one.unexplained_words, many.unexplained_words)
     for n, camera in enumerate(cameras):
         alone = explain_frames(arm, [camera], [depths[n]], [where[n]])

@@ -16,7 +16,7 @@ from elbowroom.placement.optimisation import Goal
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera, rehearse
 from elbowroom.placement.scenes import random_scenes
 from elbowroom.placement.solver.scene_layout import SceneLayout, SceneModel
-from elbowroom.reconstruct import merge, resolve
+from elbowroom.reconstruct import Terms, merge, resolve
 from elbowroom.simulate import true_occupancy
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
@@ -124,7 +124,7 @@ def test_pixels_are_joined_so_that_the_image_reaches_as_far():
 @pytest.mark.parametrize(
     ("settings", "goal", "drop", "words"),
     [
-        (Settings(GRID, rule="majority"), Goal(50.0), False, "knows rule three, the site has majority"),
+        (Settings(GRID, Terms("majority")), Goal(50.0), False, "knows rule three, the site has majority"),
         (Settings(GRID), Goal(100.0), False, "100 % is out of reach: all 16 candidates together see through"),
         (Settings(GRID), Goal(50.0), True, "no scene"),
     ],

@@ -14,7 +14,7 @@ from elbowroom.placement.detection import capability, intrusion_mm, save_capabil
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera, rehearse
 from elbowroom.placement.scenes import random_scenes
 from elbowroom.placement.verification import verify
-from elbowroom.reconstruct import merge, reconstruct, resolve
+from elbowroom.reconstruct import Terms, merge, reconstruct, resolve
 from elbowroom.sensing import NoiseModel
 from elbowroom.simulate import render, true_occupancy, wall_cameras
 from elbowroom.site import Site
@@ -39,7 +39,7 @@ def moments(site):
 @pytest.fixture(scope="module")
 def settings(site):
     machine = site.machine()
-    return Settings(GRID, machine=machine, motions=site.motions(machine)[:2], margin=site.margin())
+    return Settings(GRID, Terms(margin=site.margin()), machine, site.motions(machine)[:2])
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +70,7 @@ def test_evidence_camera_by_camera_decides_as_reconstruct_does(cameras, moments,
     moment = moments[0]
     parts = evidence_by_camera(cameras, moment, settings, seed=5)
     merged = resolve(
-        merge(parts), cameras, margin=settings.margin, machine=settings.machine, joints=moment.joints
+        merge(parts), cameras, margin=settings.terms.margin, machine=settings.machine, joints=moment.joints
     )
     whole = reconstruct(
         GRID,
@@ -78,8 +78,8 @@ def test_evidence_camera_by_camera_decides_as_reconstruct_does(cameras, moments,
         render(cameras, moment, seed=5),
         settings.machine,
         moment.joints,
-        margin=settings.margin,
-        explain_tolerance_m=settings.explain_tolerance_m,
+        margin=settings.terms.margin,
+        explain_tolerance_m=settings.terms.explain_tolerance_m,
     )
     assert (merged.free_words == whole.free_words).all()
 
@@ -93,7 +93,7 @@ def test_what_a_camera_is_worth_is_what_leaving_it_out_and_losing_it_do(cameras,
     truly = ~truth.occupied & ~truth.machine
 
     def found(of, seen):
-        space = reconstruct(GRID, of, seen, settings.machine, moment.joints, margin=settings.margin)
+        space = reconstruct(GRID, of, seen, settings.machine, moment.joints, margin=settings.terms.margin)
         return 100 * (space.free & truly).sum() / truly.sum()
 
     whole = found(cameras, frames)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.geometry import VoxelGrid, bits
+from elbowroom.geometry import VoxelGrid, bits, parallel
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.reconstruct import LAWFUL, carve, merge, reconstruct, resolve
@@ -117,10 +117,12 @@ def test_veto_is_rightly_called_unlawful():
 def test_order_grouping_and_threads_leave_the_same_bits(seed, detail, complete):
     rng, grid, cameras, frames = a_room(seed)
     same = {"detail": detail, "complete": complete}
-    whole = carve(grid, cameras, frames, threads=1, **same)
+    with parallel.threads(1):
+        whole = carve(grid, cameras, frames, **same)
     order = rng.permutation(len(cameras))
     split = int(rng.integers(len(cameras) + 1))
-    again = carve(grid, [cameras[n] for n in order], frames[::-1], threads=3, **same)
+    with parallel.threads(3):
+        again = carve(grid, [cameras[n] for n in order], frames[::-1], **same)
     groups = [order[:split], order[split:]]
     merged = merge(
         [carve(grid, [cameras[n] for n in g], [frames[n] for n in g], **same) for g in groups if len(g)]

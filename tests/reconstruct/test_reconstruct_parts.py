@@ -9,9 +9,10 @@ from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.reconstruct import carve, reconstruct, resolve
-from elbowroom.reconstruct.free_space import Source
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.parts import PARTS, is_free_in_parts
+from elbowroom.reconstruct.parts import PARTS
+from elbowroom.reconstruct.source import ImageSource
+from elbowroom.reconstruct.terms import Terms
 from reference import reconstruct_scenes as scenes
 from reference.reconstruct_pixel import THROUGH, say_of_voxel
 from reference.reconstruct_views import images_of, says_of
@@ -54,8 +55,9 @@ def with_specks(rng, frame):
 
 def space_of(grid, cameras, frames, margin, model):
     evidence = carve(grid, cameras, frames, margin=margin, model_depth=model)
-    source = Source(room_images(cameras, frames), margin, "pixel", "three", model)
-    return resolve(evidence, cameras, margin=margin, source=source)
+    space = resolve(evidence, cameras, margin=margin)
+    images = room_images(cameras, frames)
+    return replace(space, source=ImageSource(images, model, Terms(margin=margin), space.free_words))
 
 
 def overridable(space):
@@ -79,7 +81,7 @@ def test_a_voxel_is_free_in_parts_as_its_parts_one_by_one_say(seed):
     for index in rng.permutation(voxels)[:12]:
         says = says_of(parts_of(grid, index), images, say_of_voxel)
         expected = (says & THROUGH).astype(bool).any(axis=0).all()
-        assert is_free_in_parts(space, tuple(index)) == expected
+        assert space.is_free_in_parts(tuple(index)) == expected
 
 
 @pytest.mark.parametrize("seed", range(1, 60, 2))
@@ -89,7 +91,7 @@ def test_order_of_cameras_does_not_matter(seed):
     order = rng.permutation(len(cameras))
     other = space_of(grid, [cameras[n] for n in order], frames, Margin(), model)
     for index in overridable(space):
-        assert is_free_in_parts(space, tuple(index)) == is_free_in_parts(other, tuple(index))
+        assert space.is_free_in_parts(tuple(index)) == other.is_free_in_parts(tuple(index))
 
 
 @pytest.mark.parametrize("aside", [0.0, 0.9, 1.6])
@@ -103,7 +105,7 @@ def test_a_camera_close_by_sees_all_parts_that_are_in_its_image(aside):
         own = None if own_px is None else Margin(lateral_px=own_px)
         space = space_of(grid, [replace(camera, margin=own)], [frame], Margin(lateral_px=lateral_px), {})
         assert space.free.all()
-        assert is_free_in_parts(space, (0, 0, 0))
+        assert space.is_free_in_parts((0, 0, 0))
 
 
 def test_an_explained_pixel_is_free_up_to_the_model_in_parts_too():
@@ -115,18 +117,18 @@ def test_an_explained_pixel_is_free_up_to_the_model_in_parts_too():
         model = {"c": np.full_like(depth, model_m)}
         space = space_of(grid, [camera], [frame], Margin(), model)
         assert space.free.all() == free
-        assert is_free_in_parts(space, (0, 0, 0)) == free
+        assert space.is_free_in_parts((0, 0, 0)) == free
 
 
 def test_a_voxel_that_anybody_disputes_is_not_free_in_parts():
     _, grid, cameras, frames, _, model = a_room(4)
     space = space_of(grid, cameras, frames, Margin(lateral_px=0.0), model)
-    free = [tuple(i) for i in overridable(space) if is_free_in_parts(space, tuple(i))]
+    free = [tuple(i) for i in overridable(space) if space.is_free_in_parts(tuple(i))]
     for index in free:
         disputed = np.zeros(grid.shape, dtype=bool)
         disputed[index] = True
         other = replace(space, disputed_words=bits.pack(disputed, grid))
-        assert [i for i in free if not is_free_in_parts(other, i)] == [index]
+        assert [i for i in free if not other.is_free_in_parts(i)] == [index]
 
 
 def test_what_no_camera_was_asked_of_is_not_free_in_parts():
@@ -140,8 +142,8 @@ def test_what_no_camera_was_asked_of_is_not_free_in_parts():
         margin=Margin(lateral_px=0.0),
         focus=np.zeros(full.free_words.shape, dtype=bool),
     )
-    assert any(is_free_in_parts(full, tuple(index)) for index in overridable(full))
-    assert not any(is_free_in_parts(nothing, tuple(index)) for index in overridable(nothing))
+    assert any(full.is_free_in_parts(tuple(index)) for index in overridable(full))
+    assert not any(nothing.is_free_in_parts(tuple(index)) for index in overridable(nothing))
 
 
 def test_some_voxels_are_free_in_parts_and_some_are_not():
@@ -149,7 +151,7 @@ def test_some_voxels_are_free_in_parts_and_some_are_not():
     for seed in range(20):
         _, grid, cameras, frames, _, model = a_room(seed)
         space = space_of(grid, cameras, frames, Margin(lateral_px=0.0), model)
-        answers += [is_free_in_parts(space, tuple(index)) for index in overridable(space)]
+        answers += [space.is_free_in_parts(tuple(index)) for index in overridable(space)]
     assert 5 < sum(answers) < len(answers) - 5
 
 
@@ -163,7 +165,7 @@ def test_no_voxel_that_a_ball_touches_is_free_in_parts():
         for index in overridable(space):
             if touched[tuple(index)]:
                 asked += 1
-                assert not is_free_in_parts(space, tuple(index))
+                assert not space.is_free_in_parts(tuple(index))
     assert asked > 100
 
 
@@ -176,26 +178,29 @@ def test_less_evidence_never_makes_a_voxel_free_in_parts(seed):
     full = reconstruct(grid, cameras, frames, margin=margin, **same)
     weak = reconstruct(grid, cameras, fewer, margin=wider, **same)
     for index in overridable(weak):
-        if is_free_in_parts(weak, tuple(index)):
-            assert full.free[tuple(index)] or is_free_in_parts(full, tuple(index))
+        if weak.is_free_in_parts(tuple(index)):
+            assert full.free[tuple(index)] or full.is_free_in_parts(tuple(index))
 
 
 def test_without_its_frames_or_by_another_test_or_rule_nothing_is_free_in_parts():
     _, grid, cameras, frames, _, model = a_room(4)
     space = space_of(grid, cameras, frames, Margin(lateral_px=0.0), model)
-    free = [tuple(i) for i in overridable(space) if is_free_in_parts(space, tuple(i))]
+    free = [tuple(i) for i in overridable(space) if space.is_free_in_parts(tuple(i))]
     assert free
-    for source in (None, replace(space.source, detail="footprint"), replace(space.source, rule="majority")):
-        assert not is_free_in_parts(replace(space, source=source), free[0])
+    others = ({"detail": "footprint"}, {"rule": "majority"}, {"look_again": False})
+    for other in others:
+        terms = replace(space.source.terms, **other)
+        assert not replace(space, source=replace(space.source, terms=terms)).is_free_in_parts(free[0])
+    assert not space.released().is_free_in_parts(free[0])
 
 
 def test_where_somebody_blocked_more_nothing_is_free_in_parts():
     _, grid, cameras, frames, _, model = a_room(4)
     space = space_of(grid, cameras, frames, Margin(lateral_px=0.0), model)
-    free = [tuple(i) for i in overridable(space) if is_free_in_parts(space, tuple(i))]
+    free = [tuple(i) for i in overridable(space) if space.is_free_in_parts(tuple(i))]
     kept_out = np.zeros(grid.shape, dtype=bool)
     kept_out[:, :, :2] = True
     zone = replace(space, free_words=space.free_words & ~bits.pack(kept_out, grid))
-    assert free and not any(is_free_in_parts(zone, index) for index in free)
+    assert free and not any(zone.is_free_in_parts(index) for index in free)
     more = replace(space, free_words=space.free_words | bits.pack(kept_out, grid))
-    assert any(is_free_in_parts(more, index) for index in free if not kept_out[index])
+    assert any(more.is_free_in_parts(index) for index in free if not kept_out[index])

@@ -12,7 +12,7 @@ from reference.reconstruct_pyramid import bounds_of
 def images_of(grid, cameras, frames, margin, model_depth=None):
     """The texels of all cameras, which test_reconstruct_pyramid.py compares with twins of their own."""
     layout = layout_of(grid, tuple(cameras), margin)
-    views, _ = fill(layout, room_images(cameras, frames), model_depth or {}, 1)
+    views, _ = fill(layout, room_images(cameras, frames), model_depth or {})
     images = []
     for c, camera in enumerate(cameras):
         own = slice(views.texel_first[c], views.texel_first[c + 1])

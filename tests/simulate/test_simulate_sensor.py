@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from elbowroom.errors import CameraError, InputError
-from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.geometry import DepthCamera, Intrinsics, parallel
 from elbowroom.sensing import NOISE_PRESETS, NoiseModel
 from elbowroom.sensing.rays import pixel_rays
 from elbowroom.simulate import Moment, Solid, render, wall_cameras
@@ -160,8 +160,10 @@ def test_floor_seen_at_a_grazing_angle_has_no_flying_pixels():
 
 def test_same_seed_and_time_leave_the_same_bits_whatever_the_threads_and_cameras(room):
     cameras = wall_cameras(5, width=80, height=60, noise=NOISE_PRESETS["tof"])
-    first = render(cameras, room.at(2.0), seed=3, threads=1)
-    again = render(cameras[::-1], room.at(2.0), seed=3, threads=2)[::-1]
+    with parallel.threads(1):
+        first = render(cameras, room.at(2.0), seed=3)
+    with parallel.threads(2):
+        again = render(cameras[::-1], room.at(2.0), seed=3)[::-1]
     for a, b in zip(first, again, strict=True):
         assert a.camera == b.camera
         assert a.stamp_ns == 2_000_000_000

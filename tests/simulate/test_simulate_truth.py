@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from elbowroom.geometry import VoxelGrid
+from elbowroom.geometry import VoxelGrid, parallel
 from elbowroom.simulate import Moment, Solid, true_occupancy
 from elbowroom.simulate.kernels import touch as kernels
 from elbowroom.simulate.shapes import box, capsule, cylinder, ellipsoid, join
@@ -50,8 +50,8 @@ def test_triangle_touches_the_boxes_that_clipping_leaves_it_in(triangle):
 def test_boxes_below_no_shrinking_are_grown_and_what_is_marked_keeps_its_mark(triangle):
     found = np.zeros(SHAPE, dtype=np.uint16)
     found[::2] = 7
-    kernels.touch_surface(triangle, GRID.lower_m, EDGE, -0.3 * EDGE, found, 300)
-    touched = naive.touched(triangle, GRID.lower_m, EDGE, SHAPE, -0.3 * EDGE)
+    kernels.touch_surface(triangle, GRID.lower_m, EDGE, -0.3137 * EDGE, found, 300)
+    touched = naive.touched(triangle, GRID.lower_m, EDGE, SHAPE, -0.3137 * EDGE)
     assert (found[::2] == 7).all()
     assert (found[1::2] == 300 * touched[1::2]).all()
 
@@ -147,8 +147,10 @@ def test_random_points_on_surfaces_lie_in_occupied_voxels(room, grid):
 
 
 def test_machine_is_kept_apart_and_threads_leave_the_same_voxels(room, grid):
-    alone = true_occupancy(grid, room.at(3.0), threads=1)
-    both = true_occupancy(grid, room.at(3.0), threads=2)
+    with parallel.threads(1):
+        alone = true_occupancy(grid, room.at(3.0))
+    with parallel.threads(2):
+        both = true_occupancy(grid, room.at(3.0))
     assert (alone.occupied == both.occupied).all()
     assert (alone.machine == both.machine).all()
     assert alone.machine.any()

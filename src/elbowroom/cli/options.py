@@ -4,14 +4,13 @@ import math
 import os
 import re
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
+from elbowroom import choices
 from elbowroom.errors import InputError
 
-RuleName = Literal["three", "majority", "veto", "any"]
-DetailName = Literal["footprint", "pixel", "point"]
 SitePath = Annotated[
     Path, typer.Argument(metavar="SITE", help="A site file (YAML); elbowroom site new writes one.")
 ]
@@ -19,10 +18,11 @@ JsonFile = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the results as JSON: meta and rows.")
 ]
 Rule = Annotated[
-    RuleName | None, typer.Option("--rule", help="How cameras are combined. Default: the site's.")
+    choices.Rule | None, typer.Option("--rule", help="How cameras are combined. Default: the site's.")
 ]
 Detail = Annotated[
-    DetailName | None, typer.Option("--detail", help="How closely images are looked at. Default: the site's.")
+    choices.Detail | None,
+    typer.Option("--detail", help="How closely images are looked at. Default: the site's."),
 ]
 VoxelSize = Annotated[
     float | None,

@@ -4,15 +4,15 @@ import itertools
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from elbowroom.choices import Detail, Rule
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.motion import Motion
-from elbowroom.reconstruct import Detail, Rule
 from elbowroom.sensing import DepthFrame, JointRecord, Margin
 from elbowroom.site import Site
 from elbowroom.sources import RecordedMoment, moments
@@ -158,10 +158,7 @@ def open_room(
             raise InputError(f"{site.path}: --knock is for simulated rooms; leave it out")
         made = site.cameras()
         scenes = lambda: _recorded(site, joints, in_real_time)  # noqa: E731
-    # the file's words are among those that are allowed: its schema says so
-    return Room(
-        site, grid, made, machine, rule or cast(Rule, site.rule), detail or cast(Detail, site.detail), scenes
-    )
+    return Room(site, grid, made, machine, rule or site.rule, detail or site.detail, scenes)
 
 
 def _simulated(

@@ -1,14 +1,21 @@
-"""Spreads kernels that release the GIL over threads; the parts of work write to places of their own."""
+"""Spreads kernels that release the GIL over threads; the parts of work write to places of their own.
+
+How many threads there are is a property of the pool, not of those who use it: one a core, or as many as `threads` says.
+"""
 
 import os
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from contextvars import ContextVar, copy_context
 from functools import cache
 from typing import TypeVar
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
+
+_said: ContextVar[int | None] = ContextVar("elbowroom_threads", default=None)
 
 
 def default_threads() -> int:
@@ -16,18 +23,39 @@ def default_threads() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+@contextmanager
+def threads(count: int | None) -> Iterator[None]:
+    """Within it, work is spread over so many threads; the results do not depend on it.
+
+    It holds for who enters it and for what is begun in it, not for other threads of the program.
+
+    Args:
+        count: at least 1; None: as many as outside of it.
+    """
+    token = _said.set(_said.get() if count is None else count)
+    try:
+        yield
+    finally:
+        _said.reset(token)
+
+
+def thread_count() -> int:
+    """Over how many threads work is spread here: as `threads` says, or one a core."""
+    return _said.get() or default_threads()
+
+
 @cache
 def _pool(threads: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(max_workers=threads, thread_name_prefix="elbowroom")
 
 
-def spread(work: Callable[[Item], Result], items: Sequence[Item], threads: int | None = None) -> list[Result]:
-    """Does `work` for each item on up to `threads` threads (None: all cores) and returns the results in order.
+def spread(work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
+    """Does `work` for each item on up to `thread_count()` threads and returns the results in order.
 
     The calling thread works as well, and nobody is woken for single items. After an error no further item is begun.
     """
-    threads = min(threads or default_threads(), len(items))
-    if threads <= 1:
+    many = min(thread_count(), len(items))
+    if many <= 1:
         return [work(item) for item in items]
     results: dict[int, Result] = {}
     waiting = deque(enumerate(items))
@@ -44,7 +72,7 @@ def spread(work: Callable[[Item], Result], items: Sequence[Item], threads: int |
             waiting.clear()
             raise
 
-    others = [_pool(threads - 1).submit(go_on) for _ in range(threads - 1)]
+    others = [_pool(many - 1).submit(copy_context().run, go_on) for _ in range(many - 1)]
     try:
         go_on()
     finally:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from elbowroom.errors import MachineError
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.bits import Words
-from elbowroom.geometry.parallel import default_threads, spread
+from elbowroom.geometry.parallel import spread, thread_count
 from elbowroom.machine.kernels.body import mark_balls, mark_points
 from elbowroom.machine.machine import Joints, Machine
 from elbowroom.machine.samples import ROUNDING_M, BodySamples, body_samples
@@ -25,7 +25,6 @@ def body_words(
     joints: Joints,
     grid: VoxelGrid,
     growth_m: float | None = None,
-    threads: int | None = None,
 ) -> Words:
     """The plane of the voxels that the grown body covers.
 
@@ -38,7 +37,6 @@ def body_words(
         joints: one position for each joint, by name [m or rad].
         grid: the watched box.
         growth_m: by how much the body is grown [m], at least a quarter voxel; None: half a voxel.
-        threads: how many to use; None: all cores.
 
     Raises:
         MachineError: joints that are not possible, more than one configuration, or a growth below a quarter
@@ -53,10 +51,8 @@ def body_words(
         raise MachineError(f"body_words takes one position for each joint, got arrays of {len(positions)}")
     world_from_link = machine.world_from_link_array(positions[None])[0]
     total = len(samples.points) + len(samples.interior)
-    shares = min(threads or default_threads(), max(1, total // POINTS_PER_THREAD))
-    planes = spread(
-        lambda share: _mark(samples, world_from_link, grid, growth, share, shares), range(shares), threads
-    )
+    shares = min(thread_count(), max(1, total // POINTS_PER_THREAD))
+    planes = spread(lambda share: _mark(samples, world_from_link, grid, growth, share, shares), range(shares))
     for plane in planes[1:]:
         planes[0] |= plane
     return planes[0]
@@ -73,20 +69,8 @@ def _mark(
     """One share of the samples, on a plane of its own."""
     words, cells = bits.empty(grid), bits.lattice(grid)
     inner = len(samples.interior)
-    mark_balls(
-        samples.points,
-        samples.cluster_start,
-        samples.cluster_stop,
-        samples.cluster_link,
-        samples.cluster_centre,
-        samples.cluster_radius,
-        share,
-        shares,
-        world_from_link,
-        cells,
-        growth_m - ROUNDING_M / 2,
-        words,
-    )
+    reach = growth_m - ROUNDING_M / 2
+    mark_balls(samples.clusters, share, shares, world_from_link, cells, reach, words)
     mark_points(
         samples.interior,
         samples.interior_link,

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from elbowroom.machine.machine import Machine
 
 CEILING_C_ARM_URDF: Path = Path(__file__).parent / "assets" / "ceiling_c_arm" / "ceiling_c_arm.urdf"
-"""Its URDF; `assets/build_ceiling_c_arm.py` writes it and its meshes."""
+"""Its URDF; `assets/ceiling_c_arm/build.py` of the repository writes it and its meshes."""
 UNCHECKED_LINKS = ("rail", "carriage")
 """They hang above the watched grid, under a ceiling at 2.9 m."""
 

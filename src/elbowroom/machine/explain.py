@@ -14,8 +14,8 @@ from elbowroom.geometry.kernels.bits import Lattice
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.body import default_growth
 from elbowroom.machine.buffers import zero_image
-from elbowroom.machine.kernels.draw import View, draw, to_kind
-from elbowroom.machine.kernels.explain import explain
+from elbowroom.machine.kernels.draw import Drawn, View, draw, to_kind
+from elbowroom.machine.kernels.explain import Tolerance, explain
 from elbowroom.machine.kernels.returns import TILE, Around, mark_tiles
 from elbowroom.machine.machine import Joints, Machine
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
@@ -27,7 +27,7 @@ REACH_M = 0.1
 """Returns this much farther from the body are kept as well: it moves between frame and decision [m]."""
 RETURN_SIGMAS = 3.0
 """A return may lie this many sigmas nearer or farther than measured."""
-NO_CELLS = Lattice(0, 0, 0, 0, 0, 0, 0.0, 0.0, 0.0, 1.0)
+NO_CELLS = Lattice(nx=0, ny=0, nz=0, cubes_x=0, cubes_y=0, cubes_z=0, x0=0.0, y0=0.0, z0=0.0, edge=1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,7 +59,6 @@ def explain_frames(
     tolerance_m: float = 0.01,
     tolerance_sigmas: float = 5.5,
     grid: VoxelGrid | None = None,
-    threads: int | None = None,
     growth_m: float | None = None,
 ) -> Explained:
     """Finds the pixels whose measured point lies on the machine's model.
@@ -80,7 +79,6 @@ def explain_frames(
         joints_per_camera: for each camera, joint positions at its frame's time, by name [m or rad].
         tolerance_m, tolerance_sigmas: as above; not the margin of carving.
         grid: for `unexplained_words`; None: without.
-        threads: how many to use; None: all cores.
         growth_m: by how much the body is grown where voxels are cleared [m]; None: half a voxel.
 
     Raises:
@@ -101,20 +99,21 @@ def explain_frames(
     near_body = _Near(machine, grid, growth_m)
     mesh = mesh_of(machine)
     canvases: deque[NDArray[np.float32]] = deque()
+    tolerance = Tolerance(float(tolerance_m), float(tolerance_sigmas))
 
     def explain_one(n: int) -> NDArray[np.float32]:
         view = views[n]
-        inverse, first, last = _spare_canvas(canvases, view)
-        draw(mesh, placed[n], view, inverse, first, last)
-        to_kind(view, inverse, first, last)
+        drawn = _spare_canvas(canvases, view)
+        draw(mesh, placed[n], view, *drawn)
+        to_kind(view, *drawn)
         model = zero_image(view.height, view.width)
         around = near_body.around(view, placed[n], cameras[n].world_from_camera)
-        explain(view, images[n], inverse, first, last, tolerance_m, tolerance_sigmas, model, around)
-        canvases.append(inverse)
+        explain(view, images[n], drawn, tolerance, model, around)
+        canvases.append(drawn.inverse)
         near_body.give_back(around)
         return model
 
-    models = spread(explain_one, range(len(cameras)), threads)
+    models = spread(explain_one, range(len(cameras)))
     return Explained(
         model_depth={camera.name: model for camera, model in zip(cameras, models, strict=True)},
         unexplained_words=near_body.words,
@@ -191,14 +190,10 @@ def _camera_from_links(
     return invert_rigid(np.stack([camera.world_from_camera for camera in cameras]))[:, None] @ placed
 
 
-def _spare_canvas(
-    canvases: deque[NDArray[np.float32]], view: View
-) -> tuple[NDArray[np.float32], NDArray[np.int64], NDArray[np.int64]]:
+def _spare_canvas(canvases: deque[NDArray[np.float32]], view: View) -> Drawn:
     """An empty canvas, on the memory of one that was wiped if there is one of this size."""
     try:
         inverse = canvases.pop()
     except IndexError:
         return canvas(view.height, view.width)
-    if inverse.shape != (view.height, view.width):
-        return canvas(view.height, view.width)
-    return inverse, np.full(view.height, view.width, dtype=np.int64), np.full(view.height, -1, dtype=np.int64)
+    return canvas(view.height, view.width, inverse if inverse.shape == (view.height, view.width) else None)

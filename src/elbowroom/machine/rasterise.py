@@ -10,7 +10,7 @@ from elbowroom.errors import CameraError
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.machine.buffers import zero_image
-from elbowroom.machine.kernels.draw import Mesh, View, draw, to_kind
+from elbowroom.machine.kernels.draw import Drawn, Mesh, View, draw, to_kind
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Joints, Machine
 
@@ -34,9 +34,10 @@ def rasterise(machine: Machine, camera: DepthCamera, joints: Joints) -> NDArray[
     """
     view = view_of(camera)
     world_from_link = machine.world_from_link_array(np.atleast_2d(machine.positions(joints)))[0]
-    inverse, first, last = canvas(camera.height, camera.width)
-    draw(mesh_of(machine), camera.camera_from_world @ world_from_link, view, inverse, first, last)
-    to_kind(view, inverse, first, last)
+    drawn = canvas(camera.height, camera.width)
+    draw(mesh_of(machine), camera.camera_from_world @ world_from_link, view, *drawn)
+    to_kind(view, *drawn)
+    inverse: NDArray[np.float32] = drawn.inverse
     with np.errstate(divide="ignore"):
         return np.float32(1.0) / inverse
 
@@ -51,27 +52,32 @@ def view_of(camera: DepthCamera) -> View:
         raise CameraError(f"camera {camera.name}: has distortion; bring image and camera to a pinhole first")
     k, noise = camera.intrinsics, camera.noise or NoiseModel(0.0)
     return View(
-        int(camera.width),
-        int(camera.height),
-        float(k.fx),
-        float(k.fy),
-        float(k.cx),
-        float(k.cy),
-        camera.depth_kind == "radial",
-        float(camera.min_depth_m),
-        float(camera.max_depth_m),
-        float(noise.constant_m),
-        float(noise.linear),
-        float(noise.quadratic),
-        float(noise.offset_m),
-        bool(camera.flying_pixels),
+        width=int(camera.width),
+        height=int(camera.height),
+        fx=float(k.fx),
+        fy=float(k.fy),
+        cx=float(k.cx),
+        cy=float(k.cy),
+        radial=camera.depth_kind == "radial",
+        min_depth=float(camera.min_depth_m),
+        max_depth=float(camera.max_depth_m),
+        constant=float(noise.constant_m),
+        linear=float(noise.linear),
+        quadratic=float(noise.quadratic),
+        offset=float(noise.offset_m),
+        flying=bool(camera.flying_pixels),
     )
 
 
-def canvas(height: int, width: int) -> tuple[NDArray[np.float32], NDArray[np.int64], NDArray[np.int64]]:
-    """An empty image of inverse depth, and the first and last column drawn in each of its rows: none."""
-    inverse = zero_image(height, width)
-    return inverse, np.full(height, width, dtype=np.int64), np.full(height, -1, dtype=np.int64)
+def canvas(height: int, width: int, inverse: NDArray[np.float32] | None = None) -> Drawn:
+    """An empty image of inverse depth, nothing drawn in any of its rows.
+
+    Args:
+        height, width: of the image [px].
+        inverse: zeros of this shape to draw on; None: new ones.
+    """
+    empty = zero_image(height, width) if inverse is None else inverse
+    return Drawn(empty, np.full(height, width, dtype=np.int64), np.full(height, -1, dtype=np.int64))
 
 
 def mesh_of(machine: Machine) -> Mesh:

@@ -12,6 +12,7 @@ from scipy import ndimage
 from elbowroom.errors import MachineError
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.kernels import samples as kernels
+from elbowroom.machine.kernels.body import Clusters
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Machine
 
@@ -63,6 +64,18 @@ class BodySamples:
     cluster_radius: NDArray[np.float64]
     interior: NDArray[np.float32]
     interior_link: NDArray[np.int32]
+
+    @property
+    def clusters(self) -> Clusters:
+        """The surface samples as kernels take them."""
+        return Clusters(
+            self.points,
+            self.cluster_start,
+            self.cluster_stop,
+            self.cluster_link,
+            self.cluster_centre,
+            self.cluster_radius,
+        )
 
 
 class _LinkSamples(NamedTuple):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from elbowroom.choices import Detail, Rule
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
@@ -14,7 +15,7 @@ from elbowroom.machine import Machine
 from elbowroom.monitor.health.drift.watch import Watch
 from elbowroom.monitor.result import CycleResult
 from elbowroom.motion import Cause, Level, Motion, Verdict, blocks_in_reach, check_motions
-from elbowroom.reconstruct import Detail, Rule, reconstruct
+from elbowroom.reconstruct import reconstruct
 from elbowroom.sensing import DepthFrame, JointRecord
 from elbowroom.sensing.snapshot import young_enough
 
@@ -31,7 +32,6 @@ class Cycle:
         rule, detail, margin: as of `reconstruct`.
         max_age_ns: frames older than this are not used [ns]; None: no limit.
         explain_tolerance_m: as of `reconstruct` [m].
-        threads: None: all cores.
         focused: only the space where the motions can go is looked at, all other space stays unseen.
         watch: hears the frames of each pass, and stops every motion once it found a camera or the machine where it
             should not be; None: nobody watches.
@@ -49,7 +49,6 @@ class Cycle:
     margin: Margin = field(default_factory=Margin)
     max_age_ns: int | None = None
     explain_tolerance_m: float = 0.01
-    threads: int | None = None
     focused: bool = True
     watch: Watch | None = None
     sequence: int = field(default=0, init=False)
@@ -101,11 +100,10 @@ class Cycle:
                 focus=blocks_in_reach(self.grid, self.machine, joints, self.motions)
                 if self.focused
                 else None,
-                threads=self.threads,
                 timer=lambda stage: _timed(stage, stage_ms),
             )
             with _timed("motion", stage_ms):
-                given = _usable(check_motions(space, self.machine, joints, self.motions, self.threads))
+                given = _usable(check_motions(space, self.machine, joints, self.motions))
         except Exception as error:  # at this border a fault becomes a decision: stop
             space, given, health = None, {}, None
             fault = f"{type(error).__name__}: {error}"

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import MachineError
-from elbowroom.geometry import bits
-from elbowroom.geometry.parallel import spread
+from elbowroom.geometry import bits, parallel
 from elbowroom.machine import Machine
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.course import Way, way_of
@@ -20,7 +19,6 @@ from elbowroom.motion.skin import skin_of
 from elbowroom.motion.sweep import Block, cluster_speeds, find_block, volume_of
 from elbowroom.motion.verdict import Cause, Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
-from elbowroom.reconstruct.parts import is_free_in_parts
 
 CAUSES = (Cause.SURFACE, Cause.OUTSIDE_GRID, Cause.BLIND, Cause.UNSEEN)
 """Of a block, by the numbers that the kernel gives them."""
@@ -37,7 +35,7 @@ def check_motion(
     been taken out of the space (`reconstruct` does it; `FreeSpace.without`); a body that stands in blocked
     space has a free travel of 0. What lies outside the grid is blocked. Joint limits cap the free travel, not
     the level. A voxel in the way that is unseen, because no one camera sees all of it, is looked at again in parts if
-    the space has its frames (`reconstruct.parts`).
+    the space still has what it was made of (`FreeSpace.is_free_in_parts`).
 
     Args:
         space: the free space.
@@ -51,7 +49,7 @@ def check_motion(
     Raises:
         MachineError: an unknown joint, a position that is missing, not finite, or out of the joint's limits.
     """
-    return check_motions(space, machine, joints, [motion], threads=1)[0]
+    return check_motions(space, machine, joints, [motion])[0]
 
 
 def check_motions(
@@ -66,15 +64,16 @@ def check_motions(
     Args:
         space, machine, joints: as for `check_motion`.
         motions: what to check.
-        threads: how many to use; None: one for each core.
+        threads: how many to use; None: one for each core. The result does not depend on it.
 
     Raises:
         MachineError: as for `check_motion`.
     """
     start = machine.positions(joints)
     ways = [way_of(machine, start, motion) for motion in motions]
-    scene = _Scene.of(space, machine, start)
-    return spread(lambda pair: scene.verdict(*pair), list(zip(motions, ways, strict=True)), threads)
+    with parallel.threads(threads):
+        scene = _Scene.of(space, machine, start)
+        return parallel.spread(lambda pair: scene.verdict(*pair), list(zip(motions, ways, strict=True)))
 
 
 def joint_motions(
@@ -160,11 +159,11 @@ class _Scene:
 
     def _is_free_in_parts(self, block: Block) -> bool:
         """Whether a block is a voxel that nobody disputes and that is free part by part."""
-        if CAUSES[block.kind] is not Cause.UNSEEN or self.space.source is None:
+        if CAUSES[block.kind] is not Cause.UNSEEN:
             return False
         index = _index_of(block, self.space)
         if index not in self.looked_at:
-            self.looked_at[index] = is_free_in_parts(self.space, index)
+            self.looked_at[index] = self.space.is_free_in_parts(index)
         return self.looked_at[index]
 
 

@@ -61,17 +61,7 @@ def _list(
     written = 0
     for link in np.unique(samples.cluster_link):
         first, last = np.searchsorted(samples.cluster_link, [link, link + 1])
+        place, reach = near[written:] if fill else near, samples.cover_m + ROUNDING_M
         written += list_patches(
-            samples.points,
-            samples.cluster_start,
-            samples.cluster_stop,
-            samples.cluster_centre,
-            samples.cluster_radius,
-            samples.cover_m + ROUNDING_M,
-            first,
-            last,
-            triangles,
-            stops[link : link + 2],
-            near[written:] if fill else near,
-            fill,
+            samples.clusters, reach, first, last, triangles, stops[link : link + 2], place, fill
         )

@@ -9,7 +9,8 @@ from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED, SLIDES
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels.sweep import Skin, bound_speeds, first_block
+from elbowroom.motion.kernels import sweep as kernels
+from elbowroom.motion.kernels.sweep import Skin, bound_speeds
 from elbowroom.motion.kernels.volume import Volume, block, gather_corners
 from elbowroom.reconstruct.free_space import FreeSpace
 
@@ -88,18 +89,10 @@ def find_block(
         return None
     finest = grid.voxel_size_m * FINEST_STEP_IN_VOXELS
     halvings = int(np.clip(np.ceil(np.log2(way.length * speeds.max() / finest)), 0, MOST_HALVINGS))
-    index, kind, cluster, place = first_block(
-        machine.tree,
-        machine.world_from_base,
-        way.course,
-        way.length,
-        skin,
-        speeds,
-        moving,
-        volume,
-        bits.lattice(grid),
-        max(0, halvings - SAMPLE_HALVINGS),
-        halvings,
+    moved = kernels.Way(machine.tree, machine.world_from_base, way.course, way.length)
+    cells, of_clusters = bits.lattice(grid), max(0, halvings - SAMPLE_HALVINGS)
+    index, kind, cluster, place = kernels.first_block(
+        moved, skin, speeds, moving, volume, cells, (of_clusters, halvings)
     )
     if index < 0:
         return None

@@ -75,13 +75,12 @@ def intrusion_mm(detection_mm: NDArray[np.floating]) -> NDArray[np.float32]:
     return np.where(d <= FINE_MM, fine, np.where(d <= COARSE_MM, 850.0, np.inf)).astype(np.float32)
 
 
-def capability(found: Verification, views: int = 1, *, threads: int | None = None) -> Capability:
+def capability(found: Verification, views: int = 1) -> Capability:
     """The smallest object that at least so many cameras see, in every voxel.
 
     Args:
         found: which camera sees which voxel.
         views: so many cameras must see it; 1: that it is not missed altogether; 3: as many as overrule each other.
-        threads: None: all cores.
 
     Raises:
         InputError: fewer than one view, or more than there are cameras.
@@ -108,7 +107,7 @@ def capability(found: Verification, views: int = 1, *, threads: int | None = Non
         parts[1][i] = 1000 * np.take_along_axis(sizes[:, 0], order, axis=0)[0]
         parts[2][i] = 1000 * np.take_along_axis(sizes[:, 1], order, axis=0)[0]
 
-    spread(one, range(grid.shape[0]), threads)
+    spread(one, range(grid.shape[0]))
     return Capability(grid, views, parts[0], parts[1], parts[2], found.asked)
 
 

@@ -72,8 +72,10 @@ def optimise_in_use(
         InputError: no candidates, no scenes, another rule, or a share that all candidates together do not find.
     """
     begun = time.perf_counter()
-    if settings.rule != "three":
-        raise InputError(f"placement: optimising by scenes knows rule three, the site has {settings.rule}")
+    if settings.terms.rule != "three":
+        raise InputError(
+            f"placement: optimising by scenes knows rule three, the site has {settings.terms.rule}"
+        )
     if not scenes:
         raise InputError("placement: no scene, at least one is needed")
     free = free_candidates(candidates, existing)

@@ -1,7 +1,7 @@
 """What a placement means in use: random scenes carved with the code that will run, beside their exact truth."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
-from elbowroom.geometry.margin import Margin
-from elbowroom.machine import Machine, explain_frames
+from elbowroom.machine import Machine
 from elbowroom.motion import Level, Motion, check_motions
-from elbowroom.reconstruct import Evidence, FreeSpace, carve, merge, resolve
-from elbowroom.reconstruct.carve import Detail
+from elbowroom.reconstruct import Evidence, FreeSpace, Terms, merge
+from elbowroom.reconstruct.carve import carve_images
+from elbowroom.reconstruct.explained import explain
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.resolve import Rule, needs_complete
+from elbowroom.reconstruct.resolve import decide
+from elbowroom.sensing import Snapshot
 from elbowroom.simulate import Moment, render, true_occupancy
 
 
@@ -25,16 +26,13 @@ class Settings:
 
     Args:
         grid: the watched box.
-        rule, detail, margin, explain_tolerance_m: as of `reconstruct`.
+        terms: how strictly space is judged.
         machine: None: the bare room.
         motions: of the machine, that are judged in every scene.
     """
 
     grid: VoxelGrid
-    rule: Rule = "three"
-    detail: Detail = "pixel"
-    margin: Margin | None = None
-    explain_tolerance_m: float = 0.01
+    terms: Terms = field(default_factory=Terms)
     machine: Machine | None = None
     motions: tuple[Motion, ...] = ()
 
@@ -148,15 +146,7 @@ def _scene(
     count = max(_count(truly_free), 1)
 
     def share(evidence: Evidence, of: Sequence[DepthCamera]) -> tuple[FreeSpace, float]:
-        space = resolve(
-            evidence,
-            of,
-            rule=settings.rule,
-            detail=settings.detail,
-            margin=settings.margin,
-            machine=machine,
-            joints=moment.joints if machine is not None else None,
-        )
+        space = decide(evidence, of, machine, moment.joints, settings.terms)
         return space, 100.0 * _count(space.free_words & truly_free) / count
 
     space, free_pct = share(merge(parts), cameras)
@@ -185,36 +175,23 @@ def evidence_by_camera(
 ) -> list[Evidence]:
     """What each camera knows of a scene as `reconstruct` carves it; merged, it is what `reconstruct` decides by."""
     frames = render(cameras, moment, seed=seed)
-    model_depth, unexplained = {}, None
-    if settings.machine is not None:
-        images = room_images(cameras, frames)
-        explained = explain_frames(
-            settings.machine,
-            images.cameras,
-            [images.least_m[camera.name] for camera in images.cameras],
-            [moment.joints] * len(cameras),
-            tolerance_m=settings.explain_tolerance_m,
-            grid=settings.grid,
-        )
-        model_depth, unexplained = explained.model_depth, explained.unexplained_words
+    grid, terms, images = settings.grid, settings.terms, room_images(cameras, frames)
+    explained = explain(grid, settings.machine, images, Snapshot(tuple(frames), moment.joints), terms)
     return [
-        carve(
-            settings.grid,
-            [camera],
-            [frame],
-            detail=settings.detail,
-            margin=settings.margin,
-            complete=needs_complete(settings.rule),
-            model_depth={name: image for name, image in model_depth.items() if name == camera.name},
-            unexplained=unexplained,
+        carve_images(
+            grid,
+            images.of(camera.name),
+            explained,
+            terms,
+            complete=terms.needs_counts,
         )
-        for camera, frame in zip(cameras, frames, strict=True)
+        for camera in cameras
     ]
 
 
 def _all_but_one(parts: Sequence[Evidence], settings: Settings) -> Iterator[Evidence]:
     """For each part all others merged, by what lies before it and what lies behind."""
-    nothing = Evidence.nothing(settings.grid, needs_complete(settings.rule))
+    nothing = Evidence.nothing(settings.grid, settings.terms.needs_counts)
     behind = [nothing]
     for part in reversed(parts[1:]):
         behind.append(merge([part, behind[-1]]))

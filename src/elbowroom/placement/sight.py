@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.margin import Margin
-from elbowroom.geometry.parallel import spread
+from elbowroom.geometry.parallel import spread, threads
 from elbowroom.placement.coarse import with_joined_pixels
 from elbowroom.placement.fixed_room import FixedRoom, clear_sight
 from elbowroom.reconstruct import carve
@@ -25,16 +25,13 @@ BACKGROUND_PX = 160
 NO_MARGIN = Margin(sigmas=0.0, bias_m=0.0, lateral_px=0.0)
 
 
-def sights(
-    grid: VoxelGrid, cameras: Sequence[DepthCamera], room: FixedRoom | None, *, threads: int | None = None
-) -> NDArray[np.bool_]:
+def sights(grid: VoxelGrid, cameras: Sequence[DepthCamera], room: FixedRoom | None) -> NDArray[np.bool_]:
     """Which camera sees which voxel's centre.
 
     Args:
         grid: the watched box.
         cameras: in any order.
         room: what blocks sight and gives returns; None: not known, so nothing blocks and every pixel returns.
-        threads: None: all cores. The result does not depend on it.
 
     Returns:
         bool, shape (number of cameras, *grid.shape).
@@ -60,7 +57,7 @@ def sights(
                 reached[tuple(index[~clear].T)] = False
         seen[number] = reached
 
-    spread(one, range(len(cameras)), threads)
+    spread(one, range(len(cameras)))
     return seen
 
 
@@ -71,7 +68,7 @@ def _reached(grid: VoxelGrid, camera: DepthCamera, room: FixedRoom | None) -> ND
     )
     returned = np.ones((coarse.height, coarse.width), dtype=bool)
     if room is not None:
-        (frame,) = render([coarse], room.moment, noise=False, threads=1)
+        (frame,) = render([coarse], room.moment, noise=False)
         returned = frame.depth_m > 0
     farthest = np.maximum(
         *(np.abs(corner - camera.centre_in_world) for corner in (grid.lower_m, grid.upper_m))
@@ -86,5 +83,6 @@ def _reached(grid: VoxelGrid, camera: DepthCamera, room: FixedRoom | None) -> ND
 
 def _nearer_than(grid: VoxelGrid, camera: DepthCamera, depth_m: NDArray[np.float32]) -> NDArray[np.bool_]:
     """Voxels whose centre lies before the depth of the pixel that it falls on, shape of the grid."""
-    evidence = carve(grid, [camera], [DepthFrame(camera.name, 0, depth_m)], detail="point", threads=1)
+    with threads(1):  # the cameras are spread already
+        evidence = carve(grid, [camera], [DepthFrame(camera.name, 0, depth_m)], detail="point")
     return bits.unpack(evidence.through[0], grid)

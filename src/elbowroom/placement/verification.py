@@ -58,8 +58,6 @@ def verify(
     cameras: Sequence[DepthCamera],
     room: FixedRoom | None = None,
     requirement: Requirement | None = None,
-    *,
-    threads: int | None = None,
 ) -> Verification:
     """Counts the views of every voxel and how many are pairwise far enough apart (thesis 3.3).
 
@@ -68,7 +66,6 @@ def verify(
         cameras: at most 255.
         room: walls and furniture; None: not known, so nothing blocks sight and every pixel has a return.
         requirement: None: three views, 100 degrees apart.
-        threads: None: all cores. The result does not depend on it.
 
     Raises:
         InputError: no camera, more than 255, or no voxel that is not inside something fixed.
@@ -77,8 +74,8 @@ def verify(
     asked = np.ones(grid.shape, dtype=bool) if room is None else ~room.occupied(grid)
     if not asked.any():
         raise InputError("placement: the watched box lies wholly inside walls or furniture; correct the room")
-    seen = sights(grid, cameras, room, threads=threads)
-    return judge(grid, cameras, seen, asked, requirement or Requirement(), threads=threads)
+    seen = sights(grid, cameras, room)
+    return judge(grid, cameras, seen, asked, requirement or Requirement())
 
 
 def judge(
@@ -87,8 +84,6 @@ def judge(
     seen: NDArray[np.bool_],
     asked: NDArray[np.bool_],
     requirement: Requirement,
-    *,
-    threads: int | None = None,
 ) -> Verification:
     """The verification of sights that are known already; arguments as of `Verification`.
 
@@ -107,7 +102,6 @@ def judge(
     spread(
         lambda i: kernels.count_views(seen[:, i], eyes, x[i], y, angle, TIE_RAD, counts[i], apart[i]),
         range(grid.shape[0]),
-        threads,
     )
     for array in (seen, counts, apart, asked):
         array.setflags(write=False)

@@ -1,26 +1,25 @@
 """Frames of any group of cameras -> evidence."""
 
 from collections.abc import Mapping, Sequence
-from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import InputError
+from elbowroom.choices import Detail
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.parallel import spread
+from elbowroom.machine import Explained
 from elbowroom.reconstruct.evidence import Counts, Evidence
 from elbowroom.reconstruct.images import RoomImages, room_images
 from elbowroom.reconstruct.kernels.carve import carve_cubes
 from elbowroom.reconstruct.kernels.planes import PLANES
 from elbowroom.reconstruct.kernels.points import carve_points
+from elbowroom.reconstruct.terms import Terms
 from elbowroom.reconstruct.views import fill, layout_of
 from elbowroom.sensing import DepthFrame
 
-Detail = Literal["footprint", "pixel", "point"]
-DETAILS: tuple[Detail, ...] = get_args(Detail)
 SHARES = 16
 
 
@@ -34,7 +33,6 @@ def carve(
     complete: bool = False,
     model_depth: Mapping[str, NDArray[np.float32]] | None = None,
     unexplained: Words | None = None,
-    threads: int | None = None,
 ) -> Evidence:
     """What cameras know of each voxel by one frame each. A camera without a frame disputes all that it looks at.
 
@@ -49,59 +47,50 @@ def carve(
         complete: ask all cameras of every voxel and count them, as rules other than `three` need.
         model_depth: by camera, up to where the machine explains each pixel [m], 0: not explained (`machine.explain`).
         unexplained: plane of voxels in which returns lie that the machine does not explain.
-        threads: None: all cores. The result does not depend on it.
 
     Raises:
+        InputError: an unknown detail.
         CameraError: a camera named twice, a frame of an unknown camera, or more than 255 cameras.
         FrameError: two frames of one camera, or a frame of another size than its camera's.
     """
-    images = room_images(cameras, frames)
-    return carve_images(
-        grid,
-        images,
-        detail=detail,
-        margin=margin,
-        complete=complete,
-        model_depth=model_depth,
-        unexplained=unexplained,
-        threads=threads,
-    )
+    terms = Terms(detail=detail, margin=margin or Margin())
+    explained = Explained(dict(model_depth or {}), unexplained)
+    return carve_images(grid, room_images(cameras, frames), explained, terms, complete=complete)
 
 
 def carve_images(
     grid: VoxelGrid,
     images: RoomImages,
+    explained: Explained,
+    terms: Terms,
     *,
-    detail: Detail = "pixel",
-    margin: Margin | None = None,
     complete: bool = False,
-    model_depth: Mapping[str, NDArray[np.float32]] | None = None,
-    unexplained: Words | None = None,
     focus: NDArray[np.bool_] | None = None,
-    threads: int | None = None,
 ) -> Evidence:
     """As `carve`, from images that are pinhole already.
 
     Args:
+        grid: the watched box.
+        images: of a group of cameras.
+        explained: what the machine explains of them.
+        terms: detail and margin.
+        complete: as of `carve`.
         focus: blocks of 4 voxels, in the planes' order, that are asked of the cameras; of the others nothing is known
             afterwards. None: all.
 
     Raises:
-        InputError: an unknown detail.
         CameraError: more than 255 cameras.
     """
-    if detail not in DETAILS:
-        raise InputError(f"detail: {detail!r} is unknown, allowed are {', '.join(DETAILS)}")
-    layout = layout_of(grid, images.cameras, margin or Margin())
+    layout = layout_of(grid, images.cameras, terms.margin)
     cells = bits.lattice(grid)
     cubes = cells.cubes_x * cells.cubes_y * cells.cubes_z
     planes = np.zeros((PLANES, cubes * 64), dtype=np.uint64)
     through, disputes = (np.zeros((cubes * 64 if complete else 0, 64), dtype=np.uint8) for _ in range(2))
-    kernel = carve_points if detail == "point" else carve_cubes
-    fine = np.full(cubes * 64, detail == "pixel")
+    kernel = carve_points if terms.detail == "point" else carve_cubes
+    fine = np.full(cubes * 64, terms.detail == "pixel")
     asked = layout.inside.copy() if focus is None else np.where(focus, layout.inside, np.uint64(0))
     worth = np.flatnonzero(asked.reshape(cubes, 64).any(axis=1))
-    views, buffers = fill(layout, images, model_depth or {}, threads)
+    views, buffers = fill(layout, images, explained.model_depth)
     try:
         spread(
             lambda share: kernel(
@@ -116,7 +105,6 @@ def carve_images(
                 disputes,
             ),
             range(min(SHARES, len(worth))),
-            threads,
         )
     finally:
         layout.give_back(buffers)
@@ -124,6 +112,6 @@ def carve_images(
         grid,
         tuple(camera.name for camera in images.cameras),
         planes,
-        bits.empty(grid) if unexplained is None else unexplained,
+        bits.empty(grid) if explained.unexplained_words is None else explained.unexplained_words,
         Counts(through, disputes) if complete else None,
     )

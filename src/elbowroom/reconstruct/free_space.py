@@ -1,44 +1,30 @@
 """The decision per voxel: free, surface, or unseen. Everything but free is blocked."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from elbowroom.errors import EvidenceError, GridError
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.bits import Words
-from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine, body_words
-from elbowroom.reconstruct.images import RoomImages
+from elbowroom.reconstruct.point_report import PointReport
 
-if TYPE_CHECKING:
-    from elbowroom.reconstruct.point_report import PointReport
+Index = tuple[int, int, int]
+"""Of a voxel, (i, j, k)."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Source:
-    """What a free space was made of: kept by reference, so that `explain` can ask again. Nothing is stored per voxel.
+class Source(Protocol):
+    """What a free space was made of, where that can be asked again: images here, or somebody who has them."""
 
-    Args:
-        images: of the room's cameras.
-        margin: of cameras without one of their own.
-        detail: of the carve.
-        rule: of `resolve`.
-        model_depth: by camera, what the machine explains [m].
-        focus: blocks of 4 voxels that cameras were asked of, in the planes' order; None: all.
-        free_words: what was declared free of it: where less is free than that, somebody blocked more, and nothing is
-            looked at again; `resolve` fills it in.
-    """
+    def report(self, space: "FreeSpace", index: Index) -> PointReport:
+        """What each camera saw at a voxel of the space made of it."""
 
-    images: RoomImages
-    margin: Margin
-    detail: str
-    rule: str
-    model_depth: Mapping[str, NDArray[np.float32]]
-    focus: NDArray[np.bool_] | None = None
-    free_words: Words | None = None
+    def is_free_in_parts(self, space: "FreeSpace", index: Index) -> bool:
+        """Whether a voxel of the space is free part by part, though no one camera sees all of it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,8 +41,8 @@ class FreeSpace:
         blind_words: blocked, disputed by a camera that delivered nothing valid there.
         disputed_words: blocked, and a camera that looks there could not say "through", for whatever reason.
         body_words: made free because the machine's own grown body covers it.
-        source: what it was made of, for `explain` and for looking again (`reconstruct.parts`); None: it comes from
-            elsewhere.
+        source: what it was made of, for `explain` and for looking again; None: it comes from elsewhere, or was let go
+            of.
     """
 
     grid: VoxelGrid
@@ -130,7 +116,19 @@ class FreeSpace:
         """Blocked, without a surface: nobody could say that it is free. Shape of the grid."""
         return bits.unpack(self.blocked_words & ~self.surface_words, self.grid)
 
-    def explain(self, point_in_world: ArrayLike) -> "PointReport":
+    def released(self) -> "FreeSpace":
+        """The same space without what it was made of: it keeps no images; nothing is explained or looked at again."""
+        return replace(self, source=None)
+
+    def is_free_in_parts(self, index: Index) -> bool:
+        """Whether a voxel that no one camera sees all of is free part by part, by what the space was made of.
+
+        Args:
+            index: of the voxel.
+        """
+        return self.source is not None and self.source.is_free_in_parts(self, index)
+
+    def explain(self, point_in_world: ArrayLike) -> PointReport:
         """What each camera saw at one point's voxel, and which camera could settle it.
 
         Args:
@@ -140,6 +138,24 @@ class FreeSpace:
             GridError: the point lies outside the grid.
             EvidenceError: there are no frames at hand, as for a volume that comes from elsewhere.
         """
-        from elbowroom.reconstruct.point_report import report_on
+        if self.source is None:
+            raise EvidenceError("explain: no frames at hand, this space was not made from frames of cameras")
+        point = np.asarray(point_in_world, dtype=float)
+        if point.shape != (3,) or not np.isfinite(point).all():
+            raise GridError(f"explain: point is {point.tolist()}, must be three finite numbers [m]")
+        if not self.grid.contains(point):
+            raise GridError(
+                f"explain: point {point.tolist()} lies outside the grid from {self.grid.lower_m.tolist()} "
+                f"to {self.grid.upper_m.tolist()}"
+            )
+        i, j, k = (int(n) for n in self.grid.index_of(point))
+        return self.source.report(self, (i, j, k))
 
-        return report_on(self, np.asarray(point_in_world, dtype=float))
+    def state_of(self, index: Index) -> str:
+        """What a voxel is: "free", "surface", "unseen", or "the machine itself"."""
+        word, bit = bits.place_of(index, self.grid)
+        if self.body_words[word] & bit:
+            return "the machine itself"
+        if self.free_words[word] & bit:
+            return "free"
+        return "surface" if self.surface_words[word] & bit else "unseen"

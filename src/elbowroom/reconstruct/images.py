@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,14 @@ class RoomImages:
     cameras: tuple[DepthCamera, ...]
     least_m: Mapping[str, Image]
     greatest_m: Mapping[str, Image]
+
+    def of(self, name: str) -> Self:
+        """Those of one camera alone."""
+        return type(self)(
+            tuple(camera for camera in self.cameras if camera.name == name),
+            {camera: image for camera, image in self.least_m.items() if camera == name},
+            {camera: image for camera, image in self.greatest_m.items() if camera == name},
+        )
 
 
 def room_images(cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]) -> RoomImages:

@@ -1,13 +1,15 @@
 """One voxel looked at again, in parts: what no one camera sees all of, several may see between them."""
 
+from collections.abc import Mapping
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.geometry import DepthCamera, VoxelGrid, bits
-from elbowroom.reconstruct.free_space import FreeSpace, Source
-from elbowroom.reconstruct.images import Image
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry.margin import Margin
+from elbowroom.reconstruct.images import Image, RoomImages
 from elbowroom.reconstruct.kernels import box as box
 from elbowroom.reconstruct.kernels import pyramid as pyramid
 from elbowroom.reconstruct.kernels.pixel import PIXEL_FLOATS, settle_word
@@ -25,49 +27,57 @@ CORNERS = np.flatnonzero((STEPS % (PARTS - 1) == 0).all(axis=1))
 """The parts in the corners of the voxel."""
 
 
-def is_free_in_parts(space: FreeSpace, index: tuple[int, int, int]) -> bool:
-    """Whether each of 64 parts of a voxel is seen through by some camera, where nobody disputes the voxel.
-
-    A part is seen through by the pixel test, as a voxel is. Who disputes a part disputes the voxel: so each part is
-    free by the rule `three`. An object that touches the voxel touches a part of it, so this frees nothing that smaller
-    voxels would not. Less evidence leaves fewer parts free, never more.
+def is_seen_in_parts(
+    grid: VoxelGrid,
+    index: tuple[int, int, int],
+    images: RoomImages,
+    model_depth: Mapping[str, Image],
+    margin: Margin,
+) -> bool:
+    """Whether each of 64 parts of a voxel is seen through by some camera, by the pixel test, as a voxel is.
 
     Args:
-        space: of detail `pixel` and rule `three`, with the frames it was made of (`FreeSpace.source`) and no less free
-            than they say; else the answer is no.
-        index: of the voxel, (i, j, k); one that cameras were not asked of, or that anybody disputes, is not free.
+        grid: the watched box.
+        index: of the voxel, (i, j, k).
+        images: of the room's cameras.
+        model_depth: by camera, what the machine explains [m].
+        margin: of cameras without one of their own.
     """
-    source = space.source
-    if source is None or source.detail != "pixel" or source.rule != "three":
-        return False
-    if not _is_undisputed(space, source, index) or _more_is_blocked(space, source):
-        return False
-    edge = space.grid.voxel_size_m / PARTS
-    first = space.grid.lower_m + np.array(index) * space.grid.voxel_size_m + edge / 2
-    in_cameras = _in_cameras(source.images.cameras, first + STEPS * edge)
-    maybe = _may_be_seen(source, in_cameras)
+    edge = grid.voxel_size_m / PARTS
+    first = grid.lower_m + np.array(index) * grid.voxel_size_m + edge / 2
+    in_cameras = _in_cameras(images.cameras, first + STEPS * edge)
+    maybe = _may_be_seen(images, model_depth, in_cameras)
     # first the camera that may see most
     rows = np.argsort(-maybe.sum(axis=1), kind="stable")
     seen = np.zeros(len(STEPS), dtype=np.bool_)
     for position, row in enumerate(rows):
         if not (seen | maybe[rows[position:]].any(axis=0)).all():
             return False
-        seen |= _parts_seen(space.grid, source, row, first, edge, in_cameras[row])
+        numbers = layout_of(grid, images.cameras, margin).numbers[row]
+        seen |= _parts_seen(numbers, images, model_depth, row, margin, _Parts(first, edge, in_cameras[row]))
         if seen.all():
             return True
     return False
 
 
-def _is_undisputed(space: FreeSpace, source: Source, index: tuple[int, int, int]) -> bool:
-    """Whether cameras were asked of a voxel, and nobody disputes it."""
-    word, bit = bits.place_of(index, space.grid)
-    asked = source.focus is None or source.focus[word]
-    return bool(asked and not space.disputed_words[word] & bit)
+class _Parts(NamedTuple):
+    """The parts of a voxel before a camera.
 
+    Args:
+        first: centre of the first, world frame [m].
+        edge: of a part [m].
+        in_camera: centres of all parts in the camera's axes, shape (3, parts) [m].
+    """
 
-def _more_is_blocked(space: FreeSpace, source: Source) -> bool:
-    """Whether somebody blocked what the frames say is free, such as a zone to keep out of."""
-    return source.free_words is None or bool((source.free_words & ~space.free_words).any())
+    first: NDArray[np.float64]
+    edge: float
+    in_camera: NDArray[np.float64]
+
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """Of the voxel, in the camera's axes, shape (3, 8) [m]."""
+        middle = self.in_camera.mean(axis=1, keepdims=True)
+        return middle + (self.in_camera[:, CORNERS] - middle) * PARTS / (PARTS - 1)
 
 
 def _in_cameras(cameras: tuple[DepthCamera, ...], points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -88,13 +98,14 @@ def _lenses(cameras: tuple[DepthCamera, ...]) -> NDArray[np.float64]:
     return np.array([(k.fx, k.fy, k.cx, k.cy, w, h) for k, w, h in lenses]).reshape(-1, 6, 1)
 
 
-def _may_be_seen(source: Source, in_cameras: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _may_be_seen(
+    images: RoomImages, model_depth: Mapping[str, Image], in_cameras: NDArray[np.float64]
+) -> NDArray[np.bool_]:
     """By camera and part, whether the pixel at the part's centre may be free beyond it, shape (cameras, parts).
 
     A camera sees through no other part: a pixel is free no farther than it measured, than the machine's model in it,
     or, if it is a speck, than the pixels beside it.
     """
-    images = source.images
     x, y, z = np.moveaxis(in_cameras, 1, 0)
     fx, fy, cx, cy, width, height = np.moveaxis(_lenses(images.cameras), 1, 0)
     depth = np.where(z > NEAREST_M, z, np.inf)
@@ -112,59 +123,48 @@ def _may_be_seen(source: Source, in_cameras: NDArray[np.float64]) -> NDArray[np.
         line = v[row, here, None].astype(np.intp)
         column = np.clip(u[row, here, None].astype(np.intp) + beside, 0, camera.width - 1)
         beyond = images.least_m[camera.name][line, column] > far
-        if camera.name in source.model_depth:
-            beyond |= np.abs(source.model_depth[camera.name][line, column]) > far
+        if camera.name in model_depth:
+            beyond |= np.abs(model_depth[camera.name][line, column]) > far
         seen[row, here] = beyond.any(axis=1)
     return seen
 
 
 def _parts_seen(
-    grid: VoxelGrid,
-    source: Source,
+    numbers: NDArray[np.float64],
+    images: RoomImages,
+    model_depth: Mapping[str, Image],
     row: int,
-    first: NDArray[np.float64],
-    edge: float,
-    in_camera: NDArray[np.float64],
+    margin: Margin,
+    parts: _Parts,
 ) -> NDArray[np.bool_]:
     """Which parts one camera sees through, shape (parts,).
 
     Args:
-        grid, source: of the space.
+        numbers: of the camera in the grid's layout, its row of `Views.numbers`.
+        images, model_depth, margin: as of `is_seen_in_parts`.
         row: of the camera.
-        first: centre of the first part, world frame [m].
-        edge: of a part [m].
-        in_camera: centres of all parts in its axes, shape (3, parts) [m].
+        parts: before it.
     """
-    camera = source.images.cameras[row]
-    middle = in_camera.mean(axis=1, keepdims=True)
-    corners = middle + (in_camera[:, CORNERS] - middle) * PARTS / (PARTS - 1)
+    corners = parts.corners
     if corners[2].min() <= NEAREST_M:
         return np.zeros(len(STEPS), dtype=np.bool_)
-    rows, columns = _window(camera, source, corners)
-    numbers = layout_of(grid, source.images.cameras, source.margin).numbers[row : row + 1].copy()
-    numbers[0, box.LENS + 2] -= columns.start
-    numbers[0, box.LENS + 3] -= rows.start
-    numbers[0, box.SIZE : box.SIZE + 2] = columns.stop - columns.start, rows.stop - rows.start
-    turn = numbers[0, box.TURN : box.TURN + 12].reshape(4, 3)
-    turn[0] += turn[1] * columns.start + turn[2] * rows.start
-
-    def cut_out(image: Image) -> Image:
-        return np.ascontiguousarray(image[rows, columns])
-
-    model = source.model_depth.get(camera.name)
-    trust = np.empty((rows.stop - rows.start, columns.stop - columns.start), dtype=np.uint32)
+    camera = images.cameras[row]
+    window = _window(camera, (camera.margin or margin).lateral_px + SPARE_PX, corners)
+    model = model_depth.get(camera.name)
+    cut = _numbers_in(numbers, window)
+    trust = np.empty([side.stop - side.start for side in window], dtype=np.uint32)
     doubt = np.empty_like(trust)
     texels_of(
         camera,
-        numbers[0],
-        cut_out(source.images.least_m[camera.name]),
-        cut_out(source.images.greatest_m[camera.name]),
-        None if model is None else cut_out(model),
+        cut,
+        np.ascontiguousarray(images.least_m[camera.name][window]),
+        np.ascontiguousarray(images.greatest_m[camera.name][window]),
+        None if model is None else np.ascontiguousarray(model[window]),
         trust,
         doubt,
     )
     words = settle_word(
-        numbers,
+        cut[None],
         0,
         trust.reshape(-1),
         doubt.reshape(-1),
@@ -173,21 +173,35 @@ def _parts_seen(
         _tiles(doubt),
         0,
         box.ALL,
-        *first,
-        edge,
+        *parts.first,
+        parts.edge,
         np.empty(PIXEL_FLOATS),
     )
     return np.unpackbits(np.array(words[:1]).view(np.uint8), bitorder="little").view(np.bool_)
 
 
+def _numbers_in(numbers: NDArray[np.float64], window: tuple[slice, slice]) -> NDArray[np.float64]:
+    """The numbers of a camera that has but a window of its image, rows and columns."""
+    rows, columns = window
+    cut = numbers.copy()
+    cut[box.LENS + 2] -= columns.start
+    cut[box.LENS + 3] -= rows.start
+    cut[box.SIZE : box.SIZE + 2] = columns.stop - columns.start, rows.stop - rows.start
+    turn = cut[box.TURN : box.TURN + 12].reshape(4, 3)
+    turn[0] += turn[1] * columns.start + turn[2] * rows.start
+    return cut
+
+
 def _window(
-    camera: DepthCamera, source: Source, corners_in_camera: NDArray[np.float64]
+    camera: DepthCamera, beyond_px: float, corners_in_camera: NDArray[np.float64]
 ) -> tuple[slice, slice]:
     """Rows and columns of an image with all pixels that meet a voxel before the camera, and spare ones."""
     k = camera.intrinsics
     x, y, z = corners_in_camera
-    beyond = (camera.margin or source.margin).lateral_px + SPARE_PX
-    return _span(k.fy * y / z + k.cy, beyond, camera.height), _span(k.fx * x / z + k.cx, beyond, camera.width)
+    return (
+        _span(k.fy * y / z + k.cy, beyond_px, camera.height),
+        _span(k.fx * x / z + k.cx, beyond_px, camera.width),
+    )
 
 
 def _span(at: NDArray[np.float64], beyond: float, size: int) -> slice:

@@ -2,23 +2,26 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import InputError
-from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.choices import Detail, Rule
+from elbowroom.geometry import DepthCamera, VoxelGrid, parallel
 from elbowroom.geometry.margin import Margin
-from elbowroom.machine import Machine, explain_frames
-from elbowroom.reconstruct.carve import Detail, carve_images
-from elbowroom.reconstruct.free_space import FreeSpace, Source
+from elbowroom.machine import Machine
+from elbowroom.reconstruct.carve import carve_images
+from elbowroom.reconstruct.explained import explain
+from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.images import frames_by_camera, room_images
-from elbowroom.reconstruct.resolve import Rule, needs_complete, resolve
-from elbowroom.sensing import DepthFrame, JointRecord
-from elbowroom.sensing.snapshot import young_enough
+from elbowroom.reconstruct.resolve import decide
+from elbowroom.reconstruct.source import ImageSource
+from elbowroom.reconstruct.terms import Terms
+from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 
-Joints = Mapping[str, float] | JointRecord
 Timer = Callable[[str], AbstractContextManager[None]]
+"""Called with the name of a stage, returns a context manager around it."""
 
 
 def reconstruct(
@@ -26,7 +29,7 @@ def reconstruct(
     cameras: Sequence[DepthCamera],
     frames: Sequence[DepthFrame],
     machine: Machine | None = None,
-    joints: Joints | None = None,
+    joints: Mapping[str, float] | JointRecord | None = None,
     *,
     rule: Rule = "three",
     detail: Detail = "pixel",
@@ -61,83 +64,56 @@ def reconstruct(
         threads: None: all cores. The result does not depend on it.
         timer: called with the name of each stage, returns a context manager around it; None: nobody measures.
 
+    Returns:
+        The space; it keeps the images, for `FreeSpace.explain` and to look again (`FreeSpace.released` lets go).
+
     Raises:
         CameraError, FrameError: two frames of one camera, a frame of an unknown camera or of another size.
         MachineError: joints that are unknown, missing or out of their limits, or a growth below a quarter voxel.
         InputError: an unknown rule or detail, a machine without joints, an age limit without the time.
     """
+    terms = Terms(rule, detail, margin or Margin(), max_age_ns, explain_tolerance_m, body_growth_m)
+    snapshot = Snapshot.taken(frames, None if machine is None else joints, now_ns, max_age_ns)
+    with parallel.threads(threads):
+        return free_space_of(grid, cameras, snapshot, machine, terms, focus=focus, timer=timer)
+
+
+def free_space_of(
+    grid: VoxelGrid,
+    cameras: Sequence[DepthCamera],
+    snapshot: Snapshot,
+    machine: Machine | None,
+    terms: Terms,
+    *,
+    focus: NDArray[np.bool_] | None = None,
+    timer: Timer | None = None,
+) -> FreeSpace:
+    """Space seen to be free at one moment: what `reconstruct` does with its values.
+
+    Args:
+        grid: the watched box.
+        cameras: all cameras of the room.
+        snapshot: their newest frames, and where the machine was.
+        machine: whose body is explained and taken out; None: the bare room.
+        terms: how strictly space is judged.
+        focus, timer: as of `reconstruct`.
+
+    Raises:
+        CameraError, FrameError, MachineError, InputError: as `reconstruct`.
+    """
     stage = timer or _untimed
-    complete = needs_complete(rule)
-    frames_by_camera(cameras, frames)
-    fresh = young_enough(frames, now_ns, max_age_ns)
-    images = room_images(cameras, fresh)
-    model_depth, unexplained, here = None, None, None
-    if machine is not None:
-        if joints is None:
-            raise InputError("reconstruct: a machine without joints; give its joint positions by name")
-        here = _positions_now(joints, fresh, now_ns)
-        with stage("explain"):
-            seen = [camera for camera in images.cameras if camera.name in images.least_m]
-            stamps = {frame.camera: frame.stamp_ns for frame in fresh}
-            explained = explain_frames(
-                machine,
-                seen,
-                [images.least_m[camera.name] for camera in seen],
-                [_positions_at(joints, stamps[camera.name], camera.name) for camera in seen],
-                tolerance_m=explain_tolerance_m,
-                grid=grid,
-                threads=threads,
-                growth_m=body_growth_m,
-            )
-        model_depth, unexplained = explained.model_depth, explained.unexplained_words
+    frames_by_camera(cameras, snapshot.frames)  # a frame past its age must be of this room, too
+    fresh = snapshot.fresh(terms.max_age_ns)
+    images = room_images(cameras, fresh.frames)
+    with stage("explain"):
+        explained = explain(grid, machine, images, fresh, terms)
     with stage("carve"):
-        evidence = carve_images(
-            grid,
-            images,
-            detail=detail,
-            margin=margin,
-            complete=complete,
-            model_depth=model_depth,
-            unexplained=unexplained,
-            focus=focus,
-            threads=threads,
-        )
+        evidence = carve_images(grid, images, explained, terms, complete=terms.needs_counts, focus=focus)
     with stage("resolve"):
-        return resolve(
-            evidence,
-            cameras,
-            rule=rule,
-            detail=detail,
-            margin=margin,
-            machine=machine,
-            joints=here,
-            body_growth_m=body_growth_m,
-            source=Source(images, margin or Margin(), detail, rule, model_depth or {}, focus),
-            threads=threads,
-        )
+        space = decide(evidence, cameras, machine, fresh.joints_at_newest, terms)
+    return replace(space, source=ImageSource(images, explained.model_depth, terms, space.free_words, focus))
 
 
 @contextmanager
 def _untimed(_: str) -> Iterator[None]:
     yield
-
-
-def _positions_at(joints: Joints, stamp_ns: int | None, camera: str) -> Mapping[str, float]:
-    if not isinstance(joints, JointRecord):
-        return joints
-    if stamp_ns is None:
-        raise InputError(
-            f"frame of {camera}: has no time, so a joint record cannot say where the machine was"
-        )
-    return joints.at(stamp_ns)
-
-
-def _positions_now(joints: Joints, frames: Sequence[DepthFrame], now_ns: int | None) -> Mapping[str, float]:
-    if not isinstance(joints, JointRecord):
-        return joints
-    newest = [frame.stamp_ns for frame in frames if frame.stamp_ns is not None]
-    if newest:
-        return joints.at(max(newest))
-    if now_ns is None:
-        raise InputError("joints: a record needs frames with times, or now_ns")
-    return joints.at(now_ns)

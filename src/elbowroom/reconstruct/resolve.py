@@ -1,24 +1,21 @@
 """Evidence -> free space, by a rule; the machine's body taken out."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from typing import Literal, get_args
 
 import numpy as np
 
+from elbowroom.choices import Detail, Rule
 from elbowroom.errors import EvidenceError, InputError
 from elbowroom.geometry import DepthCamera, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine, body_words
-from elbowroom.reconstruct.carve import Detail, carve
+from elbowroom.reconstruct.carve import carve_images
 from elbowroom.reconstruct.evidence import Evidence, merge
-from elbowroom.reconstruct.free_space import FreeSpace, Source
-
-Rule = Literal["three", "majority", "veto", "any"]
-RULES: tuple[Rule, ...] = get_args(Rule)
-LAWFUL: tuple[str, ...] = ("three", "majority")
-"""Rules by which less evidence never adds free space."""
+from elbowroom.reconstruct.explained import NOTHING
+from elbowroom.reconstruct.free_space import FreeSpace
+from elbowroom.reconstruct.images import room_images
+from elbowroom.reconstruct.terms import Terms
 
 
 def _three(evidence: Evidence) -> Words:
@@ -45,23 +42,12 @@ def _any(evidence: Evidence) -> Words:
     return evidence.through[0]
 
 
-_DECIDE: dict[str, Callable[[Evidence], Words]] = {
+_DECIDE: dict[Rule, Callable[[Evidence], Words]] = {
     "three": _three,
     "majority": _majority,
     "veto": _veto,
     "any": _any,
 }
-
-
-def needs_complete(rule: Rule) -> bool:
-    """Whether evidence must be carved with `complete=True` for this rule.
-
-    Raises:
-        InputError: an unknown rule.
-    """
-    if rule not in RULES:
-        raise InputError(f"rule: {rule!r} is unknown, allowed are {', '.join(RULES)}")
-    return rule != "three"
 
 
 def resolve(
@@ -74,8 +60,6 @@ def resolve(
     machine: Machine | None = None,
     joints: Mapping[str, float] | None = None,
     body_growth_m: float | None = None,
-    source: Source | None = None,
-    threads: int | None = None,
 ) -> FreeSpace:
     """Decides for each voxel whether it is free.
 
@@ -90,38 +74,66 @@ def resolve(
         machine, joints: whose body to take out, and where it is; both None: the bare room.
         body_growth_m: by how much the body is grown, at least a quarter voxel [m]; None: half a voxel. Evidence of
             returns that the machine does not explain must have been looked for with the same growth.
-        source: where the evidence comes from, for `FreeSpace.explain`.
-        threads: None: all cores.
 
     Raises:
         InputError: an unknown rule, or a machine without joints.
         MachineError: impossible joints, or a growth below a quarter voxel.
         EvidenceError: the rule needs counts and the evidence has none.
     """
-    complete = needs_complete(rule)
-    if complete and evidence.counts is None:
-        raise EvidenceError(f"resolve: rule {rule} needs evidence carved with complete=True")
-    silent = [camera for camera in cameras if camera.name not in evidence.cameras]
-    if silent:
-        blank = carve(
-            evidence.grid, silent, [], detail=detail, margin=margin, complete=complete, threads=threads
-        )
-        evidence = merge([evidence, blank])
-    free = _DECIDE[rule](evidence) & bits.inside(evidence.grid)
-    body = bits.empty(evidence.grid)
-    if machine is not None:
-        if joints is None:
-            raise InputError("resolve: a machine without joints; give its joint positions by name")
-        body = body_words(machine, joints, evidence.grid, body_growth_m, threads) & ~evidence.unexplained
-        free = free | body
-    blocked = ~free & bits.inside(evidence.grid)
+    terms = Terms(rule, detail, margin or Margin(), body_growth_m=body_growth_m)
+    return decide(evidence, cameras, machine, joints, terms)
+
+
+def decide(
+    evidence: Evidence,
+    cameras: Sequence[DepthCamera],
+    machine: Machine | None,
+    joints: Mapping[str, float] | None,
+    terms: Terms,
+) -> FreeSpace:
+    """As `resolve`, by terms.
+
+    Args:
+        evidence, cameras, machine, joints: as of `resolve`.
+        terms: those by which the evidence was carved.
+
+    Raises:
+        InputError, MachineError, EvidenceError: as `resolve`.
+    """
+    grid = evidence.grid
+    if terms.needs_counts and evidence.counts is None:
+        raise EvidenceError(f"resolve: rule {terms.rule} needs evidence carved with complete=True")
+    evidence = _with_silent(evidence, cameras, terms)
+    free = _DECIDE[terms.rule](evidence) & bits.inside(grid)
+    body = _body(evidence, machine, joints, terms)
+    free = free | body
+    blocked = ~free & bits.inside(grid)
     surface: Words = (evidence.surface | evidence.unexplained) & blocked
     return FreeSpace(
-        evidence.grid,
+        grid,
         free,
         surface,
         evidence.blind & blocked & ~surface,
         (evidence.disputed | evidence.unexplained) & blocked,
         body,
-        None if source is None else replace(source, free_words=free),
     )
+
+
+def _with_silent(evidence: Evidence, cameras: Sequence[DepthCamera], terms: Terms) -> Evidence:
+    """The evidence, and that of cameras that gave none: they dispute all that they look at."""
+    silent = [camera for camera in cameras if camera.name not in evidence.cameras]
+    if not silent:
+        return evidence
+    blank = carve_images(evidence.grid, room_images(silent, []), NOTHING, terms, complete=terms.needs_counts)
+    return merge([evidence, blank])
+
+
+def _body(
+    evidence: Evidence, machine: Machine | None, joints: Mapping[str, float] | None, terms: Terms
+) -> Words:
+    """Plane of the voxels that the machine's body covers, but for those in which something else was seen."""
+    if machine is None:
+        return bits.empty(evidence.grid)
+    if joints is None:
+        raise InputError("resolve: a machine without joints; give its joint positions by name")
+    return body_words(machine, joints, evidence.grid, terms.body_growth_m) & ~evidence.unexplained

@@ -184,16 +184,13 @@ def _levels_of(camera: DepthCamera) -> int:
     return max(int(np.ceil(np.log2(max(camera.width, camera.height)))), TILE_LEVEL) + 1
 
 
-def fill(
-    layout: Layout, images: RoomImages, model_depth: Mapping[str, Image], threads: int | None
-) -> tuple[Views, _Buffers]:
+def fill(layout: Layout, images: RoomImages, model_depth: Mapping[str, Image]) -> tuple[Views, _Buffers]:
     """Builds the windows of all cameras; a camera without images is blank.
 
     Args:
         layout: cameras in a grid.
         images: of those cameras.
         model_depth: by camera, depth up to which the machine explains the pixel [m], 0 where it does not.
-        threads: None: all cores.
 
     Returns:
         What kernels take, and the buffers behind it, to be given back after the carve.
@@ -228,7 +225,7 @@ def fill(
             pyramid.fill_tiles(doubt, *apart, doubt_tiles)
             _squares(doubt_tiles, buffers.doubt_squares[:, tiles])
 
-    spread(build, range(len(layout.cameras)), threads)
+    spread(build, range(len(layout.cameras)))
     views = Views(
         numbers,
         layout.levels,

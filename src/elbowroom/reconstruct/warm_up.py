@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from elbowroom.choices import DETAILS, Detail
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
-from elbowroom.reconstruct.carve import DETAILS, Detail
 from elbowroom.reconstruct.images import room_images
 from elbowroom.reconstruct.kernels.pixel import PIXEL_FLOATS, settle_word
 from elbowroom.reconstruct.reconstruct import reconstruct
@@ -40,7 +40,7 @@ def warm_up_pixel_test() -> None:
     images = room_images(cameras, frames)
     layout = layout_of(grid, images.cameras, Margin())
     explained = {camera.name: np.full((24, 32), 1.1, dtype=np.float32) for camera in cameras}
-    views, buffers = fill(layout, images, explained, 1)
+    views, buffers = fill(layout, images, explained)
     try:
         settle_word(
             views.numbers,

@@ -35,6 +35,7 @@ class Snapshot:
         frames: Sequence[DepthFrame],
         joints: Positions | JointRecord | None = None,
         now_ns: int | None = None,
+        max_age_ns: int | None = None,
     ) -> Self:
         """A moment from frames and joints, a record of joints asked at each frame's time.
 
@@ -43,15 +44,19 @@ class Snapshot:
             joints: positions that hold throughout, or a record; then *now* is the newest frame's time, or `now_ns`
                 where no frame has one.
             now_ns: the time now [ns, the clock of the frames].
+            max_age_ns: of frames past this age the record is not asked [ns]: it may reach back no farther; None: of
+                all it is.
 
         Raises:
-            InputError: a record, and a frame without a time, or neither frames nor the time.
+            InputError: a record, and a frame without a time, or neither frames nor the time; an age limit without the
+                time, or one below zero.
             SiteError: the record knows nothing of a frame's time.
         """
         if not isinstance(joints, JointRecord):
             return cls(tuple(frames), joints, {}, now_ns)
-        joints_of = {frame.camera: _asked(joints, frame) for frame in frames}
-        newest = max((frame.stamp_ns for frame in frames if frame.stamp_ns is not None), default=now_ns)
+        young = young_enough(frames, now_ns, max_age_ns)
+        joints_of = {frame.camera: _asked(joints, frame) for frame in young}
+        newest = max((frame.stamp_ns for frame in young if frame.stamp_ns is not None), default=now_ns)
         if newest is None:
             raise InputError("joints: a record needs frames with times, or now_ns")
         return cls(tuple(frames), joints.at(newest), joints_of, now_ns)
@@ -59,6 +64,14 @@ class Snapshot:
     def joints_at(self, camera: str) -> Positions | None:
         """Where the machine was at the time of a camera's frame, by name [m or rad]; None: not known."""
         return self.joints_of.get(camera, self.joints)
+
+    @property
+    def joints_at_newest(self) -> Positions | None:
+        """Where the machine was at the time of the newest frame, by name [m or rad]; of none: as `joints`."""
+        timed = [frame for frame in self.frames if frame.stamp_ns is not None]
+        if not timed:
+            return self.joints
+        return self.joints_at(max(timed, key=lambda frame: frame.stamp_ns or 0).camera)
 
     def fresh(self, max_age_ns: int | None) -> Self:
         """The same moment with those frames alone that are within an age limit.

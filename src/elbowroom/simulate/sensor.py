@@ -30,7 +30,6 @@ def render(
     seed: int = 0,
     flying_pixels: float = 0.3,
     missing: float = 0.0005,
-    threads: int | None = None,
 ) -> list[DepthFrame]:
     """What the cameras deliver at a moment, in their order.
 
@@ -46,7 +45,6 @@ def render(
         flying_pixels: share of the pixels at a step in depth that get a depth between its two sides.
         missing: share of the pixels anywhere that have no return; dark and grazed surfaces lose more. Of real cameras
             0.03 % was measured.
-        threads: None: one a core.
 
     Raises:
         InputError: a share outside 0 to 1, a seed below 0.
@@ -69,7 +67,7 @@ def render(
             kernels.as_delivered(image.depth, image.rays, limits, camera.depth_kind == "radial", depth)
         return DepthFrame(camera=camera.name, stamp_ns=moment.stamp_ns, depth_m=depth)
 
-    return spread(one, cameras, threads)
+    return spread(one, cameras)
 
 
 def _random(seed: int, moment: Moment, camera: DepthCamera) -> np.random.Generator:

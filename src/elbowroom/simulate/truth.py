@@ -29,7 +29,7 @@ class Truth:
     machine: NDArray[np.bool_]
 
 
-def true_occupancy(grid: VoxelGrid, moment: Moment, *, threads: int | None = None) -> Truth:
+def true_occupancy(grid: VoxelGrid, moment: Moment) -> Truth:
     """Every voxel whose open box a solid meets: surface by a triangle-box test, inside by winding number.
 
     A floor whose top is z = 0 touches no voxel above it. Solids that never move are computed once a grid.
@@ -37,12 +37,11 @@ def true_occupancy(grid: VoxelGrid, moment: Moment, *, threads: int | None = Non
     Args:
         grid: the watched box; solids may reach beyond it.
         moment: the solids.
-        threads: None: one a core.
     """
     occupied = _static_occupancy(grid, moment.static_solids).copy()
     machine = np.zeros(grid.shape, dtype=np.bool_)
     moving = moment.moving_solids
-    for solid, (corner, touched) in zip(moving, _touch_all(grid, moving, threads), strict=True):
+    for solid, (corner, touched) in zip(moving, _touch_all(grid, moving), strict=True):
         _add(machine if solid.is_machine else occupied, corner, touched)
     return Truth(occupied, machine)
 
@@ -50,26 +49,25 @@ def true_occupancy(grid: VoxelGrid, moment: Moment, *, threads: int | None = Non
 @lru_cache(maxsize=8)
 def _static_occupancy(grid: VoxelGrid, solids: tuple[Solid, ...]) -> NDArray[np.bool_]:
     occupied = np.zeros(grid.shape, dtype=np.bool_)
-    for corner, touched in _touch_all(grid, solids, None):
+    for corner, touched in _touch_all(grid, solids):
         _add(occupied, corner, touched)
     occupied.setflags(write=False)
     return occupied
 
 
-def true_centres(grid: VoxelGrid, moment: Moment, *, threads: int | None = None) -> NDArray[np.bool_]:
+def true_centres(grid: VoxelGrid, moment: Moment) -> NDArray[np.bool_]:
     """Every voxel whose centre lies in a solid that is not the machine: the milder measure beside `true_occupancy`.
 
     Args:
         grid: the watched box.
         moment: the solids.
-        threads: None: one a core.
 
     Returns:
         bool, shape of the grid, index order x, y, z.
     """
     solids = tuple(solid for solid in moment.solids if not solid.is_machine)
     inside = np.zeros(grid.shape, dtype=np.bool_)
-    for corner, part in spread(lambda solid: touched_by(grid, solid, surface=False), solids, threads):
+    for corner, part in spread(lambda solid: touched_by(grid, solid, surface=False), solids):
         _add(inside, corner, part)
     return inside
 
@@ -78,8 +76,8 @@ Touched = tuple[NDArray[np.int64], NDArray[np.bool_]]
 """Index of the first voxel of a part of the grid, and that part."""
 
 
-def _touch_all(grid: VoxelGrid, solids: tuple[Solid, ...], threads: int | None) -> list[Touched]:
-    return spread(lambda solid: touched_by(grid, solid), solids, threads)
+def _touch_all(grid: VoxelGrid, solids: tuple[Solid, ...]) -> list[Touched]:
+    return spread(lambda solid: touched_by(grid, solid), solids)
 
 
 def touched_by(grid: VoxelGrid, solid: Solid, *, surface: bool = True) -> Touched:

@@ -1,10 +1,11 @@
 """What a site file may say, key by key."""
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from elbowroom.choices import Detail, Rule
 from elbowroom.geometry import VoxelGrid
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
@@ -100,8 +101,8 @@ class SiteEntry(Entry):
     cameras: tuple[CameraEntry, ...] = ()
     machine: MachineEntry | None = None
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
-    rule: Literal["three", "majority", "veto", "any"] = "three"
-    detail: Literal["footprint", "pixel", "point"] = "pixel"
+    rule: Rule = "three"
+    detail: Detail = "pixel"
     margin: MarginEntry = MarginEntry()
     max_frame_age_ms: Positive | None = None
     recording: RecordingEntry | None = None

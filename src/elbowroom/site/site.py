@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from elbowroom.choices import Detail, Rule
 from elbowroom.errors import CameraError, GridError, InputError, PoseWarning, SiteError
 from elbowroom.files.yaml_file import read_yaml
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.motion import Motion
+from elbowroom.reconstruct.terms import Terms
 from elbowroom.sensing import Margin
 from elbowroom.site import seven_scenes
 from elbowroom.site.camera_entry import CameraSettings, build_camera
@@ -80,12 +82,12 @@ class Site:
         return self.entry.name
 
     @property
-    def rule(self) -> str:
+    def rule(self) -> Rule:
         """By which rule voxels are declared free."""
         return self.entry.rule
 
     @property
-    def detail(self) -> str:
+    def detail(self) -> Detail:
         """How closely voxels are tested."""
         return self.entry.detail
 
@@ -111,6 +113,20 @@ class Site:
         machine = self.entry.machine
         given = machine.explain_tolerance_m if machine else None
         return DEFAULT_EXPLAIN_TOLERANCE_M if given is None else given
+
+    def terms(self, rule: Rule | None = None, detail: Detail | None = None) -> Terms:
+        """How strictly space is judged here.
+
+        Args:
+            rule, detail: others than the file's; None: the file's.
+        """
+        return Terms(
+            rule or self.rule,
+            detail or self.detail,
+            self.margin(),
+            self.max_age_ns,
+            self.explain_tolerance_m,
+        )
 
     def margin(self) -> Margin:
         """The margin of all cameras that have none of their own."""

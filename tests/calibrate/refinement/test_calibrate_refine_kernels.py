@@ -1,6 +1,13 @@
 import numpy as np
 
-from elbowroom.calibrate.refinement.kernels.overlap import Overlap, compare_points, fit_planes
+from elbowroom.calibrate.refinement.kernels.overlap import (
+    Image,
+    Overlap,
+    Seen,
+    Sums,
+    compare_points,
+    fit_planes,
+)
 from elbowroom.calibrate.refinement.overlap import surfaces
 from elbowroom.geometry import invert_rigid
 from elbowroom.machine.rasterise import view_of
@@ -32,10 +39,8 @@ def test_overlap_sums_are_those_of_the_twin():
     other_from_one = invert_rigid(other.world_from_camera) @ one.world_from_camera
     normal, gradient, counts = np.zeros((9, 6, 6)), np.zeros((9, 6)), np.zeros(4, dtype=np.int64)
     offs, by_noise = np.full(len(a.points[0].points), np.nan), np.zeros((6, 6))
-    compare_points(
-        view_of(b.images.thinned), b.images.depth_m[0], b.planes[0], *a.points[0], other_from_one, rule,
-        normal, gradient, by_noise, counts, offs,
-    )  # fmt: skip
+    image, sums = Image(b.images.depth_m[0], b.planes[0]), Sums(normal, gradient, by_noise, counts)
+    compare_points(view_of(b.images.thinned), image, Seen(*a.points[0]), other_from_one, rule, sums, offs)
     slow = calibrate_overlap.compare_points(
         other, b.images.depth_m[0], b.planes[0], *a.points[0], other_from_one, rule
     )

@@ -92,15 +92,12 @@ def images_by_pose(site: Site) -> list[list[Image]]:
     return poses
 
 
-def sightings(
-    site: Site, on_image: Callable[[int, int], None] = lambda done, of: None, threads: int | None = None
-) -> Sightings:
+def sightings(site: Site, on_image: Callable[[int, int], None] = lambda done, of: None) -> Sightings:
     """Looks for the board in all images.
 
     Args:
         site: with a board and a recording.
         on_image: is told how many images of how many are done.
-        threads: None: one a core.
 
     Raises:
         CalibrationError: no board, no images, OpenCV is not installed, or the board is not seen at all.
@@ -118,12 +115,12 @@ def sightings(
         on_image(len(done), len(work))
         return seen
 
-    found = spread(one, work, threads)
+    found = spread(one, work)
     views = tuple(seen for seen in found if isinstance(seen, BoardView))
     troubles = tuple(seen for seen in found if isinstance(seen, Trouble))
     if not views:
         few = [work[n] for n in np.linspace(0, len(work) - 1, min(len(work), LOOKED_AT_AGAIN)).astype(int)]
-        closer = spread(lambda item: seen_in(site, board, *item, other_sizes=True), few, threads)
+        closer = spread(lambda item: seen_in(site, board, *item, other_sizes=True), few)
         sizes = [seen for seen in closer if isinstance(seen, Trouble) and seen.fault is Fault.WRONG_SIZE]
         troubles = tuple(sizes) or troubles
         raise CalibrationError(

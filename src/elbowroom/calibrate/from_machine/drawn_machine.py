@@ -1,25 +1,16 @@
 """The machine's model drawn as a camera would see it, at a base that may still move."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine import Machine
-from elbowroom.machine.kernels.draw import draw
+from elbowroom.machine.kernels.draw import Drawn, draw
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
 
 Array = NDArray[np.float64]
-
-
-class Drawing(NamedTuple):
-    """Inverse planar depth, shape (height, width), float32, 0 where nothing is; columns drawn in each row."""
-
-    inverse: NDArray[np.float32]
-    first: NDArray[np.int64]
-    last: NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,14 +25,14 @@ class DrawnMachine:
     machine: Machine
     world_from_base: Array
 
-    def image(self, camera: DepthCamera, base_from_links: Array) -> Drawing:
+    def image(self, camera: DepthCamera, base_from_links: Array) -> Drawn:
         """The machine in a pinhole camera's view.
 
         Args:
             camera: without distortion.
             base_from_links: shape (links, 4, 4).
         """
-        drawing = Drawing(*canvas(camera.height, camera.width))
+        drawing = canvas(camera.height, camera.width)
         camera_from_links = camera.camera_from_world @ self.world_from_base @ base_from_links
         draw(mesh_of(self.machine), camera_from_links, view_of(camera), *drawing)
         return drawing
@@ -56,7 +47,7 @@ class DrawnMachine:
                     np.arange(len(mesh.face_start)) <= row, mesh.face_start[row], mesh.face_start[row + 1]
                 )
             )
-            drawing = Drawing(*canvas(camera.height, camera.width))
+            drawing = canvas(camera.height, camera.width)
             draw(
                 only,
                 camera.camera_from_world @ self.world_from_base @ base_from_links,

@@ -12,6 +12,7 @@ from elbowroom.calibrate.from_machine.kernels.surface import (
     BEHIND,
     SEEN,
     SILENT,
+    Sums,
     Trust,
     compare,
 )
@@ -108,9 +109,8 @@ def surface_sums(
     cost = 0.0
     for row, (links, measured) in enumerate(zip(views.base_from_links, views.images.depth_m, strict=True)):
         drawing = drawn.image(camera, links)
-        cost += compare(
-            view, *drawing, measured, bias, scale, trust, normal[row], gradient[row], counts[row], residuals[row]
-        )  # fmt: skip
+        added = Sums(normal[row], gradient[row], counts[row], residuals[row])
+        cost += compare(view, drawing, measured, (bias, scale), trust, added)
     return SurfaceSums(normal, gradient, np.array([bias, scale]), counts, cost, residuals)
 
 

@@ -7,7 +7,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.refinement.kernels.overlap import COMPARED, Overlap, compare_points, fit_planes
+from elbowroom.calibrate.refinement.kernels.overlap import (
+    COMPARED,
+    Image,
+    Overlap,
+    Seen,
+    Sums,
+    compare_points,
+    fit_planes,
+)
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.rasterise import view_of
@@ -143,16 +151,15 @@ def pair_sums(
         tiles, by_noise = rule.tiles**2, np.zeros((6, 6))
         normal, gradient = np.zeros((tiles, 6, 6)), np.zeros((tiles, 6))
         counts, offs = np.zeros(4, dtype=np.int64), []
+        sums = Sums(normal, gradient, by_noise, counts)
         other_from_one = invert_rigid(poses[other.name]) @ poses[one.name]
         view = view_of(other.images.thinned)
         _, rows, other_rows = np.intersect1d(one.moments, other.moments, return_indices=True)
         for row, at in zip(rows, other_rows, strict=True):
-            points, normals, sigmas = one.points[row]
-            off = np.full(len(points), np.nan)
-            compare_points(
-                view, other.images.depth_m[at], other.planes[at], points, normals, sigmas,
-                other_from_one, fitting, normal, gradient, by_noise, counts, off,
-            )  # fmt: skip
+            seen = Seen(*one.points[row])
+            off = np.full(len(seen.points), np.nan)
+            image = Image(other.images.depth_m[at], other.planes[at])
+            compare_points(view, image, seen, other_from_one, fitting, sums, off)
             offs.append(off[np.isfinite(off)])
         return PairSums(one.name, other.name, normal, gradient, by_noise, counts, np.concatenate(offs))
 

@@ -177,7 +177,7 @@ def _show(
         camera, held = item
         plate = Solid("board", plate_mesh(capture.board), held)
         moment = Moment(_stamp(number) / 1e9, (*shell(), plate), {})
-        frame = render([camera.true], moment, seed=capture.seed, threads=1)[0]
+        frame = render([camera.true], moment, seed=capture.seed)[0]
         writer.depth(camera, _stamp(number), frame.depth_m)
         if capture.board.kind == "printed":
             grey = infrared_image(camera.true, moment, capture.board, plate, seed=capture.seed)

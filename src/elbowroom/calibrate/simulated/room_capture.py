@@ -100,7 +100,7 @@ def _record(
     for number, moment in enumerate(moments):
 
         def one(camera: TrueCamera, moment: Moment = moment) -> None:
-            frame = render([camera.true], moment, seed=seed, threads=1)[0]
+            frame = render([camera.true], moment, seed=seed)[0]
             writer.depth(camera, moment.stamp_ns, frame.depth_m)
 
         spread(one, cameras)

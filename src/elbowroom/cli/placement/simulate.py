@@ -2,7 +2,7 @@
 
 import time
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -13,8 +13,6 @@ from elbowroom.placement.cameras import cameras_of
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.rehearsal import Rehearsal, Settings, rehearse
 from elbowroom.placement.scenes import random_scenes
-from elbowroom.reconstruct import Rule
-from elbowroom.reconstruct.carve import Detail
 from elbowroom.site import Site
 
 
@@ -60,10 +58,7 @@ def settings_of(site: Site, voxel_size_m: float | None) -> Settings:
     machine = site.machine()
     return Settings(
         site.grid(voxel_size_m),
-        cast(Rule, site.rule),
-        cast(Detail, site.detail),
-        site.margin(),
-        site.explain_tolerance_m,
+        site.terms(),
         machine,
         site.motions(machine) if machine is not None else (),
     )
@@ -80,8 +75,8 @@ def _row(site: Site, done: Rehearsal, settings: Settings, cameras: int, seconds:
         "scenes": len(done.scenes),
         "cameras": cameras,
         "voxel_size_m": settings.grid.voxel_size_m,
-        "rule": settings.rule,
-        "detail": settings.detail,
+        "rule": settings.terms.rule,
+        "detail": settings.terms.detail,
         "free_pct": done.free_pct,
         "free_error_pct": done.free_error_pct,
         "occupied_pct": done.occupied_pct,

@@ -80,7 +80,7 @@ def seen_views(
     """The board held before a camera and looked for: its true pose, and the view; None: it was not found."""
     for number, pose in enumerate(hand_poses([camera], board, count, np.random.default_rng([seed, 31]))):
         moment = Moment(float(number + 1), (*shell(), Solid("board", plate_mesh(board), pose)), {})
-        frame = render([camera], moment, seed=seed, threads=1)[0]
+        frame = render([camera], moment, seed=seed)[0]
         found = cut_out_view(camera, board, frame.depth_m, number)
         yield pose, found if isinstance(found, BoardView) else None
 

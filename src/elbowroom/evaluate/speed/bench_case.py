@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
+from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, parallel
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
 from elbowroom.motion import joint_motions
@@ -59,7 +59,8 @@ def run_case(
 
     Args:
         scene_file: .npz of poses, lens, depths and joints (`bench.save_scenes`).
-        voxel_size_m, detail, threads: as of `Cycle`.
+        voxel_size_m, detail: as of `Cycle`.
+        threads: over so many the work is spread.
         noise: whether cameras have a noise model, hence margins and the filter of flying pixels.
         rounds: how many times each is measured.
     """
@@ -79,7 +80,7 @@ def run_case(
     positions = [dict(zip(machine.joint_names, row, strict=True)) for row in joints.tolist()]
     grid = VoxelGrid.covering((-2.0, -2.0, 0.0), (2.0, 2.0, 2.5), voxel_size_m)
     motions = joint_motions(machine, SPEEDS, BRAKING_TIME_S)
-    cycle = Cycle(grid, cameras, machine, motions, detail=detail, threads=threads)  # type: ignore[arg-type]
+    cycle = Cycle(grid, cameras, machine, motions, detail=detail)  # type: ignore[arg-type]
     stages: list[Mapping[str, float]] = []
 
     def pass_once(n: int) -> None:
@@ -90,7 +91,7 @@ def run_case(
         stages.append(result.stage_ms)
 
     def carve_once(n: int) -> None:
-        carve(grid, cameras, moments[n % len(moments)], detail=detail, threads=threads)  # type: ignore[arg-type]
+        carve(grid, cameras, moments[n % len(moments)], detail=detail)  # type: ignore[arg-type]
 
     shared = {
         "voxel_size_m": voxel_size_m,
@@ -103,8 +104,9 @@ def run_case(
         "rounds": rounds,
     }
     reference: list[float] = []
-    carves = _times(carve_once, rounds, reference)
-    cycles = _times(pass_once, rounds, reference)
+    with parallel.threads(threads):
+        carves = _times(carve_once, rounds, reference)
+        cycles = _times(pass_once, rounds, reference)
     against = float(np.median(reference))
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     measured = [("carve", carves), ("cycle", cycles)]

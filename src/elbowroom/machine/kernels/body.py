@@ -24,6 +24,20 @@ class Tree(NamedTuple):
     offset: np.ndarray
 
 
+class Clusters(NamedTuple):
+    """Surface samples in clusters: cluster c is points[start[c] : stop[c]], on one link, in a sphere.
+
+    points: (n, 3) in the frame of their link [m]. link, centre, radius: of each cluster.
+    """
+
+    points: np.ndarray
+    start: np.ndarray
+    stop: np.ndarray
+    link: np.ndarray
+    centre: np.ndarray
+    radius: np.ndarray
+
+
 @njit(cache=True, nogil=True)
 def place_links(tree, world_from_base, positions, world_from_link):
     """Forward kinematics: fills world_from_link (n, links, 4, 4) for positions (n, joints)."""
@@ -77,9 +91,7 @@ def _move(fixed, axis, position, slides, moved):
 
 
 @njit(cache=True, nogil=True)
-def mark_balls(
-    points, starts, stops, link, centre, radius, share, shares, world_from_link, cells, reach, words
-):
+def mark_balls(samples, share, shares, world_from_link, cells, reach, words):
     """Sets the voxels that balls about surface samples meet: those whose box lies within `reach` of a sample.
 
     A ball of half a voxel's radius at most meets only voxels of the 2 x 2 x 2 block about the grid corner
@@ -87,15 +99,14 @@ def mark_balls(
     end.
 
     Args:
-        points: (n, 3) in the frame of their link [m].
-        starts, stops: cluster c is points[starts[c] : stops[c]].
-        link, centre, radius: link and bounding sphere of each cluster.
+        samples: `Clusters`.
         share, shares: does every shares-th cluster from share on.
         world_from_link: (links, 4, 4).
         cells: the voxel grid.
         reach: radius of the balls [m].
         words: the plane to set bits in.
     """
+    points, starts, stops, link, centre, radius = samples
     scale = 1.0 / cells.edge
     r = reach * scale
     blocks = np.zeros(MAX_BLOCKS, dtype=np.uint8)

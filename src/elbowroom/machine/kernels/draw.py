@@ -30,6 +30,15 @@ class View(NamedTuple):
     flying: bool
 
 
+class Drawn(NamedTuple):
+    """An image of inverse planar depth [1/m], float32, 0 where nothing is, and the first and last column drawn in each
+    row; rows without: width and -1."""
+
+    inverse: np.ndarray
+    first: np.ndarray
+    last: np.ndarray
+
+
 class Mesh(NamedTuple):
     """Triangles of many links; link l has vertices vertex_start[l] to vertex_start[l + 1].
 
@@ -89,10 +98,8 @@ def draw(mesh, camera_from_link, view, inverse, first, last):
                 area -= (seen[c, 0] - seen[a, 0]) * (seen[b, 1] - seen[a, 1])
                 if area > 0.0 and not backs:
                     continue
-                _fill(
-                    seen[a, 0], seen[a, 1], seen[a, 2], seen[b, 0], seen[b, 1], seen[b, 2],
-                    seen[c, 0], seen[c, 1], seen[c, 2], view, inverse, first, last,
-                )  # fmt: skip
+                one, two = (seen[a, 0], seen[a, 1], seen[a, 2]), (seen[b, 0], seen[b, 1], seen[b, 2])
+                _fill(one, two, (seen[c, 0], seen[c, 1], seen[c, 2]), view, inverse, first, last)
             elif behind < 3:
                 # one number at a time, here and below: assigning rows takes the compiler seconds longer
                 for axis in range(3):
@@ -103,8 +110,9 @@ def draw(mesh, camera_from_link, view, inverse, first, last):
 
 
 @njit(nogil=True, error_model="numpy")
-def _sphere_in_view(pose, centre, radius, view):
+def _sphere_in_view(camera_from_link, centre, radius, view):
     """Whether a sphere may meet the image: not beyond the near plane or a side of the view."""
+    pose = camera_from_link
     a, b, c = centre[0], centre[1], centre[2]
     x = pose[0, 0] * a + pose[0, 1] * b + pose[0, 2] * c + pose[0, 3]
     y = pose[1, 0] * a + pose[1, 1] * b + pose[1, 2] * c + pose[1, 3]
@@ -122,8 +130,9 @@ def _sphere_in_view(pose, centre, radius, view):
 
 
 @njit(nogil=True, error_model="numpy")
-def _is_outside(pose, centre, radius):
+def _is_outside(camera_from_link, centre, radius):
     """Whether the camera is outside a sphere, and the near plane too."""
+    pose = camera_from_link
     square = 0.0
     for i in range(3):
         along = pose[i, 0] * centre[0] + pose[i, 1] * centre[1] + pose[i, 2] * centre[2] + pose[i, 3]
@@ -163,19 +172,20 @@ def _clip_and_fill(corners, view, inverse, first, last):
         kept[p, 0], kept[p, 1] = view.fx * kept[p, 0] / z + view.cx, view.fy * kept[p, 1] / z + view.cy
         kept[p, 2] = 1.0 / z
     for p in range(1, n - 1):
-        _fill(
-            kept[0, 0], kept[0, 1], kept[0, 2], kept[p, 0], kept[p, 1], kept[p, 2],
-            kept[p + 1, 0], kept[p + 1, 1], kept[p + 1, 2], view, inverse, first, last,
-        )  # fmt: skip
+        one, two = (kept[0, 0], kept[0, 1], kept[0, 2]), (kept[p, 0], kept[p, 1], kept[p, 2])
+        _fill(one, two, (kept[p + 1, 0], kept[p + 1, 1], kept[p + 1, 2]), view, inverse, first, last)
 
 
 @njit(nogil=True, error_model="numpy")
-def _fill(ua, va, ia, ub, vb, ib, uc, vc, ic, view, inverse, first, last):
-    """Draws a triangle given by its corners' columns, rows and inverse depths.
+def _fill(one, two, three, view, inverse, first, last):
+    """Draws a triangle given by its corners, each as column, row and inverse depth.
 
     Inverse depth is linear over the image. Rows are cut by the triangle's edges, each always taken from its
     upper end, so that neighbours meet without gaps.
     """
+    ua, va, ia = one
+    ub, vb, ib = two
+    uc, vc, ic = three
     # corners from the top down
     if vb < va:
         ua, va, ia, ub, vb, ib = ub, vb, ib, ua, va, ia
@@ -203,15 +213,15 @@ def _fill(ua, va, ia, ub, vb, ib, uc, vc, ic, view, inverse, first, last):
     lower_slope = (uc - ub) / (vc - vb) if vc > vb else 0.0
     for row in range(top, bottom + 1):
         v = min(max(float(row), va), vc)
-        one = ua + (v - va) * long_slope
+        on_long = ua + (v - va) * long_slope
         if v < vb:
-            two = ua + (v - va) * upper_slope
+            on_short = ua + (v - va) * upper_slope
         elif v > vb or vc > vb:
-            two = ub + (v - vb) * lower_slope
+            on_short = ub + (v - vb) * lower_slope
         else:
-            two = ub
-        x0 = math.ceil(max(min(one, two) - EDGE_PX, left))
-        x1 = math.floor(min(max(one, two) + EDGE_PX, right))
+            on_short = ub
+        x0 = math.ceil(max(min(on_long, on_short) - EDGE_PX, left))
+        x1 = math.floor(min(max(on_long, on_short) + EDGE_PX, right))
         if x0 > x1:
             continue
         first[row], last[row] = min(first[row], x0), max(last[row], x1)

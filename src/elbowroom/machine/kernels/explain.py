@@ -1,11 +1,14 @@
 """Compares measured depth images with the drawn machine: which pixels are the machine. Arrays in, arrays out."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
 from elbowroom.machine.kernels.returns import (
     MOST_M,
     UNSAFE,
+    Scratch,
     has_support,
     is_return,
     mark_row_of_tiles,
@@ -13,22 +16,29 @@ from elbowroom.machine.kernels.returns import (
 )
 
 
+class Tolerance(NamedTuple):
+    """A depth d fits if it lies within `metres` + `sigmas` * sigma(d) of what is drawn."""
+
+    metres: float
+    sigmas: float
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
-def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around):
-    """Fills `model` where a measured depth fits what was drawn in the 3 x 3 pixels about it; wipes `inverse`.
+def explain(view, depth, drawn, tolerance, model, around):
+    """Fills `model` where a measured depth fits what was drawn in the 3 x 3 pixels about it; wipes what was drawn.
 
     Sets the voxels of the returns that do not fit, too.
 
     Args:
         view: the camera.
         depth: (height, width) float32, measured [m, the camera's kind].
-        inverse: (height, width) float32, from `draw` and `to_kind`; zeros afterwards.
-        first, last: (height,) columns drawn in each row.
-        tolerance, sigmas: a depth d fits if it lies within tolerance [m] + sigmas * sigma(d).
+        drawn: `Drawn`, from `draw` and `to_kind`: inverse depth of the camera's kind; zeros afterwards.
+        tolerance: `Tolerance`.
         model: (height, width) float32 zeros; where a pixel fits, the depth drawn in it, or else nearest about it
             [m, same kind]. Of a camera whose pixels fly, also what `_settle_edges` says.
         around: where to look for other returns, and the plane for their voxels; without tiles: nowhere.
     """
+    inverse, first, last = drawn
     height, width = view.height, view.width
     left, right = width, -1
     for v in range(height):
@@ -41,6 +51,7 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around)
     limits = np.empty((2, width), dtype=np.float32)
     found = np.zeros((width + 7) // 8 * 8, dtype=np.uint8)
     spans, boxes = np.empty((3, width), dtype=np.float32), np.empty((6, width), dtype=np.int32)
+    scratch = Scratch(limits, found, spans, boxes)
     for v in range(-1, height):
         _across(inverse, v + 1, first, last, left, right, across, (v + 1) % 3)
         if v < 0:
@@ -50,11 +61,11 @@ def explain(view, depth, inverse, first, last, tolerance, sigmas, model, around)
             start, stop = min(start, first[row]), max(stop, last[row])
         if stop >= 0:
             start, stop = max(0, start - 1), min(width - 1, stop + 1)
-            _compare(view, depth[v], inverse[v], across, start, stop, tolerance, sigmas, model[v])
+            _compare(view, depth[v], inverse[v], across, (start, stop), tolerance, model[v])
     if view.flying:
         _settle_edges(view, depth, first, last, model)
     for row in range(around.near.shape[0]):
-        mark_row_of_tiles(view, depth, model, row, around, limits, found, spans, boxes)
+        mark_row_of_tiles(view, depth, model, row, around, scratch)
     for v in range(height):
         set_run(inverse[v], first[v], last[v] + 1, np.float32(0.0))
 
@@ -93,10 +104,12 @@ def _of_neighbours(drawn, first, last, padded, filled, most, least):
 
 
 @njit(nogil=True, error_model="numpy")
-def _compare(view, depth, drawn, across, start, stop, tolerance, sigmas, model):
-    """Fills one row of the model where depth fits; without branches, for many pixels at once."""
+def _compare(view, depth, drawn, across, span, tolerance, model):
+    """Fills a span of one row of the model where depth fits; without branches, for many pixels at once."""
+    start, stop = span
+    metres, sigmas = tolerance
     one, zero = np.float32(1.0), np.float32(0.0)
-    fixed, factor = np.float32(tolerance + sigmas * view.constant), np.float32(sigmas * view.linear)
+    fixed, factor = np.float32(metres + sigmas * view.constant), np.float32(sigmas * view.linear)
     square, offset = np.float32(sigmas * view.quadratic), np.float32(view.offset)
     low, high = np.float32(view.min_depth), np.float32(min(view.max_depth, MOST_M))
     flying = view.flying

@@ -32,6 +32,16 @@ class Around(NamedTuple):
     words: np.ndarray
 
 
+class Scratch(NamedTuple):
+    """Rows of memory for one image: least and greatest depth per pixel; pixels found; spans and boxes of
+    `_bound_returns`."""
+
+    limits: np.ndarray
+    found: np.ndarray
+    spans: np.ndarray
+    boxes: np.ndarray
+
+
 @njit(nogil=True, error_model="numpy")
 def is_return(view, d):
     """Whether a depth was measured at all."""
@@ -105,16 +115,17 @@ def mark_tiles(balls, link, radius, camera_from_link, view, near, far):
 
 
 @njit(nogil=True, error_model="numpy")
-def mark_row_of_tiles(view, depth, model, row, around, limits, found, spans, boxes):
+def mark_row_of_tiles(view, depth, model, row, around, scratch):
     """Sets the voxels that the unexplained returns of one row of tiles may lie in.
 
     That is those that the cube about the measured point meets whose half side is half a pixel at its range,
     moved along the ray by up to `around.sigmas` * sigma. A return that stands alone is passed over: it may
     fly, or have slipped between two links.
     """
+    # taken out of the tuples once: each look into them counts references, which costs more than the arithmetic below
+    limits, found, spans, boxes = scratch
     width, least, most = view.width, limits[0], limits[1]
-    # taken out of the tuple once: each look into it counts references, which costs more than the arithmetic below
-    sigmas, pose, cells, words = around.sigmas, around.world_from_camera, around.cells, around.words
+    ray, cells, words = (around.sigmas, around.world_from_camera), around.cells, around.words
     left, right = width, 0
     for column in range(around.near.shape[1]):
         start, stop = column * TILE, min(column * TILE + TILE, width)
@@ -137,7 +148,7 @@ def mark_row_of_tiles(view, depth, model, row, around, limits, found, spans, box
                 done = 8 * n
                 while done < right and eight[done // 8] != 0:
                     done = min(done + 8, right)
-                _bound_returns(view, v, depth[v], 8 * n, done, sigmas, pose, cells, spans, boxes)
+                _bound_returns(view, v, depth[v], (8 * n, done), ray, cells, spans, boxes)
             for u in range(8 * n, min(8 * n + 8, right)):
                 if found[u] == 0 or (known >= 0 and _same_box(boxes, u, known)):
                     continue
@@ -145,7 +156,7 @@ def mark_row_of_tiles(view, depth, model, row, around, limits, found, spans, box
                 if _all_set(boxes, u, cells.cubes_y, cells.cubes_z, words):
                     known = u
                 elif has_support(view, depth, model, u, v):
-                    _mark_return(view, u, v, depth[v, u], sigmas, pose, cells, words)
+                    _mark_return(view, u, v, depth[v, u], ray, cells, words)
 
 
 @njit(nogil=True, error_model="numpy")
@@ -164,17 +175,20 @@ def _find(depth, model, least, most, left, right, found):
 
 
 @uncounted(error_model="numpy")
-def _bound_returns(view, v, depth, start, stop, sigmas, pose, cells, spans, boxes):
+def _bound_returns(view, v, depth, run, ray, cells, spans, boxes):
     """First and last voxel along each axis of a box about all that each return of a run may lie in.
 
     In float32 and without branches, for many pixels at once; the box is wider by more than that errs.
 
     Args:
-        v, start, stop: row of the run, its first column, one past its last.
+        v, run: row of the run; its first column, one past its last.
+        ray: how many sigmas a return may lie off along its ray, and world_from_camera.
         depth: (width,) of the row [m].
         spans: (3, width) float32, written: planar depth from and to, half a pixel there in voxels.
         boxes: (6, width) int32, written: first and last i, j and k; none if the last comes before the first.
     """
+    start, stop = run
+    sigmas, world_from_camera = ray
     y, scale, one = np.float32((v - view.cy) / view.fy), 1.0 / cells.edge, np.float32(1.0)
     cx, pitch, square = np.float32(view.cx), np.float32(1.0 / view.fx), one + y * y
     half_pixel = np.float32(0.5 / min(view.fx, view.fy) * scale)
@@ -193,9 +207,9 @@ def _bound_returns(view, v, depth, start, stop, sigmas, pose, cells, spans, boxe
     for axis in range(3):
         corner = cells.x0 if axis == 0 else cells.y0 if axis == 1 else cells.z0
         end = np.float32(cells.nx if axis == 0 else cells.ny if axis == 1 else cells.nz)
-        origin = np.float32((pose[axis, 3] - corner) * scale)
-        turn = np.float32(pose[axis, 0] * scale) * pitch
-        base = np.float32((pose[axis, 1] * y + pose[axis, 2]) * scale)
+        origin = np.float32((world_from_camera[axis, 3] - corner) * scale)
+        turn = np.float32(world_from_camera[axis, 0] * scale) * pitch
+        base = np.float32((world_from_camera[axis, 1] * y + world_from_camera[axis, 2]) * scale)
         aside = abs(origin)
         for n in range(start, stop):
             u = np.uint64(n)
@@ -229,8 +243,9 @@ def _all_set(boxes, u, cubes_y, cubes_z, words):
 
 
 @njit(nogil=True, error_model="numpy")
-def _mark_return(view, u, v, d, sigmas, pose, cells, words):
+def _mark_return(view, u, v, d, ray, cells, words):
     """Sets the voxels that one return may lie in."""
+    sigmas, pose = ray
     x, y = (u - view.cx) / view.fx, (v - view.cy) / view.fy
     z = d / math.sqrt(1.0 + x * x + y * y) if view.radial else float(d)
     half = 0.5 / min(view.fx, view.fy) / cells.edge * z

@@ -71,7 +71,7 @@ def _machine_in_images() -> None:
     depth = np.ones((24, 32), dtype=np.float32)
     depth.setflags(write=False)  # as frames have it; to numba that is another type
     grid = VoxelGrid((-0.2, -0.2, -0.2), (8, 8, 8), 0.05)
-    explain_frames(probe(), [camera], [depth], [{"slide": 0.0}], grid=grid, threads=1)
+    explain_frames(probe(), [camera], [depth], [{"slide": 0.0}], grid=grid)
 
 
 def _motion() -> None:

@@ -27,7 +27,7 @@ def warm_up_watch() -> None:
         ray=ray,
         normal=np.tile((0.0, 0.0, -1.0), (len(pixel), 1)),
     )
-    watch = Watch([camera], [wall], probe(), threads=1)
+    watch = Watch([camera], [wall], probe())
     for stamp in range(2):
         depth = np.full((24, 32), 2.0, dtype=np.float32)
         watch.hear([DepthFrame("one", stamp, depth)], {"slide": 0.0}, stamp)

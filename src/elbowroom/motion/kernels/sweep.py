@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from elbowroom.geometry.kernels.bits import bit_of, word_of
-from elbowroom.machine.kernels.body import SLIDES, place_links
+from elbowroom.machine.kernels.body import SLIDES, Tree, place_links
 from elbowroom.motion.kernels.triangles import triangle_meets_box
 from elbowroom.motion.kernels.volume import cell_of, counted, gap, leaves, meets_block, meets_voxel
 
@@ -32,6 +32,15 @@ class Course(NamedTuple):
 
     travel: np.ndarray
     positions: np.ndarray
+
+
+class Way(NamedTuple):
+    """What moves, and where to: the tree, where it stands, joint positions along the motion, its length in travel."""
+
+    tree: Tree
+    world_from_base: np.ndarray
+    course: Course
+    length: float
 
 
 class Skin(NamedTuple):
@@ -293,19 +302,27 @@ def touched_block(placed, skin, speeds, half, volume, cells, samples, place):
 
 
 @njit(cache=True, nogil=True)
-def first_block(
-    tree, world_from_base, course, length, skin, speeds, moving, volume, cells, sample_depth, depth_limit
-):
-    """The first of 2^depth_limit equal intervals of [0, length] in which the machine meets a block.
+def first_block(way, skin, speeds, moving, volume, cells, halvings):
+    """The first of 2^n equal intervals of a way in which the machine meets a block.
 
     An interval is tested at its middle, every ball grown by the most that it moves in half of it (`speeds`,
     per cluster, times half its length). Where no ball meets a block the interval is free; else its halves are
     looked at, the earlier one first, with the balls that are left: clusters down to `sample_depth` halvings,
     samples from there, and in the shortest intervals the samples' triangles.
 
+    Args:
+        way: `Way`.
+        skin: `Skin`.
+        speeds: of each cluster, the most that it moves per unit of travel.
+        moving: the clusters that move.
+        volume, cells: what is blocked, and its grid.
+        halvings: how many for clusters, and how many in all, n.
+
     Returns:
         The interval's index, -1 for none; what the block is, the cluster that meets it, and where (3,) [m].
     """
+    tree, world_from_base, course, length = way
+    sample_depth, depth_limit = halvings
     total = 0
     for cluster in moving:
         total += skin.stop[cluster] - skin.start[cluster]

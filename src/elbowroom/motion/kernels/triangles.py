@@ -28,15 +28,18 @@ def triangle_meets_box(triangle, x, y, z, half):
         return False
     # of the two corners of an edge one suffices: their products with the axis are the same
     return not (
-        _apart(ux, uy, uz, ax, ay, az, cx, cy, cz, half)
-        or _apart(vx, vy, vz, bx, by, bz, ax, ay, az, half)
-        or _apart(wx, wy, wz, cx, cy, cz, bx, by, bz, half)
+        _apart((ux, uy, uz), (ax, ay, az), (cx, cy, cz), half)
+        or _apart((vx, vy, vz), (bx, by, bz), (ax, ay, az), half)
+        or _apart((wx, wy, wz), (cx, cy, cz), (bx, by, bz), half)
     )
 
 
 @njit(inline="always")
-def _apart(ex, ey, ez, px, py, pz, qx, qy, qz, half):
-    """Whether a product of the cube's axes with an edge parts it from a triangle: p on the edge, q beside."""
+def _apart(edge, on_edge, beside, half):
+    """Whether a product of the cube's axes with an edge parts it from a triangle, by a corner on it and one beside."""
+    ex, ey, ez = edge
+    px, py, pz = on_edge
+    qx, qy, qz = beside
     p, q = ey * pz - ez * py, ey * qz - ez * qy
     if min(p, q) > half * (abs(ey) + abs(ez)) or max(p, q) < -half * (abs(ey) + abs(ez)):
         return True
@@ -48,15 +51,17 @@ def _apart(ex, ey, ez, px, py, pz, qx, qy, qz, half):
 
 
 @njit(cache=True, nogil=True)
-def list_patches(points, start, stop, centre, radius, reach, first, last, triangles, stops, near, fill):
+def list_patches(samples, reach, first, last, triangles, stops, near, fill):
     """For the samples of one link, the triangles that come within `reach`: counted, or filled in.
 
     Args:
-        points, start, stop, centre, radius: samples and their clusters.
+        samples: `Clusters`.
+        reach: how near [m].
         first, last: the clusters of the link, `last` exclusive.
         triangles: of all links, shape (m, 3, 3); stops: the link's, from `stops[0]` to `stops[1]`.
         near: if `fill`, takes the triangles' numbers, one sample after another; else how many, by sample.
     """
+    points, centre, radius = samples.points, samples.centre, samples.radius
     some = np.empty(stops[1] - stops[0], dtype=np.int32)
     written = 0
     for cluster in range(first, last):
@@ -66,7 +71,7 @@ def list_patches(points, start, stop, centre, radius, reach, first, last, triang
             if triangle_meets_box(triangles[triangle], x, y, z, radius[cluster] + reach):
                 some[count] = triangle
                 count += 1
-        for sample in range(start[cluster], stop[cluster]):
+        for sample in range(samples.start[cluster], samples.stop[cluster]):
             before = written
             x, y, z = (
                 np.float64(points[sample, 0]),

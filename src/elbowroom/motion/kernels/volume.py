@@ -20,6 +20,25 @@ class Volume(NamedTuple):
     disputed: np.ndarray
 
 
+class Axis(NamedTuple):
+    """How the next voxel along an axis is found in a plane of bits.
+
+    step: from a bit of a word to that of the next voxel.
+    low: the bits of the word's first voxels.
+    near, far: from a word to the next one, within a cube and into the next cube.
+    digit: where two bits of a word's number tell the block within the cube.
+    stride, cubes: from a cube's number to the next one's, and how many there are.
+    """
+
+    step: int
+    low: int
+    near: int
+    far: int
+    digit: int
+    stride: int
+    cubes: int
+
+
 @njit(cache=True, nogil=True)
 def block(free, cells, words, cubes):
     """Fills a plane and the marks of its cubes: blocked is every voxel of the grid that is not free."""
@@ -42,24 +61,18 @@ def block(free, cells, words, cubes):
 def gather_corners(words, cells, scratch, corners):
     """Fills a plane: whether any of the eight voxels about each voxel's least corner is set; `scratch` is a third."""
     across_y, across_x = cells.cubes_z * 64, cells.cubes_y * cells.cubes_z * 64
-    _with_previous(words, 1, 0x1111111111111111, 1, 61, 0, 1, cells.cubes_z, corners)
-    _with_previous(corners, 4, 0x000F000F000F000F, 4, across_y - 12, 2, cells.cubes_z, cells.cubes_y, scratch)
-    _with_previous(
-        scratch, 16, 0xFFFF, 16, across_x - 48, 4, cells.cubes_y * cells.cubes_z, cells.cubes_x, corners
-    )
+    along_z = Axis(1, 0x1111111111111111, 1, 61, 0, 1, cells.cubes_z)
+    along_y = Axis(4, 0x000F000F000F000F, 4, across_y - 12, 2, cells.cubes_z, cells.cubes_y)
+    along_x = Axis(16, 0xFFFF, 16, across_x - 48, 4, cells.cubes_y * cells.cubes_z, cells.cubes_x)
+    _with_previous(words, along_z, corners)
+    _with_previous(corners, along_y, scratch)
+    _with_previous(scratch, along_x, corners)
 
 
 @njit
-def _with_previous(words, step, low, near, far, digit, stride, count, out):
-    """Each voxel's bit or that of its lower neighbour along one axis.
-
-    Args:
-        step: from a bit of a word to that of the next voxel.
-        low: the bits of the word's first voxels.
-        near, far: from a word to the next one, within a cube and into the next cube.
-        digit: where two bits of a word's number tell the block within the cube.
-        stride, count: from a cube's number to the next one's, and how many there are.
-    """
+def _with_previous(words, axis, out):
+    """Each voxel's bit or that of its lower neighbour along one axis."""
+    step, low, near, far, digit, stride, count = axis
     last = np.uint64(low) << np.uint64(3 * step)
     shift, over = np.uint64(step), np.uint64(3 * step)
     for word in range(words.size):

@@ -66,17 +66,16 @@ class Layout:
 
     def update(self, points: NDArray[np.int64] | None = None) -> None:
         """Counts again, at some points or all."""
+        asked = np.arange(self.model.points) if points is None else points
+        kernels.apart_of_points(self._sights, np.array(self.chosen, dtype=np.int64), asked, self.apart)
+
+    @property
+    def _sights(self) -> kernels.Sights:
+        """The model as kernels take it."""
         model = self.model
-        kernels.apart_of_points(
-            model.sees,
-            model.azimuth,
-            model.place_of,
-            np.array(self.chosen, dtype=np.int64),
-            math.radians(model.requirement.angle_deg),
-            TIE_RAD,
-            model.requirement.views,
-            np.arange(model.points) if points is None else points,
-            self.apart,
+        angle = math.radians(model.requirement.angle_deg)
+        return kernels.Sights(
+            model.sees, model.azimuth, model.place_of, angle, TIE_RAD, model.requirement.views
         )
 
     def without(self, members: Sequence[int]) -> "Layout":
@@ -97,18 +96,9 @@ class Layout:
         """What each candidate would add to the sum of worths, shape (candidates,); -1 where its place is taken."""
         model = self.model
         gain = np.zeros(model.candidates)
+        open_ = np.flatnonzero(self.apart < model.requirement.views)
         kernels.gains(
-            model.sees,
-            model.azimuth,
-            model.place_of,
-            np.array(self.chosen, dtype=np.int64),
-            math.radians(model.requirement.angle_deg),
-            TIE_RAD,
-            model.requirement.views,
-            np.flatnonzero(self.apart < model.requirement.views),
-            self.apart,
-            self.worth,
-            gain,
+            self._sights, np.array(self.chosen, dtype=np.int64), open_, self.apart, self.worth, gain
         )
         if self.chosen:
             gain[np.isin(model.place_of, model.place_of[self.chosen])] = -1.0
@@ -116,18 +106,6 @@ class Layout:
 
     def losses(self) -> NDArray[np.float64]:
         """What the sum of worths would lose without each member, shape (len(chosen),)."""
-        model = self.model
         loss = np.zeros(len(self.chosen))
-        kernels.losses(
-            model.sees,
-            model.azimuth,
-            model.place_of,
-            np.array(self.chosen, dtype=np.int64),
-            math.radians(model.requirement.angle_deg),
-            TIE_RAD,
-            model.requirement.views,
-            self.apart,
-            self.worth,
-            loss,
-        )
+        kernels.losses(self._sights, np.array(self.chosen, dtype=np.int64), self.apart, self.worth, loss)
         return loss

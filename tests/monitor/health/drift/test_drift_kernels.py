@@ -54,7 +54,9 @@ def test_the_fitted_motion_is_that_of_matrices(seed, n):
     offset = jacobian @ rng.normal(0, 0.01, 6) + rng.normal(0, sigma) * rng.choice([1, 8], n + 3)
     used = np.sort(rng.permutation(n + 3)[:n])
     motion, covariance, said = np.empty(6), np.empty((6, 6)), np.empty(4)
-    kernels.fit_motion(jacobian, offset, sigma, used, 0.1, 0.2, motion, covariance, said)
+    kernels.fit_motion(
+        jacobian, offset, sigma, used, kernels.Prior(0.1, 0.2), kernels.Fitted(motion, covariance, said)
+    )
     if n == 0:
         assert not motion.any() and not said.any()
         assert np.diag(covariance) == pytest.approx([0.01] * 3 + [0.04] * 3)

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from elbowroom.errors import CalibrationError, InputError
+from elbowroom.geometry import parallel
 from elbowroom.monitor import Condition, Watch
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.sequential import Tally, mean_run_length
@@ -59,7 +60,10 @@ def test_the_order_of_cameras_does_not_matter():
 
 def test_threads_do_not_matter():
     truly = [knocked(CAMERAS[0], (0, 1, 0)), *CAMERAS[1:]]
-    one, many = (run(Watch(CAMERAS, REFERENCES, threads=n), truly) for n in (1, 4))
+    with parallel.threads(1):
+        one = run(Watch(CAMERAS, REFERENCES), truly)
+    with parallel.threads(4):
+        many = run(Watch(CAMERAS, REFERENCES), truly)
     assert one.stops == many.stops
     assert [c.share_seen for c in one.cameras] == [c.share_seen for c in many.cameras]
 

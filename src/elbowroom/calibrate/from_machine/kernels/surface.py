@@ -31,6 +31,19 @@ class Trust(NamedTuple):
     reach: float
 
 
+class Sums(NamedTuple):
+    """What `compare` adds up of one image.
+
+    normal, gradient: (8, 8), (8,) sums of weight J^T J and weight J^T r, r in sigmas. counts: (5,) as named above.
+    residuals: (height, width) float32, measured minus drawn depth [m] of the pixels that agree; NaN elsewhere.
+    """
+
+    normal: np.ndarray
+    gradient: np.ndarray
+    counts: np.ndarray
+    residuals: np.ndarray
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def is_smooth(inverse, u, v, border, step_m):
     """Whether the drawn surface about a pixel is one piece: along eight directions inverse depth is nearly linear."""
@@ -50,7 +63,7 @@ def is_smooth(inverse, u, v, border, step_m):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def compare(view, inverse, first, last, measured, bias, scale, trust, normal, gradient, counts, residuals):
+def compare(view, drawn_in, measured, depth_error, trust, sums):
     """Adds up normal equations of a camera's pose from one image of a surface.
 
     Residual: measured minus drawn planar depth, over sigma. With the drawn point p, its normal n and the ray d (z 1),
@@ -59,18 +72,18 @@ def compare(view, inverse, first, last, measured, bias, scale, trust, normal, gr
 
     Args:
         view: the camera.
-        inverse: (height, width) float32, 1 / drawn planar depth, 0 where nothing is.
-        first, last: (height,) first and last column drawn in each row.
+        drawn_in: `Drawn`: 1 / drawn planar depth, and which columns of each row it is in.
         measured: (height, width) float32 planar depth [m], 0 without return.
-        bias, scale: what the sensor's depth is taken to be off by [m, 1], along its kind of depth.
+        depth_error: bias and scale that the sensor's depth is taken to be off by [m, 1], along its kind of depth.
         trust: which pixels count.
-        normal, gradient: (8, 8), (8,) sums of weight J^T J and weight J^T r, r in sigmas; added to.
-        counts: (5,) as named above; added to.
-        residuals: (height, width) float32, measured minus drawn depth [m] of the pixels that agree; NaN elsewhere.
+        sums: `Sums`, added to.
 
     Returns:
         Tukey's cost: half squares of sigmas, bounded, over all pixels judged that have a return.
     """
+    inverse, first, last = drawn_in
+    bias, scale = depth_error
+    normal, gradient, counts, residuals = sums
     row = np.empty(8)
     cost = 0.0
     limit = trust.reach * trust.reach / 6.0

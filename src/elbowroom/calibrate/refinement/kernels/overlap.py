@@ -30,6 +30,36 @@ class Overlap(NamedTuple):
     arm_px: float
 
 
+class Seen(NamedTuple):
+    """Points that one camera saw, (n, 3), their surface's normals, (n, 3), frame of the camera; sigmas, (n,), along
+    the normals [m]."""
+
+    points: np.ndarray
+    normals: np.ndarray
+    sigmas: np.ndarray
+
+
+class Image(NamedTuple):
+    """Another camera's planar depth image [m], and what `fit_planes` made of it."""
+
+    depth: np.ndarray
+    planes: np.ndarray
+
+
+class Sums(NamedTuple):
+    """What `compare_points` adds up.
+
+    normal, gradient: (tiles^2, 6, 6), (tiles^2, 6). by_noise: (6, 6), the part of `normal` that stems from noise in
+    the planes' slopes alone: a flat wall, whose normals scatter, would seem to say something of shifts along itself.
+    counts: (4,) as named above.
+    """
+
+    normal: np.ndarray
+    gradient: np.ndarray
+    by_noise: np.ndarray
+    counts: np.ndarray
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def fit_planes(depth, fx, fy, cx, cy, half, bend, planes):
     """A plane q.p = 1 about each pixel of a planar depth image, where its neighbourhood is one surface.
@@ -77,21 +107,7 @@ def fit_planes(depth, fx, fy, cx, cy, half, bend, planes):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def compare_points(
-    view,
-    depth,
-    planes,
-    points,
-    normals,
-    sigmas,
-    other_from_one,
-    rule,
-    normal,
-    gradient,
-    by_noise,
-    counts,
-    offs,
-):
+def compare_points(view, image, seen, other_from_one, rule, sums, offs):
     """Adds up normal equations of the twist of one camera relative to another from points of the one.
 
     Residual: distance of the point from the plane about the pixel that looks at it, over sigma. With the point p in
@@ -99,17 +115,16 @@ def compare_points(
 
     Args:
         view: the other camera.
-        depth, planes: its image and what `fit_planes` made of it.
-        points, normals: (n, 3), frame of the one camera.
-        sigmas: (n,) of the points along their normals [m].
+        image: `Image` of it.
+        seen: `Seen` by the one camera.
         other_from_one: (4, 4).
         rule: which points count.
-        normal, gradient: (tiles^2, 6, 6), (tiles^2, 6); added to.
-        by_noise: (6, 6), the part of `normal` that stems from noise in the planes' slopes alone: a flat wall, whose
-            normals scatter, would seem to say something of shifts along itself; added to.
-        counts: (4,) as named above; added to.
+        sums: `Sums`, added to.
         offs: (n,) distance from the plane [m] of points that count, NaN of others.
     """
+    depth, planes = image
+    points, normals, sigmas = seen
+    counts = sums.counts
     row = np.empty(6)
     r = other_from_one
     for i in range(points.shape[0]):
@@ -157,23 +172,40 @@ def compare_points(
         row[0], row[1], row[2] = py * nz - pz * ny, pz * nx - px * nz, px * ny - py * nx
         row[3], row[4], row[5] = nx, ny, nz
         tile = (line * rule.tiles // view.height) * rule.tiles + column * rule.tiles // view.width
+        _add(row, weight, off, tile, sums)
+        _add_noise(row, (px, py, pz), weight * tilt * tilt, sums.by_noise)
+
+
+@njit(nogil=True, error_model="numpy")
+def _add(row, weight, off, tile, sums):
+    """Adds one point to the normal equations of its tile."""
+    for j in range(6):
+        sums.gradient[tile, j] += weight * row[j] * off
+        for k in range(6):
+            sums.normal[tile, j, k] += weight * row[j] * row[k]
+
+
+@njit(nogil=True, error_model="numpy")
+def _add_noise(row, point, weight, by_noise):
+    """Adds what noise in a plane's slopes alone makes of one point; `row` is lost.
+
+    The sum over three axes less that along the normal: over two axes along the surface.
+    """
+    px, py, pz = point
+    for j in range(6):
+        for k in range(6):
+            by_noise[j, k] -= weight * row[j] * row[k]
+    for axis in range(3):
+        # unit vector e: (p x e, e)
+        row[0], row[1], row[2] = 0.0, 0.0, 0.0
+        row[3], row[4], row[5] = 0.0, 0.0, 0.0
+        row[3 + axis] = 1.0
+        if axis == 0:
+            row[1], row[2] = pz, -py
+        elif axis == 1:
+            row[0], row[2] = -pz, px
+        else:
+            row[0], row[1] = py, -px
         for j in range(6):
-            gradient[tile, j] += weight * row[j] * off
             for k in range(6):
-                normal[tile, j, k] += weight * row[j] * row[k]
-                by_noise[j, k] -= weight * tilt * tilt * row[j] * row[k]
-        # the sum over three axes less that along the normal: over two axes along the surface
-        for axis in range(3):
-            # unit vector e: (p x e, e)
-            row[0], row[1], row[2] = 0.0, 0.0, 0.0
-            row[3], row[4], row[5] = 0.0, 0.0, 0.0
-            row[3 + axis] = 1.0
-            if axis == 0:
-                row[1], row[2] = pz, -py
-            elif axis == 1:
-                row[0], row[2] = -pz, px
-            else:
-                row[0], row[1] = py, -px
-            for j in range(6):
-                for k in range(6):
-                    by_noise[j, k] += weight * tilt * tilt * row[j] * row[k]
+                by_noise[j, k] += weight * row[j] * row[k]

@@ -10,7 +10,7 @@ from elbowroom.geometry.lens import distorted, usable_radius
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.draw import View
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
-from elbowroom.monitor.health.drift.kernels.body import draw_links, surface_spots
+from elbowroom.monitor.health.drift.kernels.body import Limits, Raw, draw_links, surface_spots
 from elbowroom.monitor.health.drift.kernels.watch import LEAST_SIGMA_M
 
 WIDTH_PX = 160
@@ -82,10 +82,9 @@ class BodyView:
         draw_links(
             mesh_of(self.machine), camera_from_link, self._view, *self._canvas, self._composite, self._shown
         )
-        n = surface_spots(
-            self._view, self._composite, self._shown, depth_m.ravel(), self._raw_pixel, self._per_planar,
-            float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M, self._link_of, self._numbers,
-        )  # fmt: skip
+        raw = Raw(depth_m.ravel(), self._raw_pixel, self._per_planar)
+        limits = Limits(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
+        n = surface_spots(self._view, self._composite, self._shown, raw, limits, self._link_of, self._numbers)
         link, numbers = self._link_of[:n].copy(), self._numbers[:n]
         link_from_camera = invert_rigid(camera_from_link)[link]
         rotation = link_from_camera[:, :3, :3]

@@ -10,7 +10,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
 from elbowroom.monitor.health.drift.body_view import BodySpots, BodyView
-from elbowroom.monitor.health.drift.kernels.watch import fit_motion
+from elbowroom.monitor.health.drift.kernels import watch as kernels
 from elbowroom.monitor.health.drift.reference import MOVE_PRIOR_M, TURN_PRIOR_RAD
 from elbowroom.monitor.health.drift.sequential import Tally
 from elbowroom.monitor.health.health import LinkHealth
@@ -37,12 +37,10 @@ class BodyWatch:
     Args:
         machine: the machine.
         cameras: of the room.
-        threads: None: all cores.
     """
 
     machine: Machine
     cameras: Sequence[DepthCamera]
-    threads: int | None = None
     stop: str | None = field(default=None, init=False)
     """Why nothing may move, once it was found; it stays."""
     _links: dict[str, LinkHealth] = field(default_factory=dict, init=False)
@@ -80,7 +78,7 @@ class BodyWatch:
                 name = looking[number]
                 return self._views[name].look(frames[name].depth_m, placed[number])
 
-            looked = spread(look, range(len(looking)), self.threads)
+            looked = spread(look, range(len(looking)))
             self._seen.update(zip(looking, looked, strict=True))
         for number in range(self._turn, len(self._tallies), ROUND):
             self._judge(number, still)
@@ -130,19 +128,11 @@ class BodyWatch:
         sigma = np.concatenate([spots.sigma_m[mine] for spots, mine in parts.values()])
         arm = point - point.mean(axis=0)
         jacobian = np.hstack([np.cross(arm, normal), normal])
-        motion, covariance, said = np.empty(6), np.empty((6, 6)), np.empty(4)
-        fit_motion(
-            jacobian,
-            offset,
-            sigma,
-            np.arange(len(offset)),
-            TURN_PRIOR_RAD,
-            MOVE_PRIOR_M,
-            motion,
-            covariance,
-            said,
-        )
-        motion = _what_is_shown(motion, covariance, float(np.sqrt((arm**2).sum(axis=1).mean())))
+        fitted = kernels.Fitted(np.empty(6), np.empty((6, 6)), np.empty(4))
+        prior = kernels.Prior(TURN_PRIOR_RAD, MOVE_PRIOR_M)
+        kernels.fit_motion(jacobian, offset, sigma, np.arange(len(offset)), prior, fitted)
+        said = fitted.said
+        motion = _what_is_shown(fitted.motion, fitted.covariance, float(np.sqrt((arm**2).sum(axis=1).mean())))
         shifted = np.cross(motion[:3], arm) + motion[3:]
         off_m = float(np.sqrt((shifted**2).sum(axis=1).mean()))
         shown_m = float(np.sqrt(((jacobian @ motion) ** 2).mean()))
@@ -156,8 +146,8 @@ class BodyWatch:
         is_off = (
             off_m > TOLERANCE_M
             and shown_m > TOLERANCE_M / 3
-            and said[0] > max(FOR_OVER_AGAINST * said[1], LEAST_FOR)
-            and said[3] >= LEAST_FIT
+            and said[kernels.FOR] > max(FOR_OVER_AGAINST * said[kernels.AGAINST], LEAST_FOR)
+            and said[kernels.FITS_MOVED] >= LEAST_FIT
             and len(agree) >= max(2, AGREE * len(parts))
         )
         if not is_off and len(parts) < 2:

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
-from elbowroom.monitor.health.drift.kernels.watch import Memory, Spots, judge_image
+from elbowroom.monitor.health.drift.kernels.body import Limits
+from elbowroom.monitor.health.drift.kernels.watch import Fitted, Memory, Prior, Spots, judge_image
 from elbowroom.monitor.health.drift.lasting import Lasting
 from elbowroom.monitor.health.drift.reference import MOVE_PRIOR_M, TURN_PRIOR_RAD, CameraReference
 from elbowroom.monitor.health.drift.sequential import Tally
@@ -148,12 +149,12 @@ class CameraWatch:
         self, frame: DepthFrame, memory: Memory
     ) -> tuple[NDArray[np.int64], Shift, NDArray[np.float64]]:
         """Adds a frame to a memory: numbers of spots, the shift that fits, and what speaks for it (`fit_motion`)."""
-        counted, said = np.empty(4, dtype=np.int64), np.empty(4)
-        motion, covariance = np.empty(6), np.empty((6, 6))
-        judge_image(
-            frame.depth_m.ravel(), self._spots, float(self.camera.min_depth_m), float(self.camera.max_depth_m),
-            GATE_M, TURN_PRIOR_RAD, MOVE_PRIOR_M, memory, counted, motion, covariance, said,
-        )  # fmt: skip
+        counted = np.empty(4, dtype=np.int64)
+        fitted = Fitted(np.empty(6), np.empty((6, 6)), np.empty(4))
+        limits = Limits(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
+        prior = Prior(TURN_PRIOR_RAD, MOVE_PRIOR_M)
+        judge_image(frame.depth_m.ravel(), self._spots, limits, prior, memory, counted, fitted)
+        motion, covariance, said = fitted
         shift = Shift.of(motion, covariance) if self._part is None else self._part.shift(motion, covariance)
         return counted, shift, said
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from elbowroom.geometry import DepthCamera
-from elbowroom.geometry.parallel import default_threads, spread
+from elbowroom.geometry.parallel import spread, thread_count
 from elbowroom.machine import Machine
 from elbowroom.monitor.health.drift.body_watch import BodyWatch
 from elbowroom.monitor.health.drift.camera_watch import CameraWatch
@@ -31,7 +31,6 @@ class Watch:
         references: one of each camera, in any order.
         machine: whose body is looked at; None: cameras alone.
         tolerance: what is not yet called moved.
-        threads: None: all cores. The result does not depend on it.
 
     Raises:
         CalibrationError: references of other cameras.
@@ -43,14 +42,12 @@ class Watch:
         references: Sequence[CameraReference],
         machine: Machine | None = None,
         tolerance: Tolerance | None = None,
-        threads: int | None = None,
     ) -> None:
         require_references(references, cameras)
         by_name = {reference.camera: reference for reference in references}
         given = tolerance or Tolerance()
         self._watches = [CameraWatch(camera, by_name[camera.name], given) for camera in cameras]
-        self._body = None if machine is None else BodyWatch(machine, cameras, threads)
-        self._threads = threads
+        self._body = None if machine is None else BodyWatch(machine, cameras)
         self._stops: dict[str, str] = {}
         self.turn = 0
         """The next pass listens to the cameras from this one on, one in `TURNS`."""
@@ -93,14 +90,14 @@ class Watch:
 
     def _hear_cameras(self, newest: Mapping[str, DepthFrame], now_ns: int) -> tuple[CameraHealth, ...]:
         """Listens to the cameras whose turn it is; of the others, what they said last."""
-        threads = self._threads or default_threads()
+        many = thread_count()
         turn, self.turn = self._watches[self.turn :: TURNS], (self.turn + 1) % TURNS
 
         def hear(share: list[CameraWatch]) -> list[CameraHealth]:
             return [watch.hear(newest.get(watch.camera.name), now_ns) for watch in share]
 
-        shares = [turn[first::threads] for first in range(threads)]
-        heard = {health.camera: health for part in spread(hear, shares, threads) for health in part}
+        shares = [turn[first::many] for first in range(many)]
+        heard = {health.camera: health for part in spread(hear, shares) for health in part}
         return tuple(
             heard[name] if name in heard else watch.pass_over(newest.get(name), now_ns)
             for watch in self._watches

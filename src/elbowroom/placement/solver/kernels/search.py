@@ -1,11 +1,31 @@
 """What the search asks of a layout again and again: views apart at each point, and what one camera more would add."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 TURN = 2.0 * math.pi
+
+
+class Sights(NamedTuple):
+    """What candidates see, and what is asked of the views of a point.
+
+    Fields:
+        sees: uint8, shape (candidates, points).
+        azimuth: shape (places, points) [rad]; NaN: no direction.
+        place_of: place of each candidate.
+        angle, tie: least angle between two views, and by how much less still counts [rad].
+        most: more views apart are not looked for.
+    """
+
+    sees: np.ndarray
+    azimuth: np.ndarray
+    place_of: np.ndarray
+    angle: float
+    tie: float
+    most: int
 
 
 @njit(cache=True, nogil=True)
@@ -32,19 +52,16 @@ def reach_from(angles, m, start, angle, tie):
 
 
 @njit(cache=True, nogil=True)
-def apart_of_points(sees, azimuth, place_of, chosen, angle, tie, most, points, apart):
+def apart_of_points(sights, chosen, points, apart):
     """Fills apart[p] for the given points: size of the largest set of views far enough apart, no more than `most`.
 
     Args:
-        sees: uint8, shape (candidates, points).
-        azimuth: shape (places, points) [rad]; NaN: no direction.
-        place_of: place of each candidate.
+        sights: `Sights`.
         chosen: candidates of the layout.
-        angle, tie: least angle, and by how much less still counts [rad].
-        most: more are not looked for.
         points: indices of the points that are asked.
         apart: uint8, shape (points,), written.
     """
+    sees, azimuth, place_of, angle, tie, most = sights
     angles = np.empty(len(chosen))
     for p in points:
         m = 0
@@ -69,7 +86,7 @@ def apart_of_points(sees, azimuth, place_of, chosen, angle, tie, most, points, a
 
 
 @njit(cache=True, nogil=True)
-def gains(sees, azimuth, place_of, chosen, angle, tie, most, points, apart, worth, gain):
+def gains(sights, chosen, points, apart, worth, gain):
     """Adds up what each candidate, added to a layout, would improve at the given points.
 
     Args:
@@ -77,6 +94,7 @@ def gains(sees, azimuth, place_of, chosen, angle, tie, most, points, apart, wort
         gain: shape (candidates,), written.
         The others as of `apart_of_points`.
     """
+    sees, azimuth, place_of, angle, tie, most = sights
     candidates = sees.shape[0]
     places = azimuth.shape[0]
     angles = np.empty(len(chosen) + 1)
@@ -109,13 +127,14 @@ def gains(sees, azimuth, place_of, chosen, angle, tie, most, points, apart, wort
 
 
 @njit(cache=True, nogil=True)
-def losses(sees, azimuth, place_of, chosen, angle, tie, most, apart, worth, loss):
+def losses(sights, chosen, apart, worth, loss):
     """What each member of a layout is worth: by how much the points' values would fall without it.
 
     Args:
         loss: shape (len(chosen),), written.
         The others as of `gains`, with all points.
     """
+    sees = sights.sees
     loss[:] = 0.0
     one = np.empty(1, np.int64)
     rest = np.empty(len(chosen) - 1, np.int64)
@@ -129,7 +148,7 @@ def losses(sees, azimuth, place_of, chosen, angle, tie, most, apart, worth, loss
         for p in range(sees.shape[1]):
             if sees[chosen[n], p] and apart[p] > 0:
                 one[0] = p
-                apart_of_points(sees, azimuth, place_of, rest, angle, tie, most, one, without)
+                apart_of_points(sights, rest, one, without)
                 loss[n] += worth[apart[p]] - worth[without[p]]
 
 

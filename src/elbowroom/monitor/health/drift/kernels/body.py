@@ -1,6 +1,7 @@
 """Where the machine's surface should be in an image, and how far off it is seen: arrays and floats."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,6 +11,26 @@ from elbowroom.machine.kernels.draw import Mesh, draw
 BEND_M = 0.004
 """A spot is flat if its neighbours' depths leave it by no more than this."""
 LEAST_COSINE = 0.3
+
+
+class Raw(NamedTuple):
+    """The raw image beside the drawn one.
+
+    image: flattened, float32 [m, the camera's kind]. pixel: (height, width) int64, place in `image` that sees the same;
+    -1: none does. per_planar: (height, width), depth of the camera's kind per planar depth.
+    """
+
+    image: np.ndarray
+    pixel: np.ndarray
+    per_planar: np.ndarray
+
+
+class Limits(NamedTuple):
+    """Which returns count: the camera's range, and how far off something else begins [m]."""
+
+    least: float
+    greatest: float
+    gate: float
 
 
 @njit(cache=True, nogil=True)
@@ -47,18 +68,13 @@ def draw_links(mesh, camera_from_link, view, inverse, first, last, composite, sh
 
 
 @njit(cache=True, nogil=True)
-def surface_spots(
-    view, composite, shown, image, raw_pixel, per_planar, least, greatest, gate, link_of, numbers
-):
+def surface_spots(view, composite, shown, raw, limits, link_of, numbers):
     """Spots where a link is flat over 3 x 3 pixels, and how far from the model's surface the image shows one.
 
     Args:
         view, composite, shown: as of `draw_links`.
-        image: flattened, float32 [m, the camera's kind].
-        raw_pixel: (height, width) int64, place in `image` that sees the same; -1: none does.
-        per_planar: (height, width), depth of the camera's kind per planar depth.
-        least, greatest: range of the camera [m].
-        gate: what is farther off is something else [m].
+        raw: `Raw`.
+        limits: `Limits`.
         link_of: (m,) int64, written.
         numbers: (m, 8), written: point and normal in the camera's frame, offset towards the camera along the normal,
             sigma [m].
@@ -66,6 +82,8 @@ def surface_spots(
     Returns:
         How many spots were written.
     """
+    image, raw_pixel, per_planar = raw
+    least, greatest, gate = limits
     n = 0
     # every other pixel of every other row: neighbours share what they are judged by
     for v in range(1, view.height - 1, 2):

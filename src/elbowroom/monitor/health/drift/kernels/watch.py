@@ -17,6 +17,9 @@ FITS_SIGMAS = 3.0
 FITS_M = 0.008
 """A return fits if it lies so near to where it should."""
 FIT, NEARER, FARTHER, LOST = 0, 1, 2, 3
+"""Places of the numbers of spots that `listen` counts."""
+FOR, AGAINST, FITS_STILL, FITS_MOVED = 0, 1, 2, 3
+"""Places of what `fit_motion` says."""
 MEAN_OF = 8
 """Offsets are averaged over so many frames."""
 STEP_M, STEP_SIGMAS = 0.02, 4.0
@@ -57,6 +60,28 @@ class Memory(NamedTuple):
     sigma: np.ndarray
     frames: np.ndarray
     used: np.ndarray
+
+
+class Prior(NamedTuple):
+    """Sigmas of a motion before anything was seen: turn [rad], move [m]."""
+
+    turn: float
+    move: float
+
+
+class Fitted(NamedTuple):
+    """What `fit_motion` writes.
+
+    Fields:
+        motion: shape (6,): turn [rad], move [m].
+        covariance: of it, shape (6, 6).
+        said: shape (4,): log-likelihood of the motion over that of standing still, added over spots that speak for it,
+            and over those that speak against it; shares of spots that fit without and with it (`FOR` and so on).
+    """
+
+    motion: np.ndarray
+    covariance: np.ndarray
+    said: np.ndarray
 
 
 @njit(cache=True, nogil=True)
@@ -101,7 +126,7 @@ def listen(image, spots, least, greatest, gate, memory, counted):
 
 
 @njit(cache=True, nogil=True)
-def fit_motion(jacobian, offset, sigma, used, turn_sigma, move_sigma, motion, covariance, said):
+def fit_motion(jacobian, offset, sigma, used, prior, fitted):
     """The small motion that explains most offsets, and what speaks for it against standing still.
 
     Geman-McClure loss whose width falls from step to step (graduated non-convexity: Yang, Antonante, Tzoumas, Carlone,
@@ -111,12 +136,11 @@ def fit_motion(jacobian, offset, sigma, used, turn_sigma, move_sigma, motion, co
         jacobian: shape (n, 6), offset per turn [m/rad] and per move.
         offset, sigma: shape (n,) [m].
         used: indices of those that count.
-        turn_sigma, move_sigma: of the prior [rad], [m].
-        motion: shape (6,), written: turn [rad], move [m].
-        covariance: shape (6, 6), written.
-        said: shape (4,), written: log-likelihood of the motion over that of standing still, added over spots that
-            speak for it, and over those that speak against it; shares of spots that fit without and with it.
+        prior: `Prior`.
+        fitted: `Fitted`, written.
     """
+    turn_sigma, move_sigma = prior
+    motion, covariance, said = fitted
     n = used.size
     # per spot: what it shows per turn and move, its offset, and the weight of the step; eight numbers for the processor
     rows = np.empty((n, 8))
@@ -233,18 +257,14 @@ def _weigh(rows, sigma, used, motion, said):
         near = FITS_M + FITS_SIGMAS * s
         fits_still += abs(e) <= near
         fits_moved += abs(r) <= near
-    said[0], said[1] = speaks_for, against
-    said[2] = fits_still / max(used.size, 1)
-    said[3] = fits_moved / max(used.size, 1)
+    said[FOR], said[AGAINST] = speaks_for, against
+    said[FITS_STILL] = fits_still / max(used.size, 1)
+    said[FITS_MOVED] = fits_moved / max(used.size, 1)
 
 
 @njit(cache=True, nogil=True)
-def judge_image(
-    image, spots, least, greatest, gate, turn_sigma, move_sigma, memory, counted, motion, covariance, said
-):
+def judge_image(image, spots, limits, prior, memory, counted, fitted):
     """`listen`, then `fit_motion` to the spots within the gate; their arguments."""
-    listen(image, spots, least, greatest, gate, memory, counted)
+    listen(image, spots, limits.least, limits.greatest, limits.gate, memory, counted)
     used = memory.used[: counted[FIT]]
-    fit_motion(
-        spots.jacobian, memory.offset, memory.sigma, used, turn_sigma, move_sigma, motion, covariance, said
-    )
+    fit_motion(spots.jacobian, memory.offset, memory.sigma, used, prior, fitted)

@@ -16,7 +16,7 @@ from trimesh.exchange.stl import export_stl
 
 Points = NDArray[np.float64]
 
-HERE = Path(__file__).parent / "ceiling_c_arm"
+HERE = Path(__file__).resolve().parents[2] / "src" / "elbowroom" / "machine" / "assets" / "ceiling_c_arm"
 ISOCENTRE_Z = 1.1
 CARRIAGE_Z = 2.5
 DROP = CARRIAGE_Z - ISOCENTRE_Z
@@ -158,7 +158,7 @@ def urdf() -> str:
     """The URDF's text."""
     lines = [
         '<?xml version="1.0"?>',
-        "<!-- written by build_ceiling_c_arm.py -->",
+        "<!-- written by assets/ceiling_c_arm/build.py -->",
         '<robot name="ceiling_c_arm">',
     ]
     for link, parts in bodies().items():

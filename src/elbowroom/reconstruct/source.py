@@ -1,0 +1,88 @@
+"""The images that a free space was made of, kept so that they can be asked again. Nothing is stored per voxel."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.geometry import VoxelGrid, bits
+from elbowroom.geometry.bits import Words
+from elbowroom.reconstruct.free_space import FreeSpace, Index
+from elbowroom.reconstruct.images import Image, RoomImages
+from elbowroom.reconstruct.parts import is_seen_in_parts
+from elbowroom.reconstruct.point_report import PointReport, Sight
+from elbowroom.reconstruct.sight import sight_of
+from elbowroom.reconstruct.terms import Terms
+
+WILLING = (Sight.HIDDEN, Sight.BLIND, Sight.EDGE)
+"""What a camera says that would see the voxel if what hides or blinds it were gone."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImageSource:
+    """What a free space was made of, as `FreeSpace.source` asks it.
+
+    Args:
+        images: of the room's cameras.
+        model_depth: by camera, what the machine explains [m].
+        terms: by which space was judged.
+        free_words: what was declared free by them: where less is free than that, somebody blocked more, and nothing is
+            looked at again.
+        focus: blocks of 4 voxels that cameras were asked of, in the planes' order; None: all.
+    """
+
+    images: RoomImages
+    model_depth: Mapping[str, Image]
+    terms: Terms
+    free_words: Words
+    focus: NDArray[np.bool_] | None = None
+
+    def report(self, space: FreeSpace, index: Index) -> PointReport:
+        """What each camera saw at a voxel, and which camera could settle it."""
+        corner = space.grid.lower_m + np.array(index) * space.grid.voxel_size_m
+        voxel = VoxelGrid((corner[0], corner[1], corner[2]), (1, 1, 1), space.grid.voxel_size_m)
+        centre = space.grid.centre_of(np.array(index))
+        seen = sorted(
+            (
+                sight_of(voxel, centre, self.images.of(camera.name), self.model_depth, self.terms)
+                for camera in self.images.cameras
+            ),
+            key=lambda one: one.distance_m,
+        )
+        return PointReport(
+            index,
+            (float(centre[0]), float(centre[1]), float(centre[2])),
+            space.state_of(index),
+            tuple(seen),
+            tuple(one.camera for one in seen if one.sight in WILLING),
+        )
+
+    def is_free_in_parts(self, space: FreeSpace, index: Index) -> bool:
+        """Whether each of 64 parts of a voxel is seen through by some camera, where nobody disputes the voxel.
+
+        Who disputes a part disputes the voxel: so each part is free by the rule `three`. An object that touches the
+        voxel touches a part of it, so this frees nothing that smaller voxels would not. Less evidence leaves fewer
+        parts free, never more.
+
+        Args:
+            space: judged by detail `pixel` and rule `three`, and no less free than the images say; else the answer is
+                no. It is no as well where the terms say that nothing is looked at again.
+            index: of the voxel; one that cameras were not asked of, or that anybody disputes, is not free.
+        """
+        terms = self.terms
+        if not terms.look_again or terms.detail != "pixel" or terms.rule != "three":
+            return False
+        if not self._is_undisputed(space, index) or self._more_is_blocked(space):
+            return False
+        return is_seen_in_parts(space.grid, index, self.images, self.model_depth, terms.margin)
+
+    def _is_undisputed(self, space: FreeSpace, index: Index) -> bool:
+        """Whether cameras were asked of a voxel, and nobody disputes it."""
+        word, bit = bits.place_of(index, space.grid)
+        asked = self.focus is None or self.focus[word]
+        return bool(asked and not space.disputed_words[word] & bit)
+
+    def _more_is_blocked(self, space: FreeSpace) -> bool:
+        """Whether somebody blocked what the images say is free, such as a zone to keep out of."""
+        return bool((self.free_words & ~space.free_words).any())

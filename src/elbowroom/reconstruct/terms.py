@@ -1,0 +1,56 @@
+"""How strictly space is judged: one value from the site file to the last stage."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from elbowroom.choices import DETAILS, RULES, Detail, Rule
+from elbowroom.errors import InputError, MachineError
+from elbowroom.geometry.margin import Margin
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """How strictly space is judged. Two terms are equal if they judge alike.
+
+    Args:
+        rule: how cameras that disagree are decided between: `three`, `majority`, `veto`, `any` (see `resolve`).
+        detail: how closely images are looked at: `pixel`, `footprint`, `point` (see `carve`).
+        margin: of cameras without one of their own.
+        max_age_ns: frames older than this are not used [ns]; None: no limit.
+        explain_tolerance_m: how near to the machine's model a return counts as the machine, besides its noise [m].
+        body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: half a
+            voxel.
+        look_again: voxels in the way that no one camera sees all of are looked at again in parts. False: what the
+            volume says holds, so that who has images and who has only the volume say the same.
+
+    Raises:
+        InputError: an unknown rule or detail, or an age below zero.
+        MachineError: a tolerance or growth that cannot be.
+    """
+
+    rule: Rule = "three"
+    detail: Detail = "pixel"
+    margin: Margin = field(default_factory=Margin)
+    max_age_ns: int | None = None
+    explain_tolerance_m: float = 0.01
+    body_growth_m: float | None = None
+    look_again: bool = True
+
+    def __post_init__(self) -> None:
+        if self.rule not in RULES:
+            raise InputError(f"rule: {self.rule!r} is unknown, allowed are {', '.join(RULES)}")
+        if self.detail not in DETAILS:
+            raise InputError(f"detail: {self.detail!r} is unknown, allowed are {', '.join(DETAILS)}")
+        if self.max_age_ns is not None and self.max_age_ns < 0:
+            raise InputError(f"max_age_ns: is {self.max_age_ns}, must be at least 0")
+        if not self.explain_tolerance_m >= 0:
+            raise MachineError(f"explain_tolerance_m is {self.explain_tolerance_m}, must be at least 0 [m]")
+        growth = self.body_growth_m
+        if growth is not None and not (np.isfinite(growth) and growth > 0):
+            raise MachineError(f"body_growth_m is {growth}, must be at least a quarter voxel [m]")
+
+    @property
+    def needs_counts(self) -> bool:
+        """Whether the rule needs every camera asked of every voxel, and counted: all but `three` do."""
+        return self.rule != "three"
