@@ -13,7 +13,6 @@ from elbowroom.calibrate.extrinsics import (
     SeenPoint,
     solve_extrinsics,
 )
-from elbowroom.calibrate.lens import project
 from elbowroom.errors import CalibrationError
 from elbowroom.evaluate.calibrating.board_views import (
     BOARD,
@@ -25,7 +24,8 @@ from elbowroom.evaluate.calibrating.board_views import (
     views_of,
 )
 from elbowroom.geometry import invert_rigid
-from elbowroom.geometry.rigid import exp, log
+from elbowroom.geometry.lens import project
+from elbowroom.geometry.twist import exp, log
 from elbowroom.sensing import NOISE_PRESETS
 
 ROUGH = Shaken()

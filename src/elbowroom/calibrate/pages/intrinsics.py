@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.intrinsics.solve import FoundIntrinsics
-from elbowroom.calibrate.lens import project
 from elbowroom.calibrate.pages.board_report import (
     ImageOf,
     Reprojected,
@@ -15,6 +14,7 @@ from elbowroom.calibrate.pages.board_report import (
     rms,
     what_next,
 )
+from elbowroom.geometry.lens import project
 from elbowroom.view.report.blocks import Block, Table, Words
 
 

@@ -31,8 +31,8 @@ from elbowroom.evaluate.calibrating.board_views import (
     views_of,
 )
 from elbowroom.evaluate.rooms.room import MOMENTS_S, ROOM_LOWER_M, ROOM_UPPER_M, Tally
-from elbowroom.geometry import DepthCamera, VoxelGrid, invert_rigid
-from elbowroom.geometry.rigid import log
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry.twist import between
 from elbowroom.reconstruct import reconstruct
 from elbowroom.sensing import NOISE_PRESETS, Margin
 from elbowroom.simulate import InterventionRoom, render, true_occupancy, wall_cameras
@@ -190,7 +190,7 @@ def errors_of(found: Extrinsics, truth: dict[str, NDArray[np.float64]]) -> dict[
         moved, turned = pose_difference(one.camera.world_from_camera, truth[one.camera.name])
         mm.append(moved * 1e3)
         deg.append(np.degrees(turned))
-        error = log(invert_rigid(one.camera.world_from_camera) @ truth[one.camera.name])
+        error = between(one.camera.world_from_camera, truth[one.camera.name])
         inside.append(float(error @ np.linalg.solve(one.covariance, error)) <= INSIDE)
     return {
         "worst_mm": float(max(mm)),
@@ -246,7 +246,7 @@ def room_rows(
 
 def _margin_holds(one: CalibratedCamera, world_from_camera: NDArray[np.float64]) -> bool:
     """Whether the true pose displaces nothing by more than the margin of the pose that was found."""
-    error = log(invert_rigid(one.camera.world_from_camera) @ world_from_camera)
+    error = between(one.camera.world_from_camera, world_from_camera)
     return is_within(one.camera, error, pose_margin(one.camera, one.covariance))
 
 
@@ -276,7 +276,7 @@ def coverage_row(draws: int, tell: Tell, stands: Sequence[int] = ()) -> dict[str
         anchor = PointsAnchor(corners) if stands else BoardAnchor(0, floor())
         found = solve_extrinsics(cameras, BOARD, views, anchor)
         for camera, one in zip(cameras, found.cameras, strict=True):
-            error = log(invert_rigid(one.camera.world_from_camera) @ camera.world_from_camera)
+            error = between(one.camera.world_from_camera, camera.world_from_camera)
             squares.append(float(error @ np.linalg.solve(one.covariance, error)))
             inside.append(squares[-1] <= INSIDE)
             held.append(_margin_holds(one, camera.world_from_camera))

@@ -14,8 +14,7 @@ from elbowroom.calibrate.refinement.agreement import Agreement, agreement
 from elbowroom.calibrate.refinement.refine import refine
 from elbowroom.errors import SiteError
 from elbowroom.geometry import DepthCamera
-from elbowroom.geometry.rigid import exp
-from elbowroom.geometry.twist import between, sizes
+from elbowroom.geometry.twist import between, moved, sizes
 from elbowroom.sensing import NOISE_PRESETS, Snapshot
 from elbowroom.sensing.planar_images import planar_images
 from elbowroom.simulate import InterventionRoom, Optics, render, wall_cameras
@@ -209,4 +208,4 @@ def _off(camera: DepthCamera, metres: float, degrees: float, random: np.random.G
     twist = np.concatenate(
         [np.radians(degrees) * turn / np.linalg.norm(turn), metres * way / np.linalg.norm(way)]
     )
-    return replace(camera, world_from_camera=camera.world_from_camera @ exp(twist))
+    return replace(camera, world_from_camera=moved(camera.world_from_camera, twist))
