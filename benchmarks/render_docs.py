@@ -23,7 +23,7 @@ class Section:
     Args:
         file: its name in benchmarks/results.
         title, text: what was asked.
-        command: what measures it, but for --json; empty: nothing does yet.
+        command: what measures it, but for --json.
         tables: of its rows, as lines of Markdown.
     """
 
@@ -111,7 +111,7 @@ The room of the thesis: 4 x 4 x 2.5 m watched, walls of 5 x 5 m, sensors of 640x
 in random scenes of the simulated room, as `placement simulate` says; *found*: by `reconstruct` at six moments of its
 own course.
 """,
-        "",
+        "elbowroom evaluate placement",
         tables.placement_tables,
     ),
     Section(
@@ -131,7 +131,7 @@ best of six aims; voxels of 10 cm. *square*: 90 degrees high as well as wide. *l
 On smooth surfaces, by the tangent of the angle of incidence: how often a pixel has no return between pixels that
 have one. The simulator's sensors lose more: 0.05 % anywhere, 2 % more from a tangent of 8, 10 % more on dark surfaces.
 """,
-        "",
+        "elbowroom evaluate lost-pixels",
         tables.any_tables,
     ),
     Section(
@@ -141,7 +141,7 @@ have one. The simulator's sensors lose more: 0.05 % anywhere, 2 % more from a ta
 What the promise of three pixel pitches leaves open: how often voxels that thinner and sharper solids touch
 are declared free.
 """,
-        "",
+        "elbowroom evaluate thin-solids",
         tables.any_tables,
     ),
     Section(
@@ -233,8 +233,8 @@ def render(results: Path = RESULTS) -> str:
         lines += ["", f"## {section.title}", section.text]
         path = results / section.file
         if not path.is_file():
-            how = f" `{section.command} --json benchmarks/results/{section.file}` measures it."
-            lines.append("Not measured yet." + (how if section.command else ""))
+            how = f"`{section.command} --json benchmarks/results/{section.file}` measures it."
+            lines.append(f"Not measured yet. {how}")
             continue
         content = json.loads(path.read_text(encoding="utf-8"))
         lines += [*section.tables(content["rows"]), "", _origin(content.get("meta", {}))]

@@ -6,15 +6,15 @@ With the folder of the report as an argument, the pictures that the page shows a
 """
 
 import base64
-import importlib
 import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from elbowroom.cli.evaluate.thesis_run import PARTS
 from elbowroom.evaluate.thesis.due import due_table
+from elbowroom.evaluate.thesis.parts import PARTS
+from elbowroom.evaluate.thesis.scale_budget import budget_table
 from elbowroom.view.report.blocks import Block, Picture, Table, Words
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -84,8 +84,8 @@ What to read them with:
   unless several see it between them. Where a camera looks at an object from the front, three sigmas (4 to 5 mm here)
   are kept clear of what it measured, the farthest stray of some hundred pixels comes on top, and by rule `three`
   fewer than three other cameras cannot overrule that; a camera that looks past the object loses nothing. So what is
-  reached depends on where the cameras stand, and they are placed for the very motions that are judged (`python
-  benchmarks/scale_cameras.py`, with other noise); placed by exact rays alone, with voxels of 2.5 mm, ways in view
+  reached depends on where the cameras stand, and they are placed for the very motions that are judged (`elbowroom
+  evaluate scale-cameras`, with other noise); placed by exact rays alone, with voxels of 2.5 mm, ways in view
   were short by 8.0 mm median and 13.4 worst. In poses that they were not placed for, fewer ways are in view, and
   those miss what is due; that, and what is lost to each cause, stands under the part's table. Mixed pixels and lost
   returns, which the noise model of a Kinect does not have, cost the most: where one camera alone looks, or two,
@@ -103,11 +103,10 @@ def render(results: Path = RESULTS) -> str:
     """The page's text; what has no file is said not to be measured."""
     text = [INTRODUCTION]
     measured = {name: found for name in PARTS if (found := _measured(results, name)) is not None}
-    due = due_table([row for rows, _ in measured.values() for row in rows])
+    due = due_table(list(PARTS.values()), [row for rows, _ in measured.values() for row in rows])
     if due is not None:
-        text += ["## What was due", "", *_lines([due])]
-    for name in PARTS:
-        part = importlib.import_module(f"elbowroom.evaluate.thesis.{name}").PART
+        text += [f"## {due.title}", "", *_lines([due])]
+    for name, part in PARTS.items():
         text += [f"## {part.title}", ""]
         if name not in measured:
             text += ["Not measured yet.", ""]
@@ -123,17 +122,7 @@ def render(results: Path = RESULTS) -> str:
 
 
 def _budget(content: dict[str, Any]) -> list[str]:
-    """Where the scale model's free travel is lost, as `benchmarks/scale_budget.py` measured it."""
-    names = list(content["rows"][0]["short_mm"])
-    lines = [
-        (
-            f"{1000 * row['voxel_size_m']:g} mm{'' if row['judged'] else ', other poses'}",
-            f"{row['in_view']} of {row['motions']}",
-            *(f"{median:.1f} / {worst:.1f}" for median, worst in row["short_mm"].values()),
-        )
-        for row in content["rows"]
-    ]
-    title = "Ways in view: short by, median / worst [mm], each column with one cause more"
+    """Where the scale model's free travel is lost, as `elbowroom evaluate scale-budget` measured it."""
     meta = content["meta"]
     return [
         "What it is lost to: *voxels* that the true objects touch, in an else open space; *view*, up to the first "
@@ -141,7 +130,7 @@ def _budget(content: dict[str, Any]) -> list[str]:
         "*noise*. The cameras are placed for the smallest of these voxels and for the poses that are judged; *other "
         "poses* are drawn in the same way.",
         "",
-        *_lines([Table(title, ("voxel", "ways in view", *names), lines)]),
+        *_lines([budget_table(content["rows"])]),
         f"Measured by `{meta['command']}`; commit {meta['commit']}; {meta['processor']}.",
         "",
     ]
@@ -164,11 +153,10 @@ def _image(name: str) -> Path:
 
 def draw(results: Path, report: Path | None) -> None:
     """Writes the charts, which come from the results, and takes pictures out of a report's folder."""
-    for name in PARTS:
+    for name, part in PARTS.items():
         measured = _measured(results, name)
         if measured is None:
             continue
-        part = importlib.import_module(f"elbowroom.evaluate.thesis.{name}").PART
         charts = [block for block in part.show(measured[0], {}) if isinstance(block, Picture)]
         for number, chart in enumerate(charts):
             (IMAGES / f"evaluation_{name}_{number}.svg").write_bytes(chart.png)

@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from result_tables.cells import Due, Row, of, table
+from elbowroom.evaluate.due import Due
+from result_tables.cells import Row, of, table
 
 
 def calibration_tables(rows: Sequence[Row]) -> list[str]:
@@ -83,14 +84,12 @@ CALIBRATION_COLUMNS = {
 }
 
 
-def _due_of(key: str) -> Due:
+def _due_of(key: str) -> tuple[Due, ...]:
     """The row's own due figure; at least for shares, at most for errors and times."""
 
-    def due(row: Row) -> tuple[str, float] | None:
+    def is_due(row: Row) -> bool:
         wanted = row.get("due", {}).get(key)
-        if not isinstance(wanted, int | float) or not isinstance(row.get(key), int | float):
-            return None
-        is_error = key.startswith("worst") or not key.endswith("_pct")
-        return ("≤" if is_error else "≥", float(wanted))
+        return isinstance(wanted, int | float) and isinstance(row.get(key), int | float)
 
-    return due
+    is_error = key.startswith("worst") or not key.endswith("_pct")
+    return (Due(key, "≤" if is_error else "≥", lambda row: float(row["due"][key]), is_due),)

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-Row = Mapping[str, Any]
+from elbowroom.evaluate.due import Due, Row, due_of
+
 Cell = Callable[[Row], str]
-Due = Callable[[Row], tuple[str, float] | None]
 
 
 def table(rows: Iterable[Row], columns: Mapping[str, Cell]) -> list[str]:
@@ -28,26 +28,25 @@ def plain(value: Any) -> str:
     return str(value)
 
 
-def of(key: str, digits: int | None = None, *, due: Due | None = None) -> Cell:
+def of(key: str, digits: int | None = None, *, due: Sequence[Due] = ()) -> Cell:
     """A cell with one value of the row.
 
     Args:
         key: of the value.
         digits: after the point; None: as it comes.
-        due: what the value should be, as ("≤" or "≥", figure); None, or None of a row: nothing is due.
+        due: figures of the experiment; the first of this value that is due of the row stands beside it.
     """
 
     def cell(row: Row) -> str:
         value = row.get(key)
-        wanted = due(row) if due is not None else None
+        wanted = due_of(due, key, row)
         text = plain(value) if digits is None or value is None else f"{value:.{digits}f}"
         if wanted is None:
             return text
-        sign, figure = wanted
+        figure = f"due {wanted.sign} {wanted.for_row(row):g}"
         if value is None:
-            return f"not measured (due {sign} {figure:g})"
-        met = value <= figure if sign == "≤" else value >= figure
-        return f"{text} (due {sign} {figure:g})" if met else f"**{text}** (due {sign} {figure:g}: missed)"
+            return f"not measured ({figure})"
+        return f"{text} ({figure})" if wanted.met(row) else f"**{text}** ({figure}: missed)"
 
     return cell
 
@@ -57,24 +56,9 @@ def same(*keys: str) -> dict[str, Cell]:
     return {key: of(key) for key in keys}
 
 
-def at_most(figure: float) -> Due:
-    """Due of every row."""
-    return lambda row: ("≤", figure)
-
-
-def at_least(figure: float) -> Due:
-    """Due of every row."""
-    return lambda row: ("≥", figure)
-
-
 def centimetres(row: Row) -> str:
     """The edge of a voxel."""
     return "" if row.get("voxel_size_m") is None else f"{row['voxel_size_m'] * 100:g} cm"
-
-
-def is_full_room(row: Row) -> bool:
-    """Whether the figures that are due speak of a row's cameras."""
-    return (row.get("cameras"), row.get("width"), row.get("height")) == (21, 640, 480)
 
 
 def any_tables(rows: Sequence[Row]) -> list[str]:

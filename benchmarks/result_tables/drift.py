@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 
+from elbowroom.evaluate.drift.due import DUE
 from result_tables.cells import Cell, Row, of, table
 
 NOISE: dict[str, Cell] = {"noise": of("noise")}
-CAMERAS_NAMED: dict[str, Cell] = {"cameras named": of("cameras_named", due=lambda _: ("≤", 0))}
 
 
 def _with_unit(key: str) -> Cell:
@@ -27,10 +27,10 @@ COLUMNS: Mapping[str, Mapping[str, Cell]] = {
         "knock": of("knock"),
         **NOISE,
         "runs": of("runs"),
-        "named": of("named", due=lambda row: ("≥", row["runs"])),
-        "others": of("others_named", due=lambda _: ("≤", 0)),
+        "named": of("named", due=DUE["knock"]),
+        "others": of("others_named", due=DUE["knock"]),
         "frames, median": of("frames_median", 0),
-        "frames, most": of("frames_max", due=lambda _: ("≤", 60)),
+        "frames, most": of("frames_max", due=DUE["knock"]),
         "said, median": _with_unit("said_median"),
         "error, 95 %": _with_unit("error_p95"),
         "within 2 σ %": of("inside_2_sigma_pct", 0),
@@ -51,15 +51,15 @@ COLUMNS: Mapping[str, Mapping[str, Cell]] = {
         **NOISE,
         "found": of("found"),
         "frames": of("frames"),
-        **CAMERAS_NAMED,
+        "cameras named": of("cameras_named", due=DUE["wrong joint"]),
         "said": of("reason"),
     },
-    "furniture": {"pushed": of("what"), **NOISE, **CAMERAS_NAMED},
+    "furniture": {"pushed": of("what"), **NOISE, "cameras named": of("cameras_named", due=DUE["furniture"])},
     "false alarms": {
         **NOISE,
         "passes": of("passes"),
-        "camera frames": of("camera_frames", due=lambda _: ("≥", 10_000)),
-        "false alarms": of("false_alarms", due=lambda _: ("≤", 0)),
+        "camera frames": of("camera_frames", due=DUE["false alarms"]),
+        "false alarms": of("false_alarms", due=DUE["false alarms"]),
         "frames that said moved %": of("frames_that_said_moved_pct", 3),
         "frames that could not tell %": of("frames_that_could_not_tell_pct", 2),
     },
@@ -67,13 +67,13 @@ COLUMNS: Mapping[str, Mapping[str, Cell]] = {
         "recording": of("site"),
         "knock of one camera": of("knock"),
         "named": of("named"),
-        "others": of("others_named", due=lambda _: ("≤", 0)),
+        "others": of("others_named", due=DUE["recorded"]),
         "passes": of("passes"),
         "said": _said,
     },
     "watch time": {
         "a pass": lambda row: f"{row['cameras']} cameras {row['width']}x{row['height']}, with body",
-        "median ms": of("median_ms", 1, due=lambda _: ("≤", 3.0)),
+        "median ms": of("median_ms", 1, due=DUE["watch time"]),
         "99 % ms": of("p99_ms", 1),
         "worst ms": of("max_ms", 1),
         "processor time, median ms": of("cpu_median_ms", 1),

@@ -2,10 +2,8 @@
 
 from collections.abc import Sequence
 
+from elbowroom.evaluate.placement.rows import DUE
 from result_tables.cells import Cell, Row, centimetres, of, plain, table
-
-EVEN_CAMERAS = 21
-"""Spread evenly, what a layout of the same share is compared with."""
 
 
 def placement_tables(rows: Sequence[Row]) -> list[str]:
@@ -20,9 +18,9 @@ def placement_tables(rows: Sequence[Row]) -> list[str]:
                 else f"{row['layouts']} layouts at {centimetres(row)}"
             ),
             "seconds": lambda row: (
-                of("median_s", 2, due=lambda _: ("≤", 1.0))(row)
+                of("median_s", 2, due=DUE["verify"])(row)
                 if row["kind"] == "verify"
-                else of("seconds", 1, due=lambda _: ("≤", 60.0))(row)
+                else of("seconds", 1, due=DUE["sweep"])(row)
             ),
         },
     )
@@ -32,14 +30,12 @@ def placement_tables(rows: Sequence[Row]) -> list[str]:
             kinds.get("optimise", []),
             {
                 "optimised for": of("what"),
-                "cameras": of("cameras", due=_due_cameras),
-                "valid, verified [%]": of(
-                    "valid_pct", 2, due=lambda row: ("≥", round(row["wanted_share_pct"], 2))
-                ),
+                "cameras": of("cameras", due=DUE["optimise"]),
+                "valid, verified [%]": of("valid_pct", 2, due=DUE["optimise"]),
                 "bound": of("bound"),
                 "candidates": of("candidates"),
                 "points": of("points"),
-                "19 or fewer after [s]": of("seconds_to_19", 0, due=lambda _: ("≤", 300.0)),
+                "19 or fewer after [s]": of("seconds_to_19", 0, due=DUE["optimise"]),
                 "seconds": of("seconds", 0),
             },
         ),
@@ -57,17 +53,13 @@ def placement_tables(rows: Sequence[Row]) -> list[str]:
                     f"{row['predicted_free_pct']:.2f} ± {row['predicted_error_pct']:.2f}"
                 ),
                 "found [%]": of("found_free_pct", 2),
-                "apart at most [points]": lambda row: of("apart", 2, due=lambda _: ("≤", 1.0))(
-                    {"apart": abs(row["difference_pct"])}
+                "apart at most [points]": lambda row: of("difference_pct", 2, due=DUE["prediction"])(
+                    {"difference_pct": abs(row["difference_pct"])}
                 ),
             },
         ),
     ]
     return lines
-
-
-def _due_cameras(row: Row) -> tuple[str, float]:
-    return ("≤", EVEN_CAMERAS if row["wanted_share_pct"] == 98.9 else EVEN_CAMERAS * 3 // 4)
 
 
 def sweep_tables(rows: Sequence[Row]) -> list[str]:
@@ -88,6 +80,6 @@ def sweep_tables(rows: Sequence[Row]) -> list[str]:
             "sensor": of("sensor"),
             **{f"{count} cameras [%]": share(count) for count in (8, 12, 16, 21, 30, 40)},
             "least": lambda row: plain(row["least_cameras"]) or "none",
-            "seconds": of("seconds", 1, due=lambda _: ("≤", 60.0)),
+            "seconds": of("seconds", 1, due=DUE["sweep"]),
         },
     )

@@ -3,30 +3,14 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from result_tables.cells import Cell, Row, centimetres, is_full_room, of, same, table
+from elbowroom.evaluate.due import due_of
+from elbowroom.evaluate.speed.bench import DUE
+from result_tables.cells import Cell, Row, centimetres, of, same, table
 
 STAGE = "cycle/"
 """Cases that begin so are stages of the cycle."""
 KIND = ("voxel_size_m", "detail", "noise")
 """What tells one cycle from another."""
-MEDIAN_MS = {
-    ("carve", 0.05, "footprint"): 25.0,
-    ("carve", 0.02, "footprint"): 130.0,
-    ("cycle", 0.05, "footprint"): 45.0,
-    ("cycle", 0.02, "footprint"): 180.0,
-    ("cycle", 0.05, "pixel"): 140.0,
-    ("cycle", 0.02, "pixel"): 480.0,
-}
-"""Due [ms], by case, edge of a voxel and detail."""
-
-
-def _due_ms(row: Row) -> tuple[str, float] | None:
-    figure = MEDIAN_MS.get((row.get("case"), row.get("voxel_size_m"), row.get("detail")))
-    return None if figure is None or not is_full_room(row) else ("≤", figure)
-
-
-def _due_memory(row: Row) -> tuple[str, float] | None:
-    return ("≤", 600.0) if row.get("voxel_size_m") == 0.02 and is_full_room(row) else None
 
 
 def bench_tables(rows: Sequence[Row]) -> list[str]:
@@ -39,10 +23,10 @@ def bench_tables(rows: Sequence[Row]) -> list[str]:
             "voxel": centimetres,
             "cameras": lambda row: f"{row.get('cameras')} x {row.get('width')}x{row.get('height')}",
             **same("detail", "noise", "threads"),
-            "median ms": of("median_ms", 1, due=_due_ms),
+            "median ms": of("median_ms", 1, due=DUE),
             "99 % ms": of("p99_ms", 1),
             "worst ms": of("max_ms", 1),
-            "peak MB": of("peak_rss_mb", 0, due=_due_memory),
+            "peak MB": of("peak_rss_mb", 0, due=DUE),
             "ratio": of("ratio", 2),
         },
     )
@@ -54,12 +38,10 @@ def bench_tables(rows: Sequence[Row]) -> list[str]:
 def _against_octomap(rows: Sequence[Row]) -> list[str]:
     lines = []
     for row in rows:
-        if times := row.get("times_slower_than_carve"):
-            met = "" if times >= 500 else ": missed"
-            lines += [
-                "",
-                f"OctoMap takes {times:.0f} times as long as carve on the same images (due ≥ 500{met}).",
-            ]
+        due = due_of(DUE, "times_slower_than_carve", row)
+        if due is not None and (times := row.get(due.key)):
+            wanted = f"due {due.sign} {due.for_row(row):g}{'' if due.met(row) else ': missed'}"
+            lines += ["", f"OctoMap takes {times:.0f} times as long as carve on the same images ({wanted})."]
     return lines
 
 

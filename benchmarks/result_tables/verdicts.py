@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from result_tables.cells import Row, at_least, at_most, centimetres, of, same, table
+from elbowroom.evaluate.rooms import alone, poses, travel
+from result_tables.cells import Row, centimetres, of, same, table
 
 
 def _summaries(rows: Sequence[Row]) -> list[Row]:
@@ -16,7 +17,7 @@ def alone_tables(rows: Sequence[Row]) -> list[str]:
         {
             "voxel": centimetres,
             **same("detail", "poses", "verdicts", "stop", "decelerate", "inform", "clear"),
-            "clear %": of("clear_pct", 2, due=at_least(100.0)),
+            "clear %": of("clear_pct", 2, due=alone.DUE),
         },
     )
 
@@ -28,9 +29,9 @@ def poses_tables(rows: Sequence[Row]) -> list[str]:
         {
             "voxel": centimetres,
             **same("detail", "poses", "verdicts"),
-            "milder than the truth": of("milder", due=at_most(0)),
+            "milder than the truth": of("milder", due=poses.DUE),
             "truly clear": of("truly_clear"),
-            "of these stop %": of("stop_where_clear_pct", 2, due=at_most(10.0)),
+            "of these stop %": of("stop_where_clear_pct", 2, due=poses.DUE),
             "the very level of the truth %": of("same_level_pct", 2),
         },
     )
@@ -43,9 +44,9 @@ def travel_tables(rows: Sequence[Row]) -> list[str]:
         {
             "voxel": centimetres,
             **same("poses"),
-            "more than the truth": of("more_than_truth", due=at_most(0)),
+            "more than the truth": of("more_than_truth", due=travel.DUE),
             "something is touched": of("touching"),
-            "median shortfall, voxels": of("median_shortfall_voxels", 2, due=at_most(1.5)),
+            "median shortfall, voxels": of("median_shortfall_voxels", 2, due=travel.DUE),
             "greatest shortfall, voxels": of("greatest_shortfall_voxels", 2),
         },
     )

@@ -6,6 +6,8 @@ import sys
 import pytest
 
 from elbowroom.cli import run
+from elbowroom.errors import InputError
+from elbowroom.evaluate.examples import example
 
 COMMANDS = ["room", "sevenscenes", "alone", "poses", "travel", "bits"]
 SMALL = ["--cameras", "5", "--size", "thesis", "--voxel-size", "0.1"]
@@ -53,9 +55,12 @@ def test_sevenscenes_has_a_row_for_each_rule_and_detail(example_site, tmp_path, 
 
 
 def test_the_default_recording_is_the_examples(example_site):
-    from elbowroom.cli.evaluate.run import example_site as found
+    assert example("sevenscenes").samefile(example_site("sevenscenes"))
 
-    assert found().samefile(example_site("sevenscenes"))
+
+def test_an_absent_example_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"sevenscenes\.yaml: not there; only a checkout"):
+        example("sevenscenes", tmp_path)
 
 
 def test_absent_data_is_named(tmp_path, monkeypatch, capsys):

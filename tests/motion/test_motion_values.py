@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -87,6 +88,16 @@ def test_levels_end_at_one_two_and_five_braking_distances(travel, level, band):
 
 def test_only_unseen_space_may_be_overridden():
     assert [cause for cause in Cause if verdict_of(0.1, cause).overridable] == [Cause.UNSEEN]
+
+
+def test_a_row_says_joint_and_direction_of_a_motion_and_the_name_of_a_path():
+    verdict = verdict_of(0.15)
+    row = verdict.row()
+    assert (row["joint"], row["direction"], row["level"], row["band"]) == ("larm", "+", "decelerate", "M")
+    assert (row["cause"], row["braking_distance"], row["place_m"]) == ("surface", 0.1, (0.0, 0.0, 1.0))
+    path = JointPath([{"larm": 0.0}, {"larm": 0.1}], 0.1)
+    row = replace(verdict, motion=path).row()
+    assert (row["joint"], row["direction"], row["braking_distance"]) == (path.name, None, 0.1)
 
 
 def test_no_verdicts_are_an_error_and_never_clear():

@@ -7,7 +7,10 @@ from elbowroom.files.yaml_file import read_yaml, write_yaml
 from elbowroom.site import Site
 from elbowroom.site.written import written, written_with_key
 
-CONTENT = {"grid": {"origin_m": [0, 0, 0], "shape": [2, 2, 2], "voxel_size_m": 0.5}, "simulated": {"cameras": 3}}
+CONTENT = {
+    "grid": {"origin_m": [0, 0, 0], "shape": [2, 2, 2], "voxel_size_m": 0.5},
+    "simulated": {"cameras": 3},
+}
 
 
 def test_a_value_that_stands_twice_is_written_out_twice(tmp_path):
@@ -29,7 +32,9 @@ def test_what_is_no_site_is_not_called_written(tmp_path):
 
 def test_a_key_is_replaced_and_all_else_stays_as_it_was_written(tmp_path):
     old = tmp_path / "old.yaml"
-    text = "# mine\ngrid: {origin_m: [0, 0, 0], shape: [2, 2, 2], voxel_size_m: 0.5}  # small\nsimulated: {}\n"
+    text = (
+        "# mine\ngrid: {origin_m: [0, 0, 0], shape: [2, 2, 2], voxel_size_m: 0.5}  # small\nsimulated: {}\n"
+    )
     old.write_text(f"{text}watch:\n  reference: a.npz\n\n")
     new = written_with_key(Site.load(old), "watch", {"reference": "b.npz"}, tmp_path / "new.yaml", "a test")
     assert new.read_text().startswith(text) and new.read_text().count("watch:") == 1

@@ -6,8 +6,8 @@ import typer
 
 from elbowroom.cli.calibrate.app import calibrate_app
 from elbowroom.cli.check import check
+from elbowroom.cli.evaluate.app import evaluate_app
 from elbowroom.cli.evaluate.bench import bench
-from elbowroom.cli.evaluate.thesis import evaluate_app
 from elbowroom.cli.monitor import monitor
 from elbowroom.cli.placement.app import placement_app
 from elbowroom.cli.reconstruct import reconstruct

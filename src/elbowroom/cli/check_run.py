@@ -9,7 +9,6 @@ from elbowroom.cli.reconstruct_run import scene_at, space_of
 from elbowroom.cli.room import Room
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
-from elbowroom.monitor.rows import verdict_row
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.motion import Motion, Verdict, check_motion
 from elbowroom.reconstruct import FreeSpace, warm_up
@@ -49,7 +48,7 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
                 "rule": room.rule,
                 "detail": room.detail,
                 "joints": scene.joints,
-                **verdict_row(verdict),
+                **verdict.row(),
                 "explanation": reasons,
                 "unchecked_links": machine.unchecked_links,
             }

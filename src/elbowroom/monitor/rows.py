@@ -6,29 +6,7 @@ import numpy as np
 
 from elbowroom.monitor import CycleResult
 from elbowroom.monitor.health.drift.watch import BODY
-from elbowroom.motion import JointPath, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
-
-
-def verdict_row(verdict: Verdict) -> dict[str, Any]:
-    """A verdict; `free_travel` and `braking_distance` are in `free_travel_unit`."""
-    motion = verdict.motion
-    joint, direction = (
-        (motion.name, None) if isinstance(motion, JointPath) else (motion.joint, "-+"[motion.direction > 0])
-    )
-    return {
-        "joint": joint,
-        "direction": direction,
-        "level": verdict.level.name.lower(),
-        "band": verdict.band,
-        "free_travel": verdict.free_travel,
-        "free_travel_unit": verdict.free_travel_unit,
-        "braking_distance": motion.braking_distance,
-        "cause": verdict.cause.name.lower(),
-        "overridable": verdict.overridable,
-        "link": verdict.link,
-        "place_m": verdict.place_in_world,
-    }
 
 
 def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
@@ -45,7 +23,7 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
         "fault": result.fault,
         "stopped_by": result.stopped_by,
     }
-    return [cycle, *({"kind": "verdict", **shared, **verdict_row(verdict)} for verdict in result.verdicts)]
+    return [cycle, *({"kind": "verdict", **shared, **verdict.row()} for verdict in result.verdicts)]
 
 
 def health_rows(result: CycleResult, said: dict[str, str]) -> list[dict[str, Any]]:

@@ -23,6 +23,7 @@ distances; then the first. No verdict at all is an error, since nothing seen mea
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 from elbowroom.errors import InputError
 from elbowroom.motion.motion import JointPath, Motion
@@ -98,6 +99,28 @@ class Verdict:
     def overridable(self) -> bool:
         """Whether an operator who holds on may drive on at low speed: only into space that nobody sees."""
         return self.cause is Cause.UNSEEN
+
+    def row(self) -> dict[str, Any]:
+        """As a row of results; `free_travel` and `braking_distance` are in `free_travel_unit`."""
+        motion = self.motion
+        joint, direction = (
+            (motion.name, None)
+            if isinstance(motion, JointPath)
+            else (motion.joint, "-+"[motion.direction > 0])
+        )
+        return {
+            "joint": joint,
+            "direction": direction,
+            "level": self.level.name.lower(),
+            "band": self.band,
+            "free_travel": self.free_travel,
+            "free_travel_unit": self.free_travel_unit,
+            "braking_distance": motion.braking_distance,
+            "cause": self.cause.name.lower(),
+            "overridable": self.overridable,
+            "link": self.link,
+            "place_m": self.place_in_world,
+        }
 
 
 def most_cautious(verdicts: Iterable[Verdict]) -> Verdict:

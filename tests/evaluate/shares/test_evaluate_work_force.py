@@ -75,8 +75,6 @@ def test_a_damaged_file_is_as_if_it_were_not_there(tmp_path):
 
 def test_ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on(tmp_path, monkeypatch, capsys):
     part = Part("part", "Title", lambda settings: TASKS, lambda rows: [], lambda rows, pictures: [])
-    module = type("Module", (), {"PART": part})
-    monkeypatch.setattr(thesis_run.importlib, "import_module", lambda name: module)
 
     def interrupted(tasks, **options):
         yield 0, tasks[0].run()
@@ -87,7 +85,7 @@ def test_ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on(tmp_path, monkey
     monkeypatch.setattr(thesis_run, "do_tasks", interrupted)
     spread = thesis_run.Spread(1, None)
     with pytest.raises(KeyboardInterrupt):
-        thesis_run.run_parts(("part",), Settings(), spread, tmp_path / "out", tmp_path / "rows.json")
+        thesis_run.run_parts((part,), Settings(), spread, tmp_path / "out", tmp_path / "rows.json")
     text = " ".join(capsys.readouterr().out.split())
     assert "Interrupted after 2 of 5" in text and "goes on from there" in text
     assert not (tmp_path / "rows.json").exists()
@@ -99,7 +97,7 @@ def test_ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on(tmp_path, monkey
         yield from doing(tasks, jobs=1)
 
     monkeypatch.setattr(thesis_run, "do_tasks", noted)
-    thesis_run.run_parts(("part",), Settings(), spread, tmp_path / "out", tmp_path / "rows.json")
+    thesis_run.run_parts((part,), Settings(), spread, tmp_path / "out", tmp_path / "rows.json")
     assert left == ["t1", "t2", "t4"]
     assert (tmp_path / "out" / "report.html").is_file() and (tmp_path / "rows.json").is_file()
 

@@ -100,7 +100,7 @@ def test_summary_adds_up_and_answers_what_was_due(rows):
         assert row["motions"] == len(mine)
         assert row["in_view"] == sum(r["in_view"] for r in mine)
         assert row["worst_short_mm"] == max(r["short_mm"] for r in mine)
-    table = due_table([{"part": "scale", **row} for row in rows + summaries])
+    table = due_table([PART], [{"part": "scale", **row} for row in rows + summaries])
     assert table is not None and len(table.lines) == 3
 
 

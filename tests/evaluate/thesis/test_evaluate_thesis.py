@@ -8,9 +8,9 @@ import pytest
 from elbowroom.cli import run
 from elbowroom.evaluate.shares.task import Settings
 from elbowroom.evaluate.thesis.bands import BANDS, compared, counted
-from elbowroom.evaluate.thesis.calibration import disturbed, judge_draws, margin_for
 from elbowroom.evaluate.thesis.calibration import tasks as calibration_tasks
 from elbowroom.evaluate.thesis.cases import cases_of, counts_of
+from elbowroom.evaluate.thesis.draws import disturbed, judge_draws, margin_for
 from elbowroom.evaluate.thesis.random_motions import judge_random
 from elbowroom.evaluate.thesis.scale_model import scaled
 from elbowroom.evaluate.thesis.thesis import TABLE_2, c_arm, sensor_cameras
@@ -85,16 +85,8 @@ def test_margin_keeps_objects_that_a_calibration_error_would_lose():
         "translation_m": 0.0,
         "shares": [0.0, 0.75],
     }
-    rest = {
-        "whole": False,
-        "detail": "pixel",
-        "number": 1,
-        "voxel_size_m": 0.1,
-        "first": 0,
-        "draws": 1,
-        "cameras": 21,
-    }
-    bare, kept = judge_draws(**case, **rest).rows
+    rest = {"number": 1, "voxel_size_m": 0.1, "first": 0, "draws": 1, "cameras": 21}
+    bare, kept = judge_draws(case, **rest).rows
     assert kept["occupied_pct"] > bare["occupied_pct"] and kept["found_pct"] < bare["found_pct"]
 
 
@@ -102,7 +94,7 @@ def test_draws_are_the_same_in_whatever_shares_they_come():
     settings = Settings(draws=30)
     names = [task.name for task in calibration_tasks(settings)]
     assert len(set(names)) == len(names)
-    due = [t.arguments for t in calibration_tasks(settings) if t.arguments["curve"] == "due"]
+    due = [t.arguments for t in calibration_tasks(settings) if t.arguments["errors"]["curve"] == "due"]
     assert [(a["first"], a["draws"]) for a in due] == [(0, 25), (25, 5)]
 
 

@@ -1,114 +1,36 @@
-"""`elbowroom evaluate`: how right the answers are."""
-
-from pathlib import Path
-from typing import Annotated, Literal
+"""`elbowroom evaluate`: how right the answers are; each command from a file of its own."""
 
 import typer
 
-from elbowroom.cli.options import JsonFile
+from elbowroom.cli.evaluate.bits import bits
+from elbowroom.cli.evaluate.placement import placement
+from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
+from elbowroom.cli.evaluate.scale import scale_budget, scale_cameras
+from elbowroom.cli.evaluate.thesis import all_parts, calibration, more, motions, reconstruction, scale
 
 evaluate_app = typer.Typer(help="Measure how right the answers are.", no_args_is_help=True)
 
-Poses = Annotated[int, typer.Option(min=1, metavar="COUNT", help="How many random poses.")]
-Cameras = Annotated[int, typer.Option(min=1, max=255, help="How many cameras, along the walls.")]
-Size = Annotated[Literal["vga", "qqvga", "thesis"], typer.Option(help="Of their images.")]
-Seed = Annotated[int, typer.Option(min=0, help="Of the random poses; the same seed gives the same poses.")]
-VoxelSizes = Annotated[
-    list[float] | None,
-    typer.Option("--voxel-size", metavar="METRES", help="Edge of a voxel; may be given more than once."),
-]
-OneVoxelSize = Annotated[float, typer.Option("--voxel-size", metavar="METRES", help="Edge of a voxel.")]
+
+def _example(words: str) -> str:
+    return f"Example: elbowroom evaluate {words}"
 
 
-@evaluate_app.command(epilog="Example: elbowroom evaluate room --json room.json")
-def room(
-    voxel_size: VoxelSizes = None, cameras: Cameras = 21, size: Size = "vga", json: JsonFile = None
-) -> None:
-    """Compare with the exact truth of the simulated room: occupied voxels kept, free voxels found."""
-    from elbowroom.cli.evaluate.run import run_room
-
-    run_room(tuple(voxel_size or (0.05, 0.02)), cameras, size, json)
-
-
-@evaluate_app.command(epilog="Example: elbowroom evaluate sevenscenes --json sevenscenes.json")
-def sevenscenes(
-    site: Annotated[
-        Path | None,
-        typer.Argument(metavar="[SITE]", help="Default: examples/sevenscenes.yaml of a checkout."),
-    ] = None,
-    voxel_size: VoxelSizes = None,
-    json: JsonFile = None,
-) -> None:
-    """Compare with views of a real room that were kept apart: measured surface points in free space."""
-    from elbowroom.cli.evaluate.run import run_sevenscenes
-
-    run_sevenscenes(site, tuple(voxel_size or (0.05,)), json)
-
-
-@evaluate_app.command(epilog="Example: elbowroom evaluate alone --json alone.json")
-def alone(
-    poses: Poses = 20,
-    voxel_size: VoxelSizes = None,
-    cameras: Cameras = 21,
-    size: Size = "vga",
-    seed: Seed = 1,
-    json: JsonFile = None,
-) -> None:
-    """Check all motions of the C-arm alone in the room, with sensor noise: all must be clear."""
-    from elbowroom.cli.evaluate.run import run_alone
-
-    run_alone(tuple(voxel_size or (0.02, 0.05)), poses, cameras, size, seed, json)
-
-
-@evaluate_app.command(epilog="Example: elbowroom evaluate poses --poses 20 --json poses.json")
-def poses(
-    poses: Poses = 200,
-    voxel_size: OneVoxelSize = 0.02,
-    cameras: Cameras = 21,
-    size: Size = "vga",
-    seed: Seed = 2,
-    json: JsonFile = None,
-) -> None:
-    """Compare verdicts from depth images with exact geometry, in the whole room at random moments."""
-    from elbowroom.cli.evaluate.run import run_poses
-
-    run_poses(voxel_size, poses, cameras, size, seed, json)
-
-
-@evaluate_app.command(epilog="Example: elbowroom evaluate travel --json travel.json")
-def travel(
-    poses: Poses = 200, voxel_size: OneVoxelSize = 0.02, seed: Seed = 3, json: JsonFile = None
-) -> None:
-    """Compare free travel in the true volume with exact mesh distance."""
-    from elbowroom.cli.evaluate.run import run_travel
-
-    run_travel(voxel_size, poses, seed, json)
-
-
-@evaluate_app.command(
-    epilog="Example: elbowroom evaluate bits --json now.json --against benchmarks/results/bits.json"
+evaluate_app.command(epilog=_example("room --json room.json"))(room)
+evaluate_app.command(epilog=_example("sevenscenes --json sevenscenes.json"))(sevenscenes)
+evaluate_app.command(epilog=_example("alone --json alone.json"))(alone)
+evaluate_app.command(epilog=_example("poses --poses 20 --json poses.json"))(poses)
+evaluate_app.command(epilog=_example("travel --json travel.json"))(travel)
+evaluate_app.command(epilog=_example("thin-solids --scenes 20 --json thin_solids.json"))(thin_solids)
+evaluate_app.command(epilog=_example("lost-pixels --json lost_pixels.json"))(lost_pixels)
+evaluate_app.command(epilog=_example("placement --part verify --json placement.json"))(placement)
+evaluate_app.command(epilog=_example("reconstruction --setup 1 --voxel-size 0.1 --json out.json"))(
+    reconstruction
 )
-def bits(
-    examples: Annotated[
-        Path | None,
-        typer.Argument(metavar="[EXAMPLES]", help="Folder of site files. Default: examples of a checkout."),
-    ] = None,
-    data: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR", help="Folder of the recordings. Default: ELBOWROOM_DATA, or as the site files say."
-        ),
-    ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="A few cases only.")] = False,
-    against: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE", help="A file that this command wrote before; exits with 1 if rows differ."
-        ),
-    ] = None,
-    json: JsonFile = None,
-) -> None:
-    """Check sums of free space and verdicts, by every rule and detail: whether a change of the code changed a bit."""
-    from elbowroom.cli.evaluate.bits_run import run_bits
-
-    run_bits(examples, data, quick, against, json)
+evaluate_app.command(epilog=_example("motions --motions 100 --json motions.json"))(motions)
+evaluate_app.command(epilog=_example("calibration --draws 10 --json calibration.json"))(calibration)
+evaluate_app.command(epilog=_example("scale --json scale.json"))(scale)
+evaluate_app.command(epilog=_example("scale-cameras --poses 2 --step 20 --json cameras.json"))(scale_cameras)
+evaluate_app.command(epilog=_example("scale-budget --poses 4 --json budget.json"))(scale_budget)
+evaluate_app.command(epilog=_example("more --out report --json more.json"))(more)
+evaluate_app.command(epilog=_example("bits --json now.json --against benchmarks/results/bits.json"))(bits)
+evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

@@ -10,10 +10,11 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from elbowroom.cli.evaluate.run import watched
+from elbowroom.cli.evaluate.measured import watched
 from elbowroom.errors import InputError
 from elbowroom.evaluate.bits.cases import absent, cases
 from elbowroom.evaluate.bits.sums import Case, Row, differences, sum_of
+from elbowroom.evaluate.examples import EXAMPLES
 from elbowroom.files.json_rows import json_rows
 
 SHOWN = 10
@@ -108,8 +109,7 @@ def _say(console: Console, words: str) -> None:
 
 def _examples() -> Path | None:
     """examples/ of the checkout that this code runs from."""
-    folder = Path(__file__).resolve().parents[4] / "examples"
-    return folder if folder.is_dir() else None
+    return EXAMPLES if EXAMPLES.is_dir() else None
 
 
 def _data(examples: Path | None) -> Path | None:

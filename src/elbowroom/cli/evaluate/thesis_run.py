@@ -1,6 +1,5 @@
 """The runs of the thesis' experiments: tasks spread over cores or computers, tables to the screen, a page."""
 
-import importlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +7,7 @@ from typing import Any
 
 from rich.console import Console
 
-from elbowroom.cli.evaluate.run import watched
+from elbowroom.cli.evaluate.measured import watched
 from elbowroom.errors import InputError
 from elbowroom.evaluate.shares.kept import Kept, source_state
 from elbowroom.evaluate.shares.task import Outcome, Settings, Task
@@ -23,8 +22,6 @@ from elbowroom.view.report.blocks import Block, Table
 from elbowroom.view.report.page import page
 from elbowroom.view.report.tables import rich_table
 
-PARTS = ("reconstruction", "motions", "calibration", "scale", "more")
-"""Names of the parts, which are those of their modules in `elbowroom.evaluate.thesis`, in the order of the page."""
 TITLE = "The thesis' experiments"
 ABOUT = (
     "I. Hamersma, *Collision avoidance using multiple correlated 3D depth measurements*, Eindhoven 2011, "
@@ -58,9 +55,16 @@ def settings(**given: Any) -> Settings:
 
 
 def run_parts(
-    names: Sequence[str], given: Settings, spread: Spread, out: Path | None, json: Path | None
+    parts: Sequence[Part], given: Settings, spread: Spread, out: Path | None, json: Path | None
 ) -> None:
     """Does the tasks of some parts, shows their tables, writes page and results.
+
+    Args:
+        parts: of the thesis' experiments.
+        given: how much of them is run.
+        spread: where the work goes.
+        out: folder for the page and what is done; None: no page.
+        json: file for the rows.
 
     Raises:
         InputError: a folder that cannot be written to, no scheduler at the address.
@@ -68,7 +72,6 @@ def run_parts(
     """
     # at once: a result file that is written into the checkout makes it differ from its commit
     said = meta()
-    parts: list[Part] = [importlib.import_module(f"elbowroom.evaluate.thesis.{name}").PART for name in names]
     if out is not None:
         folder(out)
     kept = Kept(out / "parts" if out else None, source_state())
@@ -86,9 +89,9 @@ def run_parts(
                 add(row)
             every += rows
             sections.append((part.title, part.show(rows, pictures)))
-    due = due_table(every)
+    due = due_table(parts, every)
     if due is not None:
-        sections.insert(0, ("What was due", [due]))
+        sections.insert(0, (due.title, [due]))
     console = Console(highlight=False)
     for title, blocks in sections:
         console.print(f"\n{title}", style="bold")

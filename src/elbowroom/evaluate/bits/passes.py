@@ -21,7 +21,18 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.monitor import Cycle, CycleResult
 from elbowroom.motion import blocks_in_reach, check_motions
 from elbowroom.placement import FixedRoom, verify
-from elbowroom.reconstruct import DETAILS, RULES, Detail, Evidence, Rule, carve, merge, reconstruct, resolve
+from elbowroom.reconstruct import (
+    DETAILS,
+    RULES,
+    Detail,
+    Evidence,
+    Rule,
+    Terms,
+    carve,
+    merge,
+    reconstruct,
+    resolve,
+)
 from elbowroom.sensing import DepthFrame, JointRecord
 from elbowroom.simulate import InterventionRoom, Moment, true_occupancy
 from elbowroom.site import Site
@@ -140,7 +151,7 @@ def explain_rows() -> Iterator[Row]:
         space = reconstruct(grid, cameras, frames, room.machine, moment.joints, detail=detail, margin=NARROW)
         reports = [space.explain(point) for point in POINTS_M]
         pieces = [("reports", "\n".join(report_text(report) for report in reports))]
-        yield row(f"reports, {noise or 'exact'}", pieces, space.source.rule if space.source else None, detail)
+        yield row(f"reports, {noise or 'exact'}", pieces, Terms().rule, detail)
 
 
 def settings_rows() -> Iterator[Row]:

@@ -6,11 +6,16 @@ from typing import Any
 import numpy as np
 
 from elbowroom.choices import Detail
-from elbowroom.evaluate.rooms.scene import WELL_KNOWN, room_grid, room_motions, settings_of
+from elbowroom.evaluate.due import Due
+from elbowroom.evaluate.rooms.scene import WELL_KNOWN, only, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
+
+SAID = ("joint", "direction", "level", "band", "cause", "free_travel", "free_travel_unit")
+"""What is kept of a verdict."""
+DUE = (Due("clear_pct", "≥", 100.0, words="all clear"),)
 
 
 def alone_rows(
@@ -54,7 +59,7 @@ def alone_rows(
                 margin=WELL_KNOWN,
             )
             verdicts = check_motions(space, room.machine, moment.joints, motions)
-            for motion, verdict in zip(motions, verdicts, strict=True):
+            for verdict in verdicts:
                 yield {
                     "kind": "verdict",
                     "pose": pose,
@@ -65,13 +70,7 @@ def alone_rows(
                     "width": views[0].width,
                     "height": views[0].height,
                     "heights_m": list(heights_m),
-                    "joint": motion.joint,
-                    "direction": "-+"[motion.direction > 0],
-                    "level": verdict.level.name.lower(),
-                    "band": verdict.band,
-                    "cause": verdict.cause.name.lower(),
-                    "free_travel": verdict.free_travel,
-                    "free_travel_unit": verdict.free_travel_unit,
+                    **only(verdict.row(), SAID),
                 }
 
 

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from elbowroom.choices import Detail
+from elbowroom.evaluate.due import Due
 from elbowroom.evaluate.rooms.exact import ExactTravel
-from elbowroom.evaluate.rooms.scene import WELL_KNOWN, Comparison, room_grid, room_motions, settings_of
+from elbowroom.evaluate.rooms.scene import WELL_KNOWN, Comparison, only, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
@@ -18,6 +19,7 @@ COMPARED = (
     *("true_level", "true_travel", "truly_clear", "milder"),
 )
 """What is kept of a comparison; joints, places and solids follow from seed and number of the pose."""
+DUE = (Due("milder", "≤", 0), Due("stop_where_clear_pct", "≤", 10.0))
 
 
 def poses_rows(
@@ -78,7 +80,7 @@ def poses_rows(
                 "width": views[0].width,
                 "height": views[0].height,
                 "heights_m": list(heights_m),
-                **{name: compared[name] for name in COMPARED},
+                **only(compared, COMPARED),
             }
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.choices import Detail, Rule
+from elbowroom.evaluate.due import FULL_ROOM, Due, where
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.reconstruct import reconstruct
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame
@@ -15,6 +16,34 @@ from elbowroom.simulate import InterventionRoom, Moment, render, true_occupancy,
 ROOM_LOWER_M, ROOM_UPPER_M = (-2.0, -2.0, 0.0), (2.0, 2.0, 2.5)
 MOMENTS_S = (0.0, 7.0, 19.0)
 """Times of the room's course at which it is judged [s]."""
+OURS = {**FULL_ROOM, "rule": "three"}
+"""Of which figures are due."""
+DUE = (
+    Due("occupied_pct", "≥", 100.0, where(**OURS, detail="footprint", noise=False), "kept by footprint"),
+    Due("occupied_pct", "≥", 99.99, where(**OURS, detail="pixel", noise=False), "by pixel"),
+    Due(
+        "occupied_pct",
+        "≥",
+        99.99,
+        where(**OURS, detail="pixel", noise=True, voxel_size_m=0.02),
+        "and with noise at 2 cm",
+    ),
+    Due(
+        "found_pct",
+        "≥",
+        97.0,
+        where(**OURS, detail="pixel", noise=False, voxel_size_m=0.02),
+        "found by pixel, above the layer at the floor, at 2 cm",
+    ),
+    Due("found_pct", "≥", 94.0, where(**OURS, detail="pixel", noise=False, voxel_size_m=0.05), "at 5 cm"),
+    Due(
+        "found_pct",
+        "≥",
+        92.0,
+        where(**OURS, detail="pixel", noise=True, voxel_size_m=0.02),
+        "with noise at 2 cm",
+    ),
+)
 
 
 @dataclass(slots=True)

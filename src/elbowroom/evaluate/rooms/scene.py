@@ -52,6 +52,11 @@ def lean(row: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+def only(row: Mapping[str, Any], keys: Sequence[str]) -> dict[str, Any]:
+    """Of a row what some keys say, in their order."""
+    return {key: row[key] for key in keys}
+
+
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """A verdict beside exact geometry's answer to the same question.
@@ -88,19 +93,9 @@ class Comparison:
         """Whether nothing is met within the whole reach, and no joint limit comes before it."""
         return not self.contact.touches and self.contact.length >= self.motion.looked_at - SAME
 
-    def row(self) -> dict[str, object]:
+    def row(self) -> dict[str, Any]:
         """The verdict, the truth, and how they compare; travels in `free_travel_unit`."""
-        place = self.verdict.place_in_world
-        return {
-            "joint": self.motion.joint,
-            "direction": "-+"[self.motion.direction > 0],
-            "level": self.verdict.level.name.lower(),
-            "band": self.verdict.band,
-            "cause": self.verdict.cause.name.lower(),
-            "free_travel": self.verdict.free_travel,
-            "free_travel_unit": self.verdict.free_travel_unit,
-            "link": self.verdict.link,
-            "place_m": place,
+        return self.verdict.row() | {
             "true_level": self.true_level.name.lower(),
             "true_band": self.true_level.band,
             "true_travel": self.contact.travel,

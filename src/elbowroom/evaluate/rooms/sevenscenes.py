@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import SiteError
+from elbowroom.evaluate.due import Due, where
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.reconstruct import DETAILS, RULES, FreeSpace, carve, resolve
 from elbowroom.sensing import DepthFrame, Margin
@@ -16,6 +17,14 @@ from elbowroom.sources import excluded_frames, moments
 
 NARROW = Margin(sigmas=0.0, bias_m=0.005, lateral_px=0.0, range_quadratic=0.002)
 """The narrower margin of the comparison, without flying-pixel filter: what is found when less is held back."""
+DUE = (
+    Due("false_pct", "≤", 0.30, where(voxel_size_m=0.05), "false"),
+    Due("free_pct", "≥", 10.0, where(voxel_size_m=0.05, rule="three"), "free by three"),
+    Due("free_pct", "≥", 10.0, where(voxel_size_m=0.05, rule="majority"), "by majority"),
+    Due("free_pct", "≥", 16.0, where(voxel_size_m=0.05, rule="veto"), "by veto"),
+    Due("free_pct", "≥", 20.0, where(voxel_size_m=0.05, rule="any"), "by any"),
+)
+"""Of at least one detail and margin of a rule."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

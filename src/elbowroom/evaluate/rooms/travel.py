@@ -5,14 +5,18 @@ from typing import Any
 
 import numpy as np
 
+from elbowroom.evaluate.due import Due
 from elbowroom.evaluate.rooms.exact import ExactTravel
-from elbowroom.evaluate.rooms.scene import SAME, room_grid, room_motions, settings_of
+from elbowroom.evaluate.rooms.scene import SAME, only, room_grid, room_motions, settings_of
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
 from elbowroom.simulate import InterventionRoom, true_occupancy
 
 CLEAR_VOXELS = 2.0
 """So many voxels must be between machine and solids at the start."""
+SAID = ("joint", "direction", "free_travel", "free_travel_unit", "cause")
+"""What is kept of a verdict."""
+DUE = (Due("more_than_truth", "≤", 0), Due("median_shortfall_voxels", "≤", 1.5))
 
 
 def travel_rows(
@@ -54,11 +58,7 @@ def travel_rows(
                 "pose": pose,
                 "voxel_size_m": voxel_size_m,
                 "seed": seed,
-                "joint": motion.joint,
-                "direction": "-+"[motion.direction > 0],
-                "free_travel": verdict.free_travel,
-                "free_travel_unit": verdict.free_travel_unit,
-                "cause": verdict.cause.name.lower(),
+                **only(verdict.row(), SAID),
                 "true_travel": contact.travel,
                 "true_solid": contact.solid,
                 "shortfall_voxels": missing_m / voxel_size_m if contact.touches else None,

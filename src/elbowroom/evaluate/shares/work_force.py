@@ -3,13 +3,15 @@
 import multiprocessing
 import os
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from typing import TypeVar
 
 from elbowroom.errors import ElbowroomError, InputError
 from elbowroom.evaluate.shares.task import Outcome, Task
 
+Done = TypeVar("Done")
 TRIES = 3
 """A task whose worker was lost is done again, so often at most."""
 
@@ -28,39 +30,54 @@ def do_tasks(
         InputError: no such scheduler, or fewer than one job.
         ElbowroomError: Dask is not installed; a worker was lost more than three times.
     """
-    if jobs < 1:
-        raise InputError(f"--jobs: {jobs}, must be at least 1")
     if cluster is not None:
         yield from _on_cluster(tasks, cluster)
-    elif jobs == 1 or len(tasks) <= 1:
-        for index, task in enumerate(tasks):
-            yield index, task.run()
     else:
-        yield from _on_processes(tasks, jobs)
+        yield from do_work([task.run for task in tasks], jobs=jobs)
 
 
-def _on_processes(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[int, Outcome]]:
-    left, lost = dict(enumerate(tasks)), 0
+def do_work(work: Sequence[Callable[[], Done]], *, jobs: int = 1) -> Iterator[tuple[int, Done]]:
+    """Calls functions, and yields each one's index and what it gives as it is done.
+
+    Args:
+        work: functions that other processes find; those that come first are begun first.
+        jobs: processes on this computer; 1: this process, with all its threads.
+
+    Raises:
+        InputError: fewer than one job.
+        ElbowroomError: a worker was lost more than three times.
+    """
+    if jobs < 1:
+        raise InputError(f"jobs: {jobs}, must be at least 1")
+    if jobs == 1 or len(work) <= 1:
+        for index, function in enumerate(work):
+            yield index, function()
+    else:
+        yield from _on_processes(work, jobs)
+
+
+def _on_processes(work: Sequence[Callable[[], Done]], jobs: int) -> Iterator[tuple[int, Done]]:
+    left, lost = dict(enumerate(work)), 0
     while left:
         try:
-            for index, outcome in _one_pool(left, jobs):
+            for index, done in _one_pool(left, jobs):
                 del left[index]
-                yield index, outcome
+                yield index, done
         except BrokenProcessPool as error:
             lost += 1
             if lost >= TRIES:
                 raise ElbowroomError(
                     f"{lost} times a worker process was ended from outside, perhaps for want of memory; "
-                    "run again with fewer --jobs"
+                    "run again with fewer jobs"
                 ) from error
 
 
-def _one_pool(left: dict[int, Task], jobs: int) -> Iterator[tuple[int, Outcome]]:
+def _one_pool(left: dict[int, Callable[[], Done]], jobs: int) -> Iterator[tuple[int, Done]]:
     context = multiprocessing.get_context("spawn")
     number = context.Value("i", 0)
     pool = ProcessPoolExecutor(jobs, mp_context=context, initializer=_settle, initargs=(number, jobs))
     try:
-        pending: dict[Future[Outcome], int] = {pool.submit(task.run): index for index, task in left.items()}
+        pending: dict[Future[Done], int] = {pool.submit(function): index for index, function in left.items()}
         while pending:
             done, _ = wait(pending, return_when=FIRST_COMPLETED)
             for future in sorted(done, key=lambda f: pending[f]):
@@ -90,11 +107,11 @@ def _on_cluster(tasks: Sequence[Task], address: str) -> Iterator[tuple[int, Outc
     try:
         from distributed import Client, as_completed
     except ImportError as error:
-        raise ElbowroomError(f"--cluster needs Dask ({error}); install 'elbowroom[cluster]'") from error
+        raise ElbowroomError(f"a cluster needs Dask ({error}); install 'elbowroom[cluster]'") from error
     try:
         client = Client(address, timeout="10s")
     except (OSError, ValueError) as error:
-        raise InputError(f"--cluster: no Dask scheduler answers at {address} ({error})") from error
+        raise InputError(f"cluster: no Dask scheduler answers at {address} ({error})") from error
     with client:
         # Dask itself gives the work of a lost worker to another
         futures = client.map(Task.run, list(tasks), pure=False, retries=TRIES - 1)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.errors import InputError
+from elbowroom.evaluate.due import FULL_ROOM, Due, where
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.parallel import default_threads
 from elbowroom.sensing import DepthFrame
@@ -38,6 +39,22 @@ class Case:
     rounds: int
 
 
+DUE = (
+    *(
+        Due("median_ms", "≤", ms, where(**FULL_ROOM, case=case, voxel_size_m=edge, detail=detail))
+        for case, edge, detail, ms in (
+            ("carve", 0.05, "footprint", 25.0),
+            ("carve", 0.02, "footprint", 130.0),
+            ("cycle", 0.05, "footprint", 45.0),
+            ("cycle", 0.02, "footprint", 180.0),
+            ("cycle", 0.05, "pixel", 140.0),
+            ("cycle", 0.02, "pixel", 480.0),
+        )
+    ),
+    Due("peak_rss_mb", "≤", 600.0, where(**FULL_ROOM, voxel_size_m=0.02)),
+    Due("times_slower_than_carve", "≥", 500.0),
+)
+"""On two cores."""
 CASES = (
     Case(0.05, "footprint", False, 60),
     Case(0.02, "footprint", False, 40),

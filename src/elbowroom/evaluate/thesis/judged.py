@@ -6,7 +6,7 @@ from functools import cache
 from typing import Any
 
 from elbowroom.choices import Detail
-from elbowroom.evaluate.rooms.scene import DECIMALS, Comparison, room_grid, room_motions
+from elbowroom.evaluate.rooms.scene import DECIMALS, Comparison, lean, only, room_grid, room_motions
 from elbowroom.evaluate.thesis.bands import compared
 from elbowroom.evaluate.thesis.thesis import sensor_cameras
 from elbowroom.geometry import DepthCamera
@@ -55,6 +55,8 @@ class Variant:
 
 SAID = ("sensor", "noise", "voxel_size_m", "rule", "detail", "lateral_px", "cameras")
 """What rows say of their variant."""
+KEPT = ("joint", "direction", "band", "cause", "free_travel", "free_travel_unit")
+"""What they say of a verdict."""
 
 
 @cache
@@ -96,14 +98,9 @@ def judged(found: Comparison, voxel_size_m: float) -> dict[str, Any]:
     verdict, contact = found.verdict, found.contact
     missing_m = (contact.travel - verdict.free_travel) * contact.speed
     return {
-        "joint": found.motion.joint,
-        "direction": "-+"[found.motion.direction > 0],
-        "band": verdict.band,
+        **only(lean(verdict.row()), KEPT),
         "truth_band": found.true_level.band,
         "verdict": compared(verdict.band, found.true_level.band),
-        "cause": verdict.cause.name.lower(),
-        "free_travel": round(verdict.free_travel, DECIMALS),
-        "free_travel_unit": verdict.free_travel_unit,
         "truth_travel": round(contact.travel, DECIMALS),
         "true_solid": contact.solid,
         "more_than_truth": found.milder,

@@ -14,8 +14,9 @@ from elbowroom.evaluate.rooms.exact import ExactTravel, load_coal
 from elbowroom.evaluate.rooms.room import Tally
 from elbowroom.evaluate.rooms.scene import room_grid, room_motions
 from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
+from elbowroom.evaluate.tables import table_of
 from elbowroom.evaluate.thesis.fig3 import fig3_picture
-from elbowroom.evaluate.thesis.part import Part
+from elbowroom.evaluate.thesis.part import Part, about
 from elbowroom.evaluate.thesis.thesis import HEIGHTS_M, c_arm, sensor_cameras
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import reconstruct
@@ -24,7 +25,7 @@ from elbowroom.simulate.furniture import shell
 from elbowroom.simulate.inside import hung_clear
 from elbowroom.simulate.shapes import ellipsoid, join
 from elbowroom.simulate.truth import touched_by
-from elbowroom.view.report.blocks import Block, Picture, Table, Words, cm, mean, pct
+from elbowroom.view.report.blocks import Block, Picture, Table, cm, mean, pct
 from elbowroom.view.report.charts import Line, chart
 
 COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 21)
@@ -162,66 +163,66 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
 
 def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
     """Tables, two charts, the figure."""
-    blocks: list[Block] = [Words(" ".join((__doc__ or "").split("\n\n", 1)[1].split()))]
+    blocks: list[Block] = [about(__doc__)]
     counts = [row for row in rows if row["kind"] == "summary"]
     if counts:
-        blocks.append(
-            Table(
-                "More sensors: 640x480, no noise, pixel test [%]",
-                ("cameras", "free of all", "found of seen", "occupied", "free travel of the truth"),
-                [
-                    (
-                        str(r["cameras"]),
-                        pct(r["free_pct"]),
-                        pct(r["found_pct"]),
-                        pct(r["occupied_pct"], 3),
-                        pct(r["travel_pct"], 1),
-                    )
-                    for r in counts
-                ],
-            )
-        )
-        lines = (
-            Line("free space declared, of all", [(r["cameras"], r["free_pct"]) for r in counts]),
-            Line("free travel, of the truth", [(r["cameras"], r["travel_pct"]) for r in counts]),
-        )
-        blocks.append(
-            Picture(chart(lines, "cameras", "%", y_range=(0, 102)), "More sensors give more freedom", 560)
-        )
+        blocks += _counts_blocks(counts)
     balls = [row for row in rows if row["kind"] == "balls"]
     if balls:
-        blocks.append(_balls_table(balls))
-        kinds = dict.fromkeys((r["sensor"], r["detail"]) for r in balls)
-        drawn = [
-            Line(
-                f"{sensor}, {detail}",
-                [
-                    (100 * r["size_m"], r["touched_free_pct"])
-                    for r in balls
-                    if (r["sensor"], r["detail"]) == (sensor, detail)
-                ],
-            )
-            for sensor, detail in kinds
-        ]
-        words = "Share of the voxels touched by a ball that are declared free, over its diameter"
-        blocks.append(Picture(chart(drawn, "diameter [cm]", "%", logarithmic=True), words, 560))
+        blocks += [_balls_table(balls), _balls_chart(balls)]
     if "fig3" in pictures:
-        blocks.append(
-            Picture(
-                pictures["fig3"],
-                "The thesis' Fig. 3, made by the program: I-IV free space of four sensors, V together, VI the machine, "
-                "VII its own place freed, VIII-X new positions, XI-XIII their collisions (red)",
-                1000,
-            )
+        words = (
+            "The thesis' Fig. 3, made by the program: I-IV free space of four sensors, V together, VI the machine, "
+            "VII its own place freed, VIII-X new positions, XI-XIII their collisions (red)"
         )
+        blocks.append(Picture(pictures["fig3"], words, 1000))
     return blocks
+
+
+def _counts_blocks(counts: Sequence[Row]) -> list[Block]:
+    """Over the number of cameras."""
+    table = table_of(
+        "More sensors: 640x480, no noise, pixel test [%]",
+        counts,
+        {
+            "cameras": "{cameras}",
+            "free of all": lambda r: pct(r["free_pct"]),
+            "found of seen": lambda r: pct(r["found_pct"]),
+            "occupied": lambda r: pct(r["occupied_pct"], 3),
+            "free travel of the truth": lambda r: pct(r["travel_pct"], 1),
+        },
+        left=("cameras",),
+    )
+    lines = (
+        Line("free space declared, of all", [(r["cameras"], r["free_pct"]) for r in counts]),
+        Line("free travel, of the truth", [(r["cameras"], r["travel_pct"]) for r in counts]),
+    )
+    drawn = chart(lines, "cameras", "%", y_range=(0, 102))
+    return [table, Picture(drawn, "More sensors give more freedom", 560)]
+
+
+def _by_sensor(balls: Sequence[Row]) -> dict[tuple[str, str], list[Row]]:
+    """By sensor and detail."""
+    kinds: dict[tuple[str, str], list[Row]] = {}
+    for row in balls:
+        kinds.setdefault((row["sensor"], row["detail"]), []).append(row)
+    return kinds
+
+
+def _balls_chart(balls: Sequence[Row]) -> Picture:
+    drawn = [
+        Line(f"{sensor}, {detail}", [(100 * r["size_m"], r["touched_free_pct"]) for r in mine])
+        for (sensor, detail), mine in _by_sensor(balls).items()
+    ]
+    words = "Share of the voxels touched by a ball that are declared free, over its diameter"
+    return Picture(chart(drawn, "diameter [cm]", "%", logarithmic=True), words, 560)
 
 
 def _balls_table(balls: Sequence[Row]) -> Table:
     sizes = sorted({r["size_m"] for r in balls})
     lines = []
-    for sensor, detail in dict.fromkeys((r["sensor"], r["detail"]) for r in balls):
-        by = {r["size_m"]: r for r in balls if (r["sensor"], r["detail"]) == (sensor, detail)}
+    for (sensor, detail), mine in _by_sensor(balls).items():
+        by = {r["size_m"]: r for r in mine}
         lines.append(
             (sensor, detail, *(f"{by[s]['missed_pct']:.0f} ({by[s]['touched_free_pct']:.1f})" for s in sizes))
         )

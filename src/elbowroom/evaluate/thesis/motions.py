@@ -12,10 +12,11 @@ from typing import Any
 
 from elbowroom.evaluate.rooms.exact import load_coal
 from elbowroom.evaluate.shares.task import Row, Settings, Task
+from elbowroom.evaluate.thesis import movements, random_motions
 from elbowroom.evaluate.thesis.movements import movement_blocks, movement_summary, movement_tasks
-from elbowroom.evaluate.thesis.part import Part
+from elbowroom.evaluate.thesis.part import Part, about
 from elbowroom.evaluate.thesis.random_motions import random_blocks, random_summary, random_tasks
-from elbowroom.view.report.blocks import Block, Words
+from elbowroom.view.report.blocks import Block
 
 
 def tasks(settings: Settings) -> list[Task]:
@@ -35,8 +36,7 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
 
 def show(rows: Sequence[Row], pictures: Mapping[str, bytes]) -> list[Block]:
     """Verdicts counted beside the thesis', its Table 4 with ours, the random motions."""
-    words = Words(" ".join((__doc__ or "").split("\n\n", 1)[1].split()))
-    return [words, *movement_blocks(rows), *random_blocks(rows)]
+    return [about(__doc__), *movement_blocks(rows), *random_blocks(rows)]
 
 
-PART = Part("motions", "Motions", tasks, summary, show)
+PART = Part("motions", "Motions", tasks, summary, show, movements.DUE + random_motions.DUE)

@@ -3,10 +3,12 @@
 from collections.abc import Sequence
 from typing import Any
 
+from elbowroom.evaluate.due import where
 from elbowroom.evaluate.rooms.exact import ExactTravel
 from elbowroom.evaluate.rooms.scene import Comparison, room_grid
 from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.thesis.bands import compared, counted
+from elbowroom.evaluate.thesis.due import DueLine, first
 from elbowroom.evaluate.thesis.judged import (
     LATERAL_PX,
     SAID,
@@ -38,6 +40,29 @@ VARIANTS = (
 VERDICTS = ("s", "ts", "tts", "u")
 
 
+def _right(row: Row) -> float:
+    """31 of the 35."""
+    return 31 * float(row["movements"]) / 35
+
+
+_OF = where(kind="summary", of="movement")
+DUE = (
+    DueLine("u", "≤", 0, _OF, name="movements: unsafe, of {movements}", thesis="2", pick=first),
+    DueLine("unsafe_of_small_objects", "≤", 0, _OF, name="and of small objects", thesis="2", pick=first),
+    DueLine(
+        "s",
+        "≥",
+        _right,
+        _OF,
+        name="movements: right band, of {movements}",
+        thesis="27",
+        digits=0,
+        pick=first,
+    ),
+    DueLine("tts", "≤", 0, _OF, name="movements: too safe by three bands", thesis="1", pick=first),
+)
+
+
 def movement_tasks(settings: Settings) -> list[Task]:
     """One for each setup's movements."""
     sizes = settings.voxel_sizes_m
@@ -60,7 +85,14 @@ def movement_tasks(settings: Settings) -> list[Task]:
 def judge_movements(
     number: int, sensors: Sequence[str], cameras: int, voxel_sizes_m: Sequence[float] | None
 ) -> Outcome:
-    """All movements of one setup, by all variants."""
+    """All movements of one setup, by all variants.
+
+    Args:
+        number: of the setup.
+        sensors: names of `SENSORS`; variants of others are left out.
+        cameras: how many.
+        voxel_sizes_m: edges of voxels [m]; None: the variants' own.
+    """
     scene, machine = setup(number), c_arm()
     truth = ExactTravel(machine, scene.solids())
     rows = []

@@ -3,8 +3,14 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from elbowroom.evaluate.due import Due
 from elbowroom.evaluate.shares.task import Row, Settings, Task
-from elbowroom.view.report.blocks import Block
+from elbowroom.view.report.blocks import Block, Words
+
+
+def about(docstring: str | None) -> Words:
+    """What a module says of its experiment, but for the first line."""
+    return Words(" ".join((docstring or "").split("\n\n", 1)[1].split()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,6 +23,7 @@ class Part:
         tasks: what to do.
         summary: rows of kind "summary" from the tasks' rows.
         show: the section, from all rows of the part, summaries included, and the tasks' pictures by name.
+        due: the figures that it should reach.
     """
 
     name: str
@@ -24,3 +31,4 @@ class Part:
     tasks: Callable[[Settings], list[Task]]
     summary: Callable[[Sequence[Row]], list[dict[str, object]]]
     show: Callable[[Sequence[Row], Mapping[str, bytes]], list[Block]] = field(repr=False)
+    due: tuple[Due, ...] = ()

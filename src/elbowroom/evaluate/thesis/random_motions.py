@@ -5,10 +5,12 @@ from typing import Any
 
 import numpy as np
 
+from elbowroom.evaluate.due import Due, due_of, figure_of, where
 from elbowroom.evaluate.rooms.exact import ExactTravel
 from elbowroom.evaluate.rooms.scene import Comparison
 from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.thesis.bands import counted
+from elbowroom.evaluate.thesis.due import DueLine, first
 from elbowroom.evaluate.thesis.judged import (
     LATERAL_PX,
     SAID,
@@ -33,6 +35,16 @@ CAREFUL = 2
 """One of so many rounds of the setups is judged with an allowance for lateral error as well."""
 EDGE_M = 0.02
 """Of a voxel, unless the settings say otherwise."""
+_OF = where(kind="summary", of="random")
+DUE = (
+    Due("motions", "≥", 500, _OF),
+    Due("more_than_truth", "≤", 0, _OF),
+    DueLine("u", "≤", 0, _OF, name="random motions: unsafe, of {motions}", pick=first),
+    DueLine("unsafe_of_small_objects", "≤", 0, _OF, name="and of small objects", pick=first),
+    DueLine(
+        "median_shortfall_voxels", "≤", 2, _OF, name="random motions: median shortfall [voxels]", pick=first
+    ),
+)
 
 
 def random_tasks(settings: Settings) -> list[Task]:
@@ -167,36 +179,52 @@ def random_blocks(rows: Sequence[Row]) -> list[Block]:
     blocks: list[Block] = []
     found = [row for row in summaries if row["of"] == "random"]
     if found:
-        first = found[0]
-        columns = ("", *(f"+-{row['lateral_px']:g} px" for row in found), "due")
-        lines = [
-            (words, *(form.format(**row) for row in found), due)
-            for words, form, due in (
-                ("motions whose truth is within L", "{motions}", "500"),
-                ("unsafe", "{u}", "0"),
-                ("unsafe, of those that touch what is under 0.10 m", _OF_SMALL, "0"),
-                (
-                    "more free travel than the truth, of all motions",
-                    "{more_than_truth} of {all_motions}",
-                    "0",
-                ),
-                ("same band", "{s}", ""),
-                ("too safe by one band or two", "{ts}", ""),
-                ("too safe by three", "{tts}", ""),
-                ("median shortfall [voxels of the moving point]", "{median_shortfall_voxels:.2f}", "2"),
-                ("90 % shortfall", "{p90_shortfall_voxels:.2f}", ""),
-                ("greatest shortfall", "{greatest_shortfall_voxels:.1f}", ""),
-            )
-        ]
-        words = f"{first['sensor']}, {cm(first['voxel_size_m'])}, {first['detail']}"
-        blocks.append(Table(f"Random motions, {words}, by how much pixels are widened", columns, lines))
+        blocks.append(_shortfall_table(found))
     stops = [row for row in summaries if row["of"] == "false stops"]
     if stops:
         blocks.append(_stops_table(stops))
     return blocks
 
 
-_OF_SMALL = "{unsafe_of_small_objects} of {small_objects}"
+FIGURES = (
+    ("motions", "motions whose truth is within L", "{motions}"),
+    ("u", "unsafe", "{u}"),
+    (
+        "unsafe_of_small_objects",
+        "unsafe, of those that touch what is under 0.10 m",
+        "{unsafe_of_small_objects} of {small_objects}",
+    ),
+    (
+        "more_than_truth",
+        "more free travel than the truth, of all motions",
+        "{more_than_truth} of {all_motions}",
+    ),
+    ("s", "same band", "{s}"),
+    ("ts", "too safe by one band or two", "{ts}"),
+    ("tts", "too safe by three", "{tts}"),
+    (
+        "median_shortfall_voxels",
+        "median shortfall [voxels of the moving point]",
+        "{median_shortfall_voxels:.2f}",
+    ),
+    ("p90_shortfall_voxels", "90 % shortfall", "{p90_shortfall_voxels:.2f}"),
+    ("greatest_shortfall_voxels", "greatest shortfall", "{greatest_shortfall_voxels:.1f}"),
+)
+"""What the table shows: key, words, and how the value is written."""
+
+
+def _shortfall_table(found: Sequence[Row]) -> Table:
+    first = found[0]
+    lines = []
+    for key, words, form in FIGURES:
+        due = "" if due_of(DUE, key) is None else f"{figure_of(DUE, key):g}"
+        lines.append((words, *(form.format(**row) for row in found), due))
+    return Table(
+        f"Random motions, {first['sensor']}, {cm(first['voxel_size_m'])}, {first['detail']}, "
+        "by how much pixels are widened",
+        ("", *(f"+-{row['lateral_px']:g} px" for row in found), "due"),
+        lines,
+    )
 
 
 def _stops_table(stops: Sequence[Row]) -> Table:

@@ -39,7 +39,7 @@ CLEAR_M = 0.008
 AIM_M = (0.0, 0.0, 0.22)
 """What the Kinects look at: the middle of the C."""
 PLACES_M = ((-0.346, 0.742, 0.45), (-0.841, 0.0, 0.1), (0.142, -0.806, 0.45), (0.763, -0.356, 0.1))
-"""Where they stand: `benchmarks/scale_cameras.py` found it, for the ways of the motions judged [m]."""
+"""Where they stand: `elbowroom evaluate scale-cameras` found it, for the ways of the motions judged [m]."""
 BLUE, GREEN, RED = (0.05, 0.15, 0.75), (0.05, 0.5, 0.12), (0.75, 0.04, 0.04)
 GREY = (0.75, 0.75, 0.72)
 

@@ -1,0 +1,24 @@
+"""What is due of the drift watch, by the kind of row."""
+
+from collections.abc import Mapping
+
+from elbowroom.evaluate.drift.scene import KNOCKED_FRAMES
+from elbowroom.evaluate.due import Due, Row
+
+
+def _runs(row: Row) -> float:
+    return float(row["runs"])
+
+
+DUE: Mapping[str, tuple[Due, ...]] = {
+    "knock": (
+        Due("named", "≥", _runs),
+        Due("others_named", "≤", 0),
+        Due("frames_max", "≤", KNOCKED_FRAMES),
+    ),
+    "wrong joint": (Due("cameras_named", "≤", 0),),
+    "furniture": (Due("cameras_named", "≤", 0),),
+    "false alarms": (Due("camera_frames", "≥", 10_000), Due("false_alarms", "≤", 0)),
+    "recorded": (Due("others_named", "≤", 0),),
+    "watch time": (Due("median_ms", "≤", 3.0),),
+}

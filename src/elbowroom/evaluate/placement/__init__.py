@@ -1,0 +1,1 @@
+"""Layouts of cameras: time, numbers, and whether what is predicted of them holds."""
