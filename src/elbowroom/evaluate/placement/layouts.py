@@ -93,9 +93,8 @@ def optimise_rows(effort: Effort) -> Iterator[dict[str, Any]]:
         "the share of 21 evenly spread": verify(grid, _even(walls_m), room).valid_pct,
     }
     for what, share_pct in wanted.items():
-        done = optimise(
-            grid, room, candidates_of(site, grid, room), goal=Goal(share_pct), search=Search(effort.seconds)
-        )
+        search = Search(effort.seconds)
+        done = optimise(grid, room, candidates_of(site, grid, room), goal=Goal(share_pct), search=search)
         yield {
             "kind": "optimise",
             "what": what,
