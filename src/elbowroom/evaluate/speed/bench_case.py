@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
+from elbowroom.evaluate.speed.kernels.reference import reference
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, parallel
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
@@ -24,31 +23,20 @@ SPEEDS = {"long": 0.15, "larm": np.radians(12), "propeller": np.radians(25), "ca
 BRAKING_TIME_S = 0.5
 
 
-@njit(cache=True, nogil=True)
-def _reference(values: NDArray[np.float32]) -> float:
-    """A fixed piece of work, half arithmetic and half look-up, to compare computers by."""
-    total = 0.0
-    index = 1
-    for _ in range(2_000_000):
-        index = (index * 1103515245 + 12345) & 0x3FFFF
-        total += np.sqrt(values[index] + 1.0)
-    return total
-
-
-def _times(work: Callable[[int], object], rounds: int, reference: list[float]) -> list[float]:
+def _times(work: Callable[[int], object], rounds: int, beside: list[float]) -> list[float]:
     """Milliseconds of each round, each beside one of the reference kernel."""
     table = np.linspace(0, 1, 1 << 18, dtype=np.float32)
-    _reference(table)
+    reference(table)
     work(0)
     work(1)
     spent = []
     for n in range(rounds):
         start = time.perf_counter()
-        _reference(table)
+        reference(table)
         middle = time.perf_counter()
         work(n)
         spent.append((time.perf_counter() - middle) * 1e3)
-        reference.append((middle - start) * 1e3)
+        beside.append((middle - start) * 1e3)
     return spent
 
 
@@ -103,11 +91,11 @@ def run_case(
         "threads": threads,
         "rounds": rounds,
     }
-    reference: list[float] = []
+    beside: list[float] = []
     with parallel.threads(threads):
-        carves = _times(carve_once, rounds, reference)
-        cycles = _times(pass_once, rounds, reference)
-    against = float(np.median(reference))
+        carves = _times(carve_once, rounds, beside)
+        cycles = _times(pass_once, rounds, beside)
+    against = float(np.median(beside))
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     measured = [("carve", carves), ("cycle", cycles)]
     measured += [(f"cycle/{name}", [stage[name] for stage in stages[2:]]) for name in stages[-1]]
