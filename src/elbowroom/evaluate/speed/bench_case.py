@@ -59,7 +59,7 @@ def run_case(
     positions = [dict(zip(machine.joint_names, row, strict=True)) for row in scene.joints]
     grid = VoxelGrid.covering((-2.0, -2.0, 0.0), (2.0, 2.0, 2.5), voxel_size_m)
     motions = joint_motions(machine, SPEEDS, BRAKING_TIME_S)
-    cycle = Cycle(grid, scene.cameras, machine, motions, Terms(detail=detail))  # type: ignore[arg-type]
+    cycle = Cycle(grid, scene.cameras, machine, motions, Terms(detail=detail))
     stages: list[Mapping[str, float]] = []
 
     def pass_once(n: int) -> None:

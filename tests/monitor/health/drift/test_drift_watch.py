@@ -145,7 +145,11 @@ def test_a_camera_that_sees_one_wall_says_which_motions_it_cannot_tell():
     for number in range(6):
         room.add(Snapshot.taken([frame(facing, number, NOISE_M, depth=depth)]))
     reference = room.reference_of(facing)
-    assert reference.unseen_motions(0.007, 0.008) == ("turn about z", "move along x", "move along y")
+    assert reference.unseen_motions(0.007, 0.008) == (
+        "rolling about its line of sight",
+        "moving sideways",
+        "moving up and down",
+    )
     # and what it cannot tell it does not claim
     sideways = frame(facing, 1, NOISE_M, depth=depth)
     watch = Watch([facing], [reference])
