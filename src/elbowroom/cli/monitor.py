@@ -18,38 +18,41 @@ from elbowroom.cli.options import (
     use_threads,
 )
 
+SiteFile = Annotated[
+    Path | None, typer.Argument(metavar="[SITE]", help="A site file. Default: a simulated intervention room.")
+]
+Seconds = Annotated[float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")]
+Cameras = Annotated[int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")]
+Resolution = Annotated[
+    str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
+]
+Threads = Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")]
+Knocks = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="WHAT:SIZE@SECONDS",
+        help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
+        "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
+    ),
+]
+Out = Annotated[
+    Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
+]
+
 
 def monitor(
-    site: Annotated[
-        Path | None,
-        typer.Argument(metavar="[SITE]", help="A site file. Default: a simulated intervention room."),
-    ] = None,
-    seconds: Annotated[
-        float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")
-    ] = None,
+    site: SiteFile = None,
+    seconds: Seconds = None,
     voxel_size: VoxelSize = None,
-    cameras: Annotated[
-        int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")
-    ] = None,
-    resolution: Annotated[
-        str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
-    ] = None,
+    cameras: Cameras = None,
+    resolution: Resolution = None,
     rule: Rule = None,
     detail: Detail = None,
     joints: JointsText = None,
-    threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
-    knock: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="WHAT:SIZE@SECONDS",
-            help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
-            "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
-        ),
-    ] = None,
+    threads: Threads = None,
+    knock: Knocks = None,
     json: JsonFile = None,
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
-    ] = None,
+    out: Out = None,
 ) -> None:
     """Watch a room and say, per joint and direction, how far the machine may go.
 

@@ -20,7 +20,8 @@ from elbowroom.evaluate.thesis.scale_model import (
 )
 from elbowroom.evaluate.thesis.way_view import WayView
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
-from elbowroom.machine import explain_frames
+from elbowroom.geometry.kernels.bits import bit_of, plain, word_of
+from elbowroom.reconstruct import Terms
 from elbowroom.reconstruct.carve import carve_images
 from elbowroom.reconstruct.images import room_images
 from elbowroom.reconstruct.terms import Terms
@@ -132,7 +133,7 @@ def _words_and_bits(
 ) -> tuple[NDArray[np.int64], NDArray[np.uint64]]:
     """Where voxels lie in a plane."""
     lattice, (i, j, k) = bits.lattice(grid), grid.index_of(centres).T
-    return bits.word_of.py_func(i, j, k, lattice.cubes_y, lattice.cubes_z), bits.bit_of.py_func(i, j, k)
+    return plain(word_of)(i, j, k, lattice.cubes_y, lattice.cubes_z), plain(bit_of)(i, j, k)
 
 
 def _shortened(short_mm: NDArray[np.float64], seen: NDArray[np.bool_]) -> Shown:
