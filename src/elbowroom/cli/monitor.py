@@ -72,7 +72,7 @@ def monitor(
     from elbowroom.cli.progress import Steps
     from elbowroom.files.json_rows import json_rows
     from elbowroom.monitor import Face
-    from elbowroom.monitor.rows import Rows, room_row
+    from elbowroom.monitor.rows import Rows
     from elbowroom.monitor.start.compiling import compile_kernels
     from elbowroom.monitor.start.start import started
     from elbowroom.site import Site
@@ -80,7 +80,6 @@ def monitor(
     from elbowroom.sources import open_room
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
-    from elbowroom.view.screen.watched import watched_of
 
     console = Console()
     with options_named(joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock"):
@@ -95,8 +94,8 @@ def monitor(
             knocks=knock or (),
         )
         room.machine_and_motions()  # said before anything is compiled
-        pictures = [] if out is None else [LastPictures(room, out, console)]
-        with json_rows(json) as add, TerminalView(watched_of(room), console) as view:
+        pictures = [] if out is None else [LastPictures(out, console)]
+        with json_rows(json) as add, TerminalView(console) as view:
             for note in notes_of(room.site):
                 view.note(note)
             compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
@@ -104,8 +103,6 @@ def monitor(
                 loop = started(room, steps.begin)
             if loop.checks.unwatched is not None:
                 view.note(loop.checks.unwatched)
-            add(room_row(room))
-            view.start()
             faces: list[Face] = [view, Rows(add), *pictures]
             with ended_by_interrupt():
                 loop.run(faces, seconds)
