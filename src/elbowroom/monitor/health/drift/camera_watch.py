@@ -112,12 +112,7 @@ class CameraWatch:
 
     def _judge(self, frame: DepthFrame) -> CameraHealth:
         """What one frame says by itself."""
-        image, name = frame.depth_m, self.camera.name
-        if image.shape != (self.reference.height, self.reference.width):
-            raise InputError(
-                f"watch: frame of {name} is {image.shape[1]} x {image.shape[0]} pixels, its reference "
-                f"{self.reference.width} x {self.reference.height}"
-            )
+        self._require_size(frame)
         counted, fit = self._listen(frame, self._memory)
         within, nearer, farther, lost = (int(number) for number in counted)
         total = len(self.reference.pixel)
@@ -137,7 +132,15 @@ class CameraWatch:
             moved = fit.convinces and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
             still = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.STILL
             condition = Condition.MOVED if moved else still
-        return CameraHealth(name, condition, shift, seen, hidden)
+        return CameraHealth(self.camera.name, condition, shift, seen, hidden)
+
+    def _require_size(self, frame: DepthFrame) -> None:
+        height, width = frame.depth_m.shape
+        if (height, width) != (self.reference.height, self.reference.width):
+            raise InputError(
+                f"watch: frame of {self.camera.name} is {width} x {height} pixels, its reference "
+                f"{self.reference.width} x {self.reference.height}"
+            )
 
     def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[NDArray[np.int64], Fit]:
         """Adds a frame to a memory: numbers of spots (`listen`), and the motion that fits them."""
