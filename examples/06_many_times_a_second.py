@@ -9,7 +9,7 @@ import itertools
 
 from elbowroom.monitor import Cycle
 from elbowroom.site import Site
-from elbowroom.sources import open_room
+from elbowroom.sources.room import open_room
 
 room = open_room(Site.simulated_room(), cameras=8, resolution=(160, 120))
 machine, motions = room.machine_and_motions()

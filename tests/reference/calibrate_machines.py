@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
-from elbowroom.geometry.rigid import exp
-from elbowroom.geometry.twist import between, sizes
+from elbowroom.geometry.twist import between, exp, sizes
 from elbowroom.sensing import NOISE_PRESETS, Snapshot
 from elbowroom.simulate import InterventionRoom, render
 

@@ -163,7 +163,11 @@ def test_rules_that_break_the_law_are_noted(folder, plain):
 def test_the_simulated_room_says_how_its_cameras_are_made():
     site = Site.simulated_room()
     settings = site.simulated_cameras()
-    assert (settings["count"], set(settings["height_m"]), settings["hfov_deg"]) == (21, {2.4, 0.4}, 90.0)
+    assert (settings["count"], set(settings["height_m"]), settings["optics"].hfov_deg) == (
+        21,
+        {2.4, 0.4},
+        90.0,
+    )
     assert site.max_age_ns == 200_000_000
     assert {motion.joint for motion in site.motions(site.machine())} == {"long", "larm", "propeller", "carc"}
     motions = {motion.name: motion.braking_distance for motion in site.motions(site.machine())}

@@ -1,15 +1,14 @@
 """Points that stand for the body of a machine: on its surface, and inside it."""
 
 from dataclasses import dataclass
-from threading import Lock
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
 from elbowroom.errors import MachineError
+from elbowroom.geometry.kept import kept
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.kernels import samples as kernels
 from elbowroom.machine.kernels.body import Clusters
@@ -86,10 +85,6 @@ class _LinkSamples(NamedTuple):
     interior: NDArray[np.float32]
 
 
-_kept: WeakKeyDictionary[Machine, dict[tuple[float, bool], BodySamples]] = WeakKeyDictionary()
-_keeping = Lock()
-
-
 def body_samples(machine: Machine, voxel_size_m: float, *, unchecked: bool = False) -> BodySamples:
     """The samples of a machine's checked links for a size of voxels; made once, then kept.
 
@@ -103,16 +98,11 @@ def body_samples(machine: Machine, voxel_size_m: float, *, unchecked: bool = Fal
     """
     if not (np.isfinite(voxel_size_m) and voxel_size_m > 0):
         raise MachineError(f"body samples: voxel_size_m is {voxel_size_m}, must be above 0 [m]")
-    unchecked = unchecked and len(machine.unchecked_links) > 0
-    with _keeping:
-        kept = _kept.setdefault(machine, {})
-        key = (float(voxel_size_m), unchecked)
-        if key not in kept:
-            kept[key] = _sample(machine, float(voxel_size_m), unchecked)
-        return kept[key]
+    return _samples(machine, float(voxel_size_m), unchecked and len(machine.unchecked_links) > 0)
 
 
-def _sample(machine: Machine, voxel_size_m: float, unchecked: bool) -> BodySamples:
+@kept
+def _samples(machine: Machine, voxel_size_m: float, unchecked: bool) -> BodySamples:
     names = machine.checked_links
     rows = [
         row

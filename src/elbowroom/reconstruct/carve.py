@@ -14,10 +14,11 @@ from elbowroom.machine import Explained
 from elbowroom.reconstruct.evidence import Counts, Evidence
 from elbowroom.reconstruct.images import RoomImages, room_images
 from elbowroom.reconstruct.kernels.carve import carve_cubes
-from elbowroom.reconstruct.kernels.planes import PLANES
+from elbowroom.reconstruct.kernels.planes import PLANES, Answers
 from elbowroom.reconstruct.kernels.points import carve_points
+from elbowroom.reconstruct.layout import layout_of
 from elbowroom.reconstruct.terms import Terms
-from elbowroom.reconstruct.views import fill, layout_of
+from elbowroom.reconstruct.views import fill
 from elbowroom.sensing import DepthFrame
 
 SHARES = 16
@@ -82,28 +83,19 @@ def carve_images(
         CameraError: more than 255 cameras.
     """
     layout = layout_of(grid, images.cameras, terms.margin)
-    cells = bits.lattice(grid)
-    cubes = cells.cubes_x * cells.cubes_y * cells.cubes_z
+    lattice = bits.lattice(grid)
+    cubes = lattice.cubes_x * lattice.cubes_y * lattice.cubes_z
     planes = np.zeros((PLANES, cubes * 64), dtype=np.uint64)
     through, disputes = (np.zeros((cubes * 64 if complete else 0, 64), dtype=np.uint8) for _ in range(2))
     kernel = carve_points if terms.detail == "point" else carve_cubes
     fine = np.full(cubes * 64, terms.detail == "pixel")
     asked = layout.inside.copy() if focus is None else np.where(focus, layout.inside, np.uint64(0))
     worth = np.flatnonzero(asked.reshape(cubes, 64).any(axis=1))
+    answers = Answers(asked, fine, complete, planes, through, disputes)
     views, buffers = fill(layout, images, explained.model_depth)
     try:
         spread(
-            lambda share: kernel(
-                np.ascontiguousarray(worth[share::SHARES]),
-                cells,
-                asked,
-                views,
-                fine,
-                complete,
-                planes,
-                through,
-                disputes,
-            ),
+            lambda share: kernel(np.ascontiguousarray(worth[share::SHARES]), lattice, views, answers),
             range(min(SHARES, len(worth))),
         )
     finally:

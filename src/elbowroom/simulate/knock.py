@@ -82,6 +82,10 @@ class Knock:
 def require_known(knocks: Sequence[Knock], cameras: Sequence[DepthCamera], joints: Sequence[str]) -> None:
     """Checks that every knock meets something.
 
+    Args:
+        knocks: what happens.
+        cameras, joints: what there is, joints by name.
+
     Raises:
         InputError: a name that is neither a camera nor a joint.
     """
@@ -115,6 +119,12 @@ class PlacedKnocks:
 
 
 def reported_joints(knocks: Sequence[Knock], joints: Mapping[str, float], time_s: float) -> dict[str, float]:
-    """What the joints say at a time, given where they truly are [m or rad]."""
+    """What the joints say at a time, given where they truly are.
+
+    Args:
+        knocks: those of cameras do nothing here.
+        joints: where they truly are [m or rad].
+        time_s: since the start [s].
+    """
     happened = {knock.what: knock.along_joint for knock in knocks if time_s >= knock.at_s}
     return {name: value - happened.get(name, 0.0) for name, value in joints.items()}

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +45,14 @@ class Sightings:
     views: tuple[BoardView, ...]
     troubles: tuple[Trouble, ...]
     poses: int
+
+    def row(self) -> dict[str, Any]:
+        """How much was seen, and what was wrong with the rest."""
+        return {
+            "poses": self.poses,
+            "views": len(self.views),
+            "troubles": [str(trouble) for trouble in self.troubles],
+        }
 
 
 def board_of(site: Site) -> Board:

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.boards.seen_plane import SeenPlane, seen_plane
-from elbowroom.calibrate.lens import directions, project
 from elbowroom.errors import CalibrationError, ElbowroomError
 from elbowroom.geometry import DepthCamera
-from elbowroom.geometry.rigid import cross_matrix, exp
+from elbowroom.geometry.lens import directions, project
+from elbowroom.geometry.twist import cross_matrix, moved
 
 Array = NDArray[np.float64]
 LEAST_CORNERS = 6
@@ -181,7 +181,7 @@ def _starts(camera: DepthCamera, corners: Array, view: BoardView, what: str) -> 
         import cv2
     except ImportError as error:
         raise ElbowroomError(f"calibration needs OpenCV ({error}); install 'elbowroom[calibrate]'") from error
-    seen = directions(camera.intrinsics, view.corners_px)
+    seen = directions(camera.intrinsics, view.corners_px, f"camera {camera.name}")
     middle = corners.mean(axis=0)
     try:
         _, turns, ways, _ = cv2.solvePnPGeneric(
@@ -214,7 +214,7 @@ def _refined(
         normal = rows.T @ rows
         damped = normal + damping * np.diag(np.diag(normal) + 1e-12)
         step = np.asarray(-np.linalg.solve(damped, rows.T @ residual), dtype=np.float64)
-        tried = pose @ exp(step)
+        tried = moved(pose, step)
         if (corners @ tried[2, :3] + tried[2, 3]).min() <= 0:
             damping *= 10
             continue

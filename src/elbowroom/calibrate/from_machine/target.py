@@ -49,6 +49,16 @@ class MachineCalibration:
     rows: tuple[dict[str, Any], ...]
     pictures: tuple[SurfacePicture, ...]
 
+    def row(self) -> dict[str, Any]:
+        """A row of kind "base": where the machine stands."""
+        return {
+            "kind": "base",
+            "machine": self.machine.name,
+            "world_from_base": self.machine.world_from_base.tolist(),
+            "covariance": None if self.base_covariance is None else self.base_covariance.tolist(),
+            "poses": self.poses,
+        }
+
 
 def calibrate_from_machine(
     machine: Machine,
@@ -154,8 +164,8 @@ def _first_base(
     """Where the base is, from the first camera whose pose is known and its pose relative to the base."""
     if not known:
         raise CalibrationError(
-            "the machine's base and all cameras at once: nothing fixes the world; name cameras whose poses hold with "
-            "--hold, or find the cameras by a board first"
+            "the machine's base and all cameras at once: nothing fixes the world; say which cameras' poses hold, or "
+            "find the cameras by a board first"
         )
     name, first = next(iter(known.items()))
     camera_from_base = invert_rigid(starts[name]) @ machine.world_from_base

@@ -52,6 +52,19 @@ class PairAgreement:
     before: Agreement
     after: Agreement
 
+    def row(self) -> dict[str, Any]:
+        """A row of kind "pair": shares of pixels that agree, before and after [%]."""
+        return {
+            "kind": "pair",
+            "one": self.one,
+            "other": self.other,
+            "compared": self.after.compared,
+            "agree_before_pct": self.before.agree_pct,
+            "agree_pct": self.after.agree_pct,
+            "hidden_pct": self.after.hidden_pct,
+            "conflict_pct": self.after.conflict_pct,
+        }
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Refinement:
@@ -128,7 +141,7 @@ def _before(cameras: Sequence[DepthCamera], covariances: Mapping[str, Array | No
     if missing:
         raise CalibrationError(
             f"camera {missing[0]}: how sure its pose is, is not known; calibrate it by a board or the machine, or "
-            "say it with --sure-to"
+            "give its covariance"
         )
     known = {name: given for name in names if (given := covariances[name]) is not None}
     if len(names) < 2 or not known:

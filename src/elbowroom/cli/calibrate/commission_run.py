@@ -7,18 +7,19 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 from rich.progress import track
-from rich.table import Table
 
 from elbowroom.cli.options import options_named
+from elbowroom.cli.screen import show
 from elbowroom.errors import CalibrationError
 from elbowroom.files.json_rows import json_rows
-from elbowroom.monitor import CameraReference, Tolerance
+from elbowroom.monitor import Tolerance
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.site_file import write_commissioned
 from elbowroom.sensing import Snapshot
 from elbowroom.site import Site
 from elbowroom.sources import Room, open_room
 from elbowroom.sources.layouts.layout import layout_of
+from elbowroom.view.report.blocks import Table
 
 
 def run_commission(
@@ -46,7 +47,6 @@ def run_commission(
     with options_named(joints="--joints"):
         room = open_room(site, joints=joints)
         wanted, given = _moments(room, frames, every_s)
-    console = Console()
     commissioning = Commissioning(room.cameras, room.machine, wanted)
     with json_rows(json_file) as add:
         for snapshot in track(given, "looking", total=wanted, console=Console(stderr=True), transient=True):
@@ -58,13 +58,11 @@ def run_commission(
             )
         ]
         written, beside = write_commissioned(site, references, out)
-        rows = [_row(reference) for reference in references]
+        rows = [reference.row(Tolerance()) for reference in references]
         for row in rows:
             add(row)
-    console.print(_table(rows))
-    console.print(
-        f"{written} and {beside.name}: try `elbowroom monitor {written}`", soft_wrap=True, highlight=False
-    )
+    show(reference_table(rows))
+    print(f"{written} and {beside.name}: try `elbowroom monitor {written}`")
 
 
 def _moments(room: Room, frames: int, every_s: float) -> tuple[int, Iterator[Snapshot]]:
@@ -83,34 +81,24 @@ def _moments(room: Room, frames: int, every_s: float) -> tuple[int, Iterator[Sna
     return len(chosen), (moment for number, moment in enumerate(room.source) if number in chosen)
 
 
-def _row(reference: CameraReference) -> dict[str, Any]:
-    tolerance = Tolerance()
-    sigma = np.sqrt(np.diag(reference.covariance()))
-    return {
-        "kind": "reference",
-        "camera": reference.camera,
-        "spots": len(reference.pixel),
-        "range_m": [float(reference.depth_m.min()), float(reference.depth_m.max())],
-        "turn_sigma_deg": np.degrees(sigma[:3]).tolist(),
-        "move_sigma_mm": (1e3 * sigma[3:]).tolist(),
-        "not_shown": list(reference.unseen_motions(tolerance.turn_rad, tolerance.move_m)),
-    }
+def reference_table(rows: Sequence[Mapping[str, Any]]) -> Table:
+    """What each camera's reference shows, a line a camera.
 
-
-def _table(rows: Sequence[Mapping[str, Any]]) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="dim")
-    for column in ("camera", "spots", "range", "turn told to", "move told to", "not shown by what it sees"):
-        table.add_column(
-            column, justify="left" if column in ("camera", "not shown by what it sees") else "right"
-        )
+    Args:
+        rows: of kind "reference".
+    """
+    lines = []
     for row in rows:
         near, far = row["range_m"]
-        table.add_row(
-            row["camera"],
-            str(row["spots"]),
-            f"{near:.1f} to {far:.1f} m",
-            f"{max(row['turn_sigma_deg']):.2f}°",
-            f"{max(row['move_sigma_mm']):.1f} mm",
-            ", ".join(row["not_shown"]) or "-",
+        lines.append(
+            (
+                row["camera"],
+                str(row["spots"]),
+                f"{near:.1f} to {far:.1f} m",
+                f"{max(row['turn_sigma_deg']):.2f}°",
+                f"{max(row['move_sigma_mm']):.1f} mm",
+                ", ".join(row["not_shown"]) or "-",
+            )
         )
-    return table
+    columns = ("camera", "spots", "range", "turn told to", "move told to", "not shown by what it sees")
+    return Table("", columns, lines, left=(0, 5))

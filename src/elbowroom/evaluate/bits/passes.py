@@ -143,7 +143,7 @@ def explain_rows() -> Iterator[Row]:
         space = reconstruct(grid, cameras, frames, room.machine, moment.joints, detail=detail, margin=NARROW)
         reports = [space.explain(point) for point in POINTS_M]
         pieces = [("reports", "\n".join(report_text(report) for report in reports))]
-        yield row(f"reports, {noise or 'exact'}", pieces, "three", detail)
+        yield row(f"reports, {noise or 'exact'}", pieces, Terms().rule, detail)
 
 
 def settings_rows() -> Iterator[Row]:

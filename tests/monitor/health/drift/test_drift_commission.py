@@ -12,7 +12,7 @@ from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.flat_spots import flat_spots
 from elbowroom.sensing import Snapshot, rectified
 from elbowroom.sensing.rays import pixel_rays
-from elbowroom.simulate import InterventionRoom, render, wall_cameras
+from elbowroom.simulate import InterventionRoom, Optics, render, wall_cameras
 from elbowroom.simulate.knock import Knock
 
 DISTORTION = (-0.12, 0.03, 0.001, -0.001, 0.0)
@@ -21,7 +21,7 @@ DISTORTION = (-0.12, 0.03, 0.001, -0.001, 0.0)
 @pytest.fixture(scope="module")
 def distorted():
     """Two cameras with barrel distortion in the room with its machine, and their references."""
-    straight = wall_cameras(2, 2.4, 160, 120, hfov_deg=70)
+    straight = wall_cameras(2, 2.4, 160, 120, optics=Optics(hfov_deg=70))
     cameras = [
         replace(c, intrinsics=replace(c.intrinsics, distortion=DISTORTION), max_depth_m=8.0) for c in straight
     ]

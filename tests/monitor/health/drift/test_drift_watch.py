@@ -9,8 +9,9 @@ from elbowroom.errors import CalibrationError, InputError
 from elbowroom.geometry import parallel
 from elbowroom.monitor import Condition, Watch
 from elbowroom.monitor.health.drift.commission import Commissioning
-from elbowroom.monitor.health.drift.sequential import Tally, mean_run_length
+from elbowroom.monitor.health.drift.sequential import Tally
 from elbowroom.sensing import DepthFrame, Snapshot
+from reference.watch_run_length import mean_run_length
 from reference.watch_twins import CAMERAS, NOISE_M, camera_at, commissioned, frame, knocked, walls
 
 MS = 1_000_000

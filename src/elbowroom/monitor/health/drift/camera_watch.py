@@ -3,13 +3,11 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
-from elbowroom.monitor.health.drift.fit import PRIOR, Fit, unfitted
-from elbowroom.monitor.health.drift.kernels.body import Limits
-from elbowroom.monitor.health.drift.kernels.watch import Memory, Spots, judge_image
+from elbowroom.monitor.health.drift.fit import PRIOR, convinces
+from elbowroom.monitor.health.drift.kernels.watch import Counts, Fit, Gate, Memory, Spots, judge_image
 from elbowroom.monitor.health.drift.lasting import Lasting
 from elbowroom.monitor.health.drift.reference import CameraReference
 from elbowroom.monitor.health.drift.sequential import Tally
@@ -113,10 +111,9 @@ class CameraWatch:
     def _judge(self, frame: DepthFrame) -> CameraHealth:
         """What one frame says by itself."""
         self._require_size(frame)
-        counted, fit = self._listen(frame, self._memory)
-        within, nearer, farther, lost = (int(number) for number in counted)
+        (within, nearer, farther, lost), fit = self._listen(frame, self._memory)
         total = len(self.reference.pixel)
-        fits = max(fit.fits_still, fit.fits_moved) * within
+        fits = max(fit.support.fits_still, fit.support.fits_moved) * within
         seen, hidden = fits / total, (nearer + lost) / total
         shift = None
         if lost >= COVERED_SHARE * total:
@@ -129,7 +126,7 @@ class CameraWatch:
             condition = Condition.CHANGED
         else:
             shift = self._shift(fit)
-            moved = fit.convinces and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
+            moved = convinces(fit.support) and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
             still = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.STILL
             condition = Condition.MOVED if moved else still
         return CameraHealth(self.camera.name, condition, shift, seen, hidden)
@@ -142,12 +139,11 @@ class CameraWatch:
                 f"{self.reference.width} x {self.reference.height}"
             )
 
-    def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[NDArray[np.int64], Fit]:
-        """Adds a frame to a memory: numbers of spots (`listen`), and the motion that fits them."""
-        counted, fitted = np.empty(4, dtype=np.int64), unfitted()
-        limits = Limits(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
-        judge_image(frame.depth_m.ravel(), self._spots, limits, PRIOR, memory, counted, fitted)
-        return counted, Fit.of(fitted)
+    def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[Counts, Fit]:
+        """Adds a frame to a memory: numbers of spots, and the motion that fits them."""
+        gate = Gate(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
+        counts, fit = judge_image(frame.depth_m.ravel(), self._spots, gate, PRIOR, memory)
+        return counts, fit
 
     def _shift(self, fit: Fit) -> Shift:
         """A fitted motion as far as the view shows it."""

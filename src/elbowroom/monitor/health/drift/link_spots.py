@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.monitor.health.drift.body_view import BodySpots
-from elbowroom.monitor.health.drift.fit import PRIOR, Fit, unfitted
-from elbowroom.monitor.health.drift.kernels.watch import fit_motion
+from elbowroom.monitor.health.drift.fit import PRIOR, convinces
+from elbowroom.monitor.health.drift.kernels.watch import Fit, fit_motion
 from elbowroom.monitor.health.health import LinkHealth
 
 TOLERANCE_M = 0.015
@@ -68,9 +68,7 @@ class LinkSpots:
         Args:
             link: its name.
         """
-        fitted = unfitted()
-        fit_motion(self.jacobian, self.offset, self.sigma, np.arange(len(self.offset)), PRIOR, fitted)
-        fit = Fit.of(fitted)
+        fit = fit_motion(self.jacobian, self.offset, self.sigma, np.arange(len(self.offset)), PRIOR)
         motion = self._shown(fit)
         shifted = np.cross(motion[:3], self.arm) + motion[3:]
         off_m = float(np.sqrt((shifted**2).sum(axis=1).mean()))
@@ -79,7 +77,7 @@ class LinkSpots:
         is_off = (
             off_m > TOLERANCE_M
             and shown_m > TOLERANCE_M / 3
-            and fit.convinces
+            and convinces(fit.support)
             and len(agree) >= max(2, AGREE * len(self.parts))
         )
         if not is_off and len(self.parts) < 2:

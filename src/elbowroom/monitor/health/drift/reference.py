@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.twist import CAMERA_MOTIONS
 from elbowroom.monitor.health.drift.fit import PRIOR
 from elbowroom.monitor.health.drift.kernels.watch import LEAST_SIGMA_M, Spots
+from elbowroom.monitor.health.drift.tolerance import Tolerance
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,6 +108,23 @@ class CameraReference:
         sigma = np.sqrt(np.diag(self.covariance()))
         limits = np.array([turn_rad] * 3 + [move_m] * 3) / 3
         return tuple(name for name, s, limit in zip(CAMERA_MOTIONS, sigma, limits, strict=True) if s > limit)
+
+    def row(self, tolerance: Tolerance) -> dict[str, Any]:
+        """A row of kind "reference": what it shows, and which motions it does not show.
+
+        Args:
+            tolerance: by how much a camera may move.
+        """
+        sigma = np.sqrt(np.diag(self.covariance()))
+        return {
+            "kind": "reference",
+            "camera": self.camera,
+            "spots": len(self.pixel),
+            "range_m": [float(self.depth_m.min()), float(self.depth_m.max())],
+            "turn_sigma_deg": np.degrees(sigma[:3]).tolist(),
+            "move_sigma_mm": (1e3 * sigma[3:]).tolist(),
+            "not_shown": list(self.unseen_motions(tolerance.turn_rad, tolerance.move_m)),
+        }
 
     def require(self, camera: DepthCamera) -> None:
         """Checks that the reference is of this camera.
