@@ -1,7 +1,7 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -18,41 +18,41 @@ from elbowroom.cli.options import (
     use_threads,
 )
 
-SiteFile = Annotated[
-    Path | None, typer.Argument(metavar="[SITE]", help="A site file. Default: a simulated intervention room.")
-]
-Seconds = Annotated[float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")]
-Cameras = Annotated[int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")]
-Resolution = Annotated[
-    str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
-]
-Threads = Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")]
-Knocks = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="WHAT:SIZE@SECONDS",
-        help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
-        "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
-    ),
-]
-Out = Annotated[
-    Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
-]
+if TYPE_CHECKING:
+    from elbowroom.sources import Room
 
 
 def monitor(
-    site: SiteFile = None,
-    seconds: Seconds = None,
+    site: Annotated[
+        Path | None,
+        typer.Argument(metavar="[SITE]", help="A site file. Default: a simulated intervention room."),
+    ] = None,
+    seconds: Annotated[
+        float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")
+    ] = None,
     voxel_size: VoxelSize = None,
-    cameras: Cameras = None,
-    resolution: Resolution = None,
+    cameras: Annotated[
+        int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")
+    ] = None,
+    resolution: Annotated[
+        str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
+    ] = None,
     rule: Rule = None,
     detail: Detail = None,
     joints: JointsText = None,
-    threads: Threads = None,
-    knock: Knocks = None,
+    threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
+    knock: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="WHAT:SIZE@SECONDS",
+            help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
+            "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
+        ),
+    ] = None,
     json: JsonFile = None,
-    out: Out = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
+    ] = None,
 ) -> None:
     """Watch a room and say, per joint and direction, how far the machine may go.
 
@@ -70,22 +70,9 @@ def monitor(
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
 
-    from rich.console import Console
-
-    from elbowroom.cli.progress import Steps
-    from elbowroom.files.json_rows import json_rows
-    from elbowroom.monitor import Face
-    from elbowroom.monitor.rows import Rows, room_row
-    from elbowroom.monitor.start.compiling import compile_kernels
-    from elbowroom.monitor.start.start import started
     from elbowroom.site import Site
-    from elbowroom.site.notes import notes_of
     from elbowroom.sources import open_room
-    from elbowroom.view.draw.last_pictures import LastPictures
-    from elbowroom.view.screen.terminal import TerminalView
-    from elbowroom.view.screen.watched import watched_of
 
-    console = Console()
     with options_named(joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock"):
         room = open_room(
             Site.simulated_room() if site is None else Site.load(site),
@@ -97,19 +84,35 @@ def monitor(
             resolution=size_px,
             knocks=knock or (),
         )
-        room.machine_and_motions()  # said before anything is compiled
-        pictures = [] if out is None else [LastPictures(room, out, console)]
-        with json_rows(json) as add, TerminalView(watched_of(room), console) as view:
-            for note in notes_of(room.site):
-                view.note(note)
-            compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
-            with Steps(console, 4) as steps:
-                loop = started(room, steps.begin)
-            if loop.checks.unwatched is not None:
-                view.note(loop.checks.unwatched)
-            add(room_row(room))
-            view.start()
-            faces: list[Face] = [view, Rows(add), *pictures]
-            with ended_by_interrupt():
-                loop.run(faces, seconds)
-            add(view.log.row())
+        _watch(room, seconds, json, out)
+
+
+def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None) -> None:
+    """Runs the loop over a room, with the faces that were asked for."""
+    from rich.console import Console
+
+    from elbowroom.cli.progress import Steps
+    from elbowroom.files.json_rows import json_rows
+    from elbowroom.monitor import Face
+    from elbowroom.monitor.rows import Rows
+    from elbowroom.monitor.start.compiling import compile_kernels
+    from elbowroom.monitor.start.start import started
+    from elbowroom.site.notes import notes_of
+    from elbowroom.view.draw.last_pictures import LastPictures
+    from elbowroom.view.screen.terminal import TerminalView
+
+    room.machine_and_motions()  # said before anything is compiled
+    console = Console()
+    pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
+    with json_rows(json_file) as add, TerminalView(console) as view:
+        for note in notes_of(room.site):
+            view.note(note)
+        compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
+        with Steps(console, 4) as steps:
+            loop = started(room, steps.begin)
+        if loop.checks.unwatched is not None:
+            view.note(loop.checks.unwatched)
+        faces: list[Face] = [view, Rows(add), *pictures]
+        with ended_by_interrupt():
+            loop.run(faces, seconds)
+        add(view.log.row())
