@@ -3,7 +3,6 @@
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError
@@ -111,6 +110,8 @@ def _is_closed(link: Link) -> bool:
     """Whether the link's surface is made of closed shells whose faces turn outwards."""
     if not link.has_geometry:
         return False
+    import trimesh  # slow to load, and there where the links were read
+
     mesh = trimesh.Trimesh(link.vertices, link.faces, process=True)
     if not (mesh.is_watertight and mesh.is_winding_consistent):
         return False
