@@ -1,7 +1,6 @@
 """The machine as a depth camera would see it if nothing else were there."""
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError
@@ -107,6 +106,8 @@ def _is_closed(link: Link) -> bool:
     """Whether the link's surface is made of closed shells whose faces turn outwards."""
     if not link.has_geometry:
         return False
+    import trimesh  # slow to load, and there where the links were read
+
     mesh = trimesh.Trimesh(link.vertices, link.faces, process=True)
     if not (mesh.is_watertight and mesh.is_winding_consistent):
         return False
