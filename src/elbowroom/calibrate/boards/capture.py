@@ -182,6 +182,12 @@ def seen_in(site: Site, board: Board, image: Image, pose: int, *, other_sizes: b
 def picture_path(site: Site, images: CaptureImagesEntry, image: Image, pose: int) -> Path:
     """The infrared or colour picture that belongs to a depth image.
 
+    Args:
+        site: of the capture.
+        images: which pictures there are, and where.
+        image: the depth image.
+        pose: its number, from 0.
+
     Raises:
         SiteError: the folder is not there.
         CalibrationError: fewer pictures are listed than there are depth images.

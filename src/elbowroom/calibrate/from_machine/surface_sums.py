@@ -132,6 +132,11 @@ def of_pose(normal: Array, gradient: Array) -> tuple[Array, Array]:
 
 
 def depth_error_step(normal: Array, gradient: Array, twist: Array) -> Array:
-    """How bias and scale follow when the pose moves by a twist, shape (2,)."""
+    """How bias and scale follow when the pose moves by a twist, shape (2,).
+
+    Args:
+        normal, gradient: of pose and depth error together, shapes (8, 8) and (8,).
+        twist: of the pose, shape (6,) [rad, m].
+    """
     left = gradient[DEPTH_ERRORS] + normal[DEPTH_ERRORS, :6] @ twist
     return -np.asarray(np.linalg.solve(normal[DEPTH_ERRORS, DEPTH_ERRORS], left))

@@ -39,13 +39,25 @@ class CaptureWriter:
             folder(self.out / "images" / camera.true.name)
 
     def depth(self, camera: TrueCamera, stamp_ns: int, depth_m: NDArray[np.floating]) -> None:
-        """Writes a depth image in units of 0.2 mm [m, shape (h, w)], with the camera's scale and bias."""
+        """Writes a depth image in units of 0.2 mm [m, shape (h, w)], with the camera's scale and bias.
+
+        Args:
+            camera: that delivers it.
+            stamp_ns: time of exposure [ns].
+            depth_m: true depth, shape (h, w) [m].
+        """
         measured = np.where(depth_m > 0, depth_m * camera.depth_scale + camera.depth_bias_m, 0.0)
         path = self.out / "images" / camera.true.name / f"{stamp_ns}.png"
         _save(path, as_units(measured + UNIT_M / 2))
 
     def infrared(self, camera: TrueCamera, stamp_ns: int, grey: NDArray[np.uint8]) -> None:
-        """Writes an infrared image, shape (h, w)."""
+        """Writes an infrared image, shape (h, w).
+
+        Args:
+            camera: that delivers it.
+            stamp_ns: time of exposure [ns].
+            grey: shape (h, w).
+        """
         _save(folder(self.out / INFRARED_FOLDER / camera.true.name) / f"{stamp_ns}.png", grey)
 
     def site(self, noise: str, more: Mapping[str, Any], grid: VoxelGrid) -> Path:

@@ -168,7 +168,14 @@ def extrinsics_rows(
 
 
 def capture(case: Case, folder: Path, cameras: int, poses: int, tell: Tell) -> Site:
-    """The capture's site; rendered unless it is there."""
+    """The capture's site; rendered unless it is there.
+
+    Args:
+        case: what is calibrated.
+        folder: of captures.
+        cameras, poses: how many.
+        tell: what is being done.
+    """
     path = folder / "site.yaml"
     if not path.is_file():
         hung = wall_cameras(cameras, size=case.size, noise=NOISE_PRESETS[case.noise])
@@ -213,6 +220,12 @@ def room_rows(
     """The simulated room at 5 cm, seen by the true cameras and carved with those that were found and their margins.
 
     Once with the half pixel that sensors have by default beside what calibration leaves open, and once without it.
+
+    Args:
+        case: what was calibrated.
+        found: the result.
+        truth: world_from_camera by name, shape (4, 4).
+        moments_s: of the room [s].
     """
     grid, room = VoxelGrid.covering(ROOM_LOWER_M, ROOM_UPPER_M, 0.05), InterventionRoom()
     true = [replace(one.camera, world_from_camera=truth[one.camera.name]) for one in found.cameras]

@@ -50,6 +50,11 @@ def false_alarm_row(scene: Commissioned, passes: int, tell: Tell) -> dict[str, A
 
     A watch listens to every other camera at each pass, in turn, so only those are rendered: each frame is new, is
     listened to, and counts once. After an alarm a new watch goes on.
+
+    Args:
+        scene: that was commissioned.
+        passes: how many.
+        tell: what is being done.
     """
     alarms: list[str] = []
     watch, listened, said_moved, unsure = scene.watch(), 0, 0, 0

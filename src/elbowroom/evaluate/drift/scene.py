@@ -61,7 +61,14 @@ class Commissioned:
 def commissioned(
     noise: str, width: int = 160, height: int = 120, count: int = 21, staff: Sequence[Person] = STAFF
 ) -> Commissioned:
-    """The simulated room with cameras at two heights in turn, commissioned over 14 s."""
+    """The simulated room with cameras at two heights in turn, commissioned over 14 s.
+
+    Args:
+        noise: name of the sensors' noise.
+        width, height: of the images [px].
+        count: how many cameras.
+        staff: who walks.
+    """
     cameras = wall_cameras(count, HEIGHTS_M, width, height, noise=NOISE_PRESETS.get(noise), optics=RANGE)
     room = InterventionRoom(staff=staff)
     commissioning = Commissioning(cameras, room.machine, COMMISSION_FRAMES)
@@ -72,10 +79,22 @@ def commissioned(
 
 
 def frames_of(cameras: Sequence[DepthCamera], moment: Moment, seed: int) -> list[DepthFrame]:
-    """Frames with noise of their own, other than those that were commissioned."""
+    """Frames with noise of their own, other than those that were commissioned.
+
+    Args:
+        cameras: that look.
+        moment: what is there.
+        seed: of the noise.
+    """
     return render(cameras, moment, seed=10_000 + seed)
 
 
 def joints_of(scene: Commissioned, start_s: float, count: int) -> Iterator[dict[str, float]]:
-    """Joint positions of so many moments at 30 Hz [m or rad]."""
+    """Joint positions of so many moments at 30 Hz [m or rad].
+
+    Args:
+        scene: whose machine.
+        start_s: of the room's time [s].
+        count: how many moments.
+    """
     return (scene.room.at(start_s + k * PERIOD_S).joints for k in range(count))
