@@ -4,7 +4,13 @@ import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numba
+import numpy as np
 import pytest
+
+if numba.config.DISABLE_JIT:
+    # as in compiled code: whole numbers wrap, and floats divide by zero, without a word
+    np.seterr(all="ignore")
 
 PROJECT = Path(__file__).resolve().parents[1]
 EXAMPLES = PROJECT / "examples"

@@ -8,7 +8,7 @@ from elbowroom.geometry import VoxelGrid
 from elbowroom.placement.even import best_aim, even_cameras, sweep
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.requirement import Requirement
-from elbowroom.placement.sensor import across_deg, known_sensors
+from elbowroom.placement.sensor import known_sensors
 from elbowroom.simulate import Walls, wall_cameras
 from reference.placement_rooms import room_of
 
@@ -32,7 +32,8 @@ def test_in_a_long_room_they_keep_equal_distances_along_the_walls():
 
 def test_known_sensors_are_90_degrees_wide_and_the_thesis_one_ends_at_7_m():
     for sensor in known_sensors().values():
-        assert across_deg(sensor.camera)[0] == pytest.approx(90.0)
+        half_px, focal_px = sensor.camera.width / 2, sensor.camera.intrinsics.fx
+        assert np.degrees(2 * np.arctan(half_px / focal_px)) == pytest.approx(90.0)
     thesis = known_sensors()["thesis"].camera
     assert (thesis.width, thesis.height, thesis.max_depth_m, thesis.depth_kind) == (64, 48, 7.0, "radial")
 

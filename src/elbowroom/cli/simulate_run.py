@@ -59,7 +59,7 @@ def simulate_room(options: RoomOptions, json: Path | None) -> None:
         machine = ceiling_c_arm() if options.machine else None
         moment = _moment(options, machine, grid)
         cameras = _cameras(options, grid)
-        check_outside(cameras, moment.solids)
+        _check_outside(cameras, moment)
         steps.begin("rendering")
         frames = render(cameras, moment)
         steps.begin("writing images")
@@ -73,6 +73,13 @@ def simulate_room(options: RoomOptions, json: Path | None) -> None:
     print(
         f"{len(frames)} images of {len(moment.solids)} solids; now: elbowroom reconstruct {site} --out result"
     )
+
+
+def _check_outside(cameras: tuple[DepthCamera, ...], moment: Moment) -> None:
+    try:
+        check_outside(cameras, moment.solids)
+    except InputError as error:
+        raise InputError(f"{error} (--height, --cameras, --box)") from None
 
 
 def _moment(options: RoomOptions, machine: Machine | None, grid: VoxelGrid) -> Moment:

@@ -1,19 +1,16 @@
 """The machine as a depth camera would see it if nothing else were there."""
 
-from weakref import WeakKeyDictionary
-
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError
 from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.kept import kept
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.machine.buffers import zero_image
 from elbowroom.machine.kernels.draw import Canvas, Mesh, View, draw, to_kind
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Joints, Machine
-
-_meshes: WeakKeyDictionary[Machine, Mesh] = WeakKeyDictionary()
 
 
 def rasterise(machine: Machine, camera: DepthCamera, joints: Joints) -> NDArray[np.float32]:
@@ -82,28 +79,27 @@ def canvas(height: int, width: int, inverse: NDArray[np.float32] | None = None) 
     )
 
 
+@kept
 def mesh_of(machine: Machine) -> Mesh:
     """All triangles of the machine as kernels take them; made once."""
-    if machine not in _meshes:
-        links = machine.links
-        counts = np.cumsum([0] + [len(link.vertices) for link in links])
-        centre = np.zeros((len(links), 3))
-        radius = np.zeros(len(links))
-        for row, link in enumerate(links):
-            if link.has_geometry:
-                centre[row] = (link.vertices.min(axis=0) + link.vertices.max(axis=0)) / 2
-                radius[row] = np.linalg.norm(link.vertices - centre[row], axis=1).max()
-        faces = [link.faces.astype(np.int64) + first for link, first in zip(links, counts, strict=False)]
-        _meshes[machine] = Mesh(
-            vertices=np.concatenate([link.vertices for link in links]),
-            faces=np.concatenate(faces),
-            vertex_start=counts,
-            face_start=np.cumsum([0] + [len(link.faces) for link in links]),
-            centre=centre,
-            radius=radius,
-            closed=np.array([_is_closed(link) for link in links]),
-        )
-    return _meshes[machine]
+    links = machine.links
+    counts = np.cumsum([0] + [len(link.vertices) for link in links])
+    centre = np.zeros((len(links), 3))
+    radius = np.zeros(len(links))
+    for row, link in enumerate(links):
+        if link.has_geometry:
+            centre[row] = (link.vertices.min(axis=0) + link.vertices.max(axis=0)) / 2
+            radius[row] = np.linalg.norm(link.vertices - centre[row], axis=1).max()
+    faces = [link.faces.astype(np.int64) + first for link, first in zip(links, counts, strict=False)]
+    return Mesh(
+        vertices=np.concatenate([link.vertices for link in links]),
+        faces=np.concatenate(faces),
+        vertex_start=counts,
+        face_start=np.cumsum([0] + [len(link.faces) for link in links]),
+        centre=centre,
+        radius=radius,
+        closed=np.array([_is_closed(link) for link in links]),
+    )
 
 
 def _is_closed(link: Link) -> bool:

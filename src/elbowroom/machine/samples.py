@@ -5,9 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from threading import Lock
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 import llvmlite.binding
 import numba
@@ -16,6 +14,7 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import MachineError
 from elbowroom.files.kept_arrays import Arrays, kept_arrays
+from elbowroom.geometry.kept import kept
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.kernels import samples as kernels
 from elbowroom.machine.kernels.body import Clusters
@@ -92,10 +91,6 @@ class _LinkSamples(NamedTuple):
     interior: NDArray[np.float32]
 
 
-_kept: WeakKeyDictionary[Machine, dict[tuple[float, bool], BodySamples]] = WeakKeyDictionary()
-_keeping = Lock()
-
-
 def body_samples(machine: Machine, voxel_size_m: float, *, unchecked: bool = False) -> BodySamples:
     """The samples of a machine's checked links for a size of voxels; made once, then kept, on disk as well.
 
@@ -109,16 +104,11 @@ def body_samples(machine: Machine, voxel_size_m: float, *, unchecked: bool = Fal
     """
     if not (np.isfinite(voxel_size_m) and voxel_size_m > 0):
         raise MachineError(f"body samples: voxel_size_m is {voxel_size_m}, must be above 0 [m]")
-    unchecked = unchecked and len(machine.unchecked_links) > 0
-    with _keeping:
-        kept = _kept.setdefault(machine, {})
-        key = (float(voxel_size_m), unchecked)
-        if key not in kept:
-            kept[key] = _sample(machine, float(voxel_size_m), unchecked)
-        return kept[key]
+    return _samples(machine, float(voxel_size_m), unchecked and len(machine.unchecked_links) > 0)
 
 
-def _sample(machine: Machine, voxel_size_m: float, unchecked: bool) -> BodySamples:
+@kept
+def _samples(machine: Machine, voxel_size_m: float, unchecked: bool) -> BodySamples:
     names = machine.checked_links
     rows = [
         row
@@ -145,8 +135,9 @@ def _name_of(links: Sequence[Link], rows: Sequence[int], voxel_size_m: float) ->
 @cache
 def _making() -> bytes:
     """What samples are made by: this file, its kernels, and what compiles and runs them."""
-    made_by = f"{numba.__version__} {np.__version__} {llvmlite.binding.get_host_cpu_name()}".encode()
-    return b"".join([made_by, *(Path(file).read_bytes() for file in (__file__, kernels.__file__))])
+    cpu, plain = llvmlite.binding.get_host_cpu_name(), numba.config.DISABLE_JIT
+    made_by = f"{numba.__version__} {np.__version__} {cpu} {plain}"
+    return b"".join([made_by.encode(), *(Path(file).read_bytes() for file in (__file__, kernels.__file__))])
 
 
 def _arrays(machine: Machine, rows: Sequence[int], voxel_size_m: float, cover_m: float) -> Arrays:

@@ -1,7 +1,7 @@
 """Cameras spread evenly along the walls, as the thesis places them, and the curve of its Fig. 4."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid, looking_at
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.requirement import Requirement
@@ -189,7 +190,7 @@ def sweep(
     *,
     heights_m: Sequence[float] = (2.4,),
     aim_m: float | None = None,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Sweep:
     """The share of valid points over the number of evenly spread cameras.
 
@@ -225,7 +226,7 @@ def _rows(
     requirement: Requirement,
     heights_m: Sequence[float],
     aim_m: float,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> Iterator[tuple[float, float, float]]:
     for count in counts:
         progress(f"{count} cameras")

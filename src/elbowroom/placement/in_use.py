@@ -2,13 +2,14 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from elbowroom.errors import InputError
+from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.placement.candidates import Candidate
 from elbowroom.placement.coarse import with_joined_pixels
@@ -65,7 +66,7 @@ def optimise_in_use(
     existing: Sequence[DepthCamera] = (),
     seconds: float = 60.0,
     seed: int = 1,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> FoundInUse:
     """Chooses the candidates that find most of the free space of scenes, each carved with the code that runs.
 
@@ -121,7 +122,7 @@ def _model(
     settings: Settings,
     goal: Goal,
     seed: int,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> SceneModel:
     grid = VoxelGrid.covering(
         settings.grid.lower_m, settings.grid.upper_m, max(COARSE_VOXEL_M, settings.grid.voxel_size_m)

@@ -1,7 +1,7 @@
 """Where to put cameras so that few or cheap ones see an empty room well enough, or a given number as well as can be."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.placement.candidates import Candidate
 from elbowroom.placement.fixed_room import FixedRoom
@@ -150,7 +151,7 @@ def optimise(
     *,
     existing: Sequence[DepthCamera] = (),
     search: Search = Search(),
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Optimised:
     """Chooses among candidates, keeps what exists, and verifies the choice.
 
@@ -247,7 +248,7 @@ def _model(
     existing: Sequence[DepthCamera],
     requirement: Requirement,
     goal: Goal,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> Model:
     """Existing cameras first, each at a place of its own, then the candidates by mount."""
     return build_model(

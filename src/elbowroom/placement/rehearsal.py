@@ -1,6 +1,6 @@
 """What a placement means in use: random scenes carved with the code that will run, beside their exact truth."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.machine import Machine
@@ -153,7 +154,7 @@ def rehearse(
     *,
     seed: int = 1,
     by_camera: bool = True,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Rehearsal:
     """Carves every scene with the real code and compares with its truth.
 

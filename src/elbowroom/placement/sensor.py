@@ -1,6 +1,5 @@
 """A kind of depth sensor that may be mounted anywhere: a camera but for its name and its place."""
 
-import math
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -83,12 +82,3 @@ def sensors_of(site: Site) -> tuple[Sensor, ...]:
     except SiteError as error:
         raise SiteError(f"{site.path}: no sensor: {error}, or in placement.sensors") from None
     return (Sensor("camera", camera),)
-
-
-def across_deg(camera: DepthCamera) -> tuple[float, float]:
-    """Field of view from edge to edge of the image, across and up [deg]; distortion is left out."""
-    k = camera.intrinsics
-    return (
-        math.degrees(math.atan((k.cx + 0.5) / k.fx) + math.atan((camera.width - 0.5 - k.cx) / k.fx)),
-        math.degrees(math.atan((k.cy + 0.5) / k.fy) + math.atan((camera.height - 0.5 - k.cy) / k.fy)),
-    )

@@ -137,7 +137,7 @@ def _may_be_seen(
 
 def _parts_seen(
     camera: DepthCamera,
-    record: np.void,
+    record: np.record,
     bounds_m: tuple[Image, Image],
     model_m: Image | None,
     parts: _Parts,

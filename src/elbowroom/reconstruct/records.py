@@ -12,7 +12,7 @@ from elbowroom.reconstruct.kernels.camera import CAMERA
 from elbowroom.reconstruct.kernels.texels import FAR_CLIP, Counting
 
 Records = NDArray[Any]
-"""Shape (cameras,), dtype `kernels.camera.CAMERA`. Each is an `np.void` that may be written through."""
+"""Shape (cameras,), dtype `kernels.camera.CAMERA`. Each is an `np.record` that may be written through."""
 
 SPARE_M = 0.5
 """Depth beyond the grid's farthest corner that is still told apart."""
@@ -54,13 +54,13 @@ def pitch_of(camera: DepthCamera) -> float:
     return 1.0 / min(camera.intrinsics.fx, camera.intrinsics.fy)
 
 
-def counting_of(camera: DepthCamera, record: np.void) -> Counting:
+def counting_of(camera: DepthCamera, record: np.record) -> Counting:
     """How the camera of a record counts depth."""
     margin = DepthMargin(*record["margin"].item())
     return Counting(float(camera.min_depth_m), float(camera.max_depth_m), float(record["quantum"]), margin)
 
 
-def cut_out(record: np.void, rows: slice, columns: slice) -> np.void:
+def cut_out(record: np.record, rows: slice, columns: slice) -> np.record:
     """The record of a part of a camera's image, whose texels and tiles stand alone; it has no windows.
 
     Args:
@@ -78,7 +78,7 @@ def cut_out(record: np.void, rows: slice, columns: slice) -> np.void:
     return part
 
 
-def _put_pose_and_lens(record: np.void, camera: DepthCamera) -> None:
+def _put_pose_and_lens(record: np.record, camera: DepthCamera) -> None:
     record["camera_from_world"] = camera.camera_from_world[:3]
     record["centre_in_world"] = camera.centre_in_world
     for name in ("fx", "fy", "cx", "cy"):
@@ -87,7 +87,7 @@ def _put_pose_and_lens(record: np.void, camera: DepthCamera) -> None:
     record["radial"] = camera.depth_kind == "radial"
 
 
-def _put_margin(record: np.void, camera: DepthCamera, margin: Margin, grid: VoxelGrid) -> None:
+def _put_margin(record: np.record, camera: DepthCamera, margin: Margin, grid: VoxelGrid) -> None:
     """The margin, and a quantum that depths up to the grid's farthest corner can be counted in."""
     of_depth = margin_of(camera, margin)
     corners = grid.lower_m + (grid.upper_m - grid.lower_m) * np.stack(
@@ -105,7 +105,7 @@ def _put_margin(record: np.void, camera: DepthCamera, margin: Margin, grid: Voxe
     record["quantum"] = 2.0 ** np.ceil(np.log2(reach / (FAR_CLIP - 4)))
 
 
-def _put_rays(record: np.void, camera: DepthCamera, margin: Margin) -> None:
+def _put_rays(record: np.record, camera: DepthCamera, margin: Margin) -> None:
     """How a pixel's direction turns in the world, and the least cosine between a pixel's ray and the optical axis."""
     k, rotation = camera.intrinsics, camera.camera_from_world[:3, :3]
     along_u, along_v = rotation[0] / k.fx, rotation[1] / k.fy
@@ -117,7 +117,7 @@ def _put_rays(record: np.void, camera: DepthCamera, margin: Margin) -> None:
     record["least_cosine"] = 1.0 / np.sqrt(1.0 + aside**2 + above**2)
 
 
-def _put_boxes(record: np.void, camera: DepthCamera, grid: VoxelGrid) -> None:
+def _put_boxes(record: np.record, camera: DepthCamera, grid: VoxelGrid) -> None:
     """Voxels and blocks along the camera's axes, and the finest level of windows that is worth its memory."""
     k, rotation = camera.intrinsics, camera.camera_from_world[:3, :3]
     for scale, edge in enumerate((grid.voxel_size_m, 4 * grid.voxel_size_m)):

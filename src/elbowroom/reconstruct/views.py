@@ -74,7 +74,7 @@ def _own_texels(layout: Layout, buffers: Buffers, c: int) -> Pair:
     return trust, buffers.texels.doubt_texels[layout.texels[c]].reshape(shape) if buffers.split else trust
 
 
-def _fill_levels(record: np.void, buffers: Buffers, here: slice, own: Pair, apart: Rectangle) -> None:
+def _fill_levels(record: np.record, buffers: Buffers, here: slice, own: Pair, apart: Rectangle) -> None:
     """Builds what stands above one camera's texels: windows, tiles and squares of tiles.
 
     Args:

@@ -152,7 +152,7 @@ def test_a_knocked_camera_is_elsewhere_than_the_site_says(tmp_path):
     ("arguments", "expected"),
     [
         (("room", "--near"), "--near with room: near poses are those of a board"),
-        (("room", "--noise", "kinect"), "--noise: 'kinect' is unknown; exact, "),
+        (("room", "--noise", "kinect"), "--noise: 'kinect' is unknown, allowed are exact, "),
         (("room", "--knock", "north"), "knocked camera 'north': unknown; cameras are cam00, cam01"),
         (("board", "--corners", "8x6"), "odd"),
         (("board", "--poses", 3, "--stands", 4), "4 stands, must be 0 to the 3 poses"),

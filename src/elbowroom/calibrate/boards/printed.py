@@ -8,11 +8,10 @@ from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.boards.edge_fit import LEAST_AGREEMENT, edges_fitted
 from elbowroom.calibrate.boards.near_far import NearFar
 from elbowroom.calibrate.boards.opencv import opencv
-from elbowroom.calibrate.boards.pixel_rays import pixel_rays_of
 from elbowroom.calibrate.boards.trouble import Fault, Trouble
 from elbowroom.geometry import DepthCamera
-from elbowroom.geometry.lens import distorted
-from elbowroom.sensing.rays import undistort
+from elbowroom.geometry.lens import directions, distorted
+from elbowroom.sensing.rays import pixel_rays
 
 Array = NDArray[np.float64]
 LEAST_SIGMA_PX = 0.02
@@ -108,10 +107,8 @@ def _refined(
     """
     intrinsics = camera.intrinsics
     flat = corners.reshape(-1, 2)
-    x, y = undistort(flat[:, :1], flat[:, 1:], intrinsics, f"camera {camera.name}")
-    image_from_board = np.asarray(
-        opencv().findHomography(board.corners_in_board[:, :2], np.hstack([x, y]))[0]
-    )
+    seen = directions(intrinsics, flat, f"camera {camera.name}")
+    image_from_board = np.asarray(opencv().findHomography(board.corners_in_board[:, :2], seen)[0])
     picture = _as_near_far(camera, board, grey, image_from_board, flat)
     fit = edges_fitted(picture, board, image_from_board, (1 / intrinsics.fx, 1 / intrinsics.fy))
     if fit is None or fit.agreement < LEAST_AGREEMENT:
@@ -127,7 +124,7 @@ def _as_near_far(
     camera: DepthCamera, board: Board, grey: NDArray[np.uint8], image_from_board: Array, corners: Array
 ) -> NearFar:
     """The image about the board with dark squares 1 and bright ones 0, however the light falls."""
-    rays = pixel_rays_of(camera)
+    rays = pixel_rays(camera)
     span = 0.2 * np.ptp(corners, axis=0) + 3
     low = np.maximum(np.floor(corners.min(axis=0) - span).astype(int), 0)
     high = np.ceil(corners.max(axis=0) + span).astype(int) + 1

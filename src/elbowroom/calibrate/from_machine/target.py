@@ -164,8 +164,8 @@ def _first_base(
     """Where the base is, from the first camera whose pose is known and its pose relative to the base."""
     if not known:
         raise CalibrationError(
-            "the machine's base and all cameras at once: nothing fixes the world; name cameras whose poses hold with "
-            "--hold, or find the cameras by a board first"
+            "the machine's base and all cameras at once: nothing fixes the world; say which cameras' poses hold, or "
+            "find the cameras by a board first"
         )
     name, first = next(iter(known.items()))
     camera_from_base = invert_rigid(starts[name]) @ machine.world_from_base

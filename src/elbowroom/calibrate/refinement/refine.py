@@ -141,7 +141,7 @@ def _before(cameras: Sequence[DepthCamera], covariances: Mapping[str, Array | No
     if missing:
         raise CalibrationError(
             f"camera {missing[0]}: how sure its pose is, is not known; calibrate it by a board or the machine, or "
-            "say it with --sure-to"
+            "give its covariance"
         )
     known = {name: given for name in names if (given := covariances[name]) is not None}
     if len(names) < 2 or not known:

@@ -86,7 +86,7 @@ def told(error: str, seen: Sightings) -> str:
         seen: what it was given.
     """
     pose = re.match(r"pose (\d+).* do not agree where the board was", error)
-    if pose is not None and "--without-pose" not in error:
+    if pose is not None:
         error += f" (--without-pose {pose[1]})"
     why = [
         str(trouble)

@@ -1,6 +1,6 @@
 """The run of `elbowroom placement optimise --scenes`."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,8 @@ from elbowroom.cli.screen import show
 from elbowroom.files.json_rows import json_rows
 from elbowroom.placement.bill import bill, bill_table
 from elbowroom.placement.cameras import cameras_of
-from elbowroom.placement.candidates import candidates_of
+from elbowroom.placement.candidates import Candidate, candidates_of
+from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.in_use import FoundInUse, optimise_in_use
 from elbowroom.placement.optimisation import Goal
 from elbowroom.placement.rehearsal import Rehearsal, Settings, rehearse
@@ -31,31 +32,17 @@ def run_in_use(options: OptimiseOptions, json_file: Path | None) -> None:
     """
     site = Site.simulated_room() if options.site is None else Site.load(options.site)
     goal = Goal(options.share_pct, options.cameras, options.by_price)
-    settings, room, seed = Settings.of_site(site), walled_room(site), options.seed
-    candidates = candidates_of(site, settings.grid, room, seed=seed)
-    existing = cameras_of(site) if options.keep else ()
-    with json_rows(json_file) as add, Console(stderr=True).status("drawing scenes") as status:
-        done = optimise_in_use(
-            candidates,
-            list(random_scenes(site, settings.grid, room, options.scenes, seed=seed)),
-            settings,
-            goal,
-            existing=existing,
-            seconds=options.seconds,
-            seed=seed,
-            progress=lambda text: status.update(text),
-        )
-        status.update("rehearsing in other scenes")
-        seed += OTHER_SEED
-        others = random_scenes(site, settings.grid, room, options.scenes, seed=seed)
-        rehearsed = rehearse(done.cameras, others, settings, seed=seed, by_camera=False)
+    settings, room = Settings.of_site(site), walled_room(site)
+    candidates = candidates_of(site, settings.grid, room, seed=options.seed)
+    with json_rows(json_file) as add:
+        done, rehearsed = _optimised(site, room, goal, candidates, settings, options)
         if options.write is not None:
             write_site(site, done.cameras, options.write)
         row = {
             "kind": "layout",
             "site": str(site.path),
             "name": site.name,
-            "existing_cameras": len(existing),
+            "existing_cameras": len(done.cameras) - len(done.bought),
             "candidates": len(candidates),
             "bound_of": "cameras" if goal.cameras is None else "free_pct",
             **_found(done, rehearsed),
@@ -67,6 +54,33 @@ def run_in_use(options: OptimiseOptions, json_file: Path | None) -> None:
     _say(row)
     if options.write is not None:
         print(f"site      {options.write}")
+
+
+def _optimised(
+    site: Site,
+    room: FixedRoom,
+    goal: Goal,
+    candidates: Sequence[Candidate],
+    settings: Settings,
+    options: OptimiseOptions,
+) -> tuple[FoundInUse, Rehearsal]:
+    """The layout, and what it finds in other scenes."""
+    seed = options.seed
+    with Console(stderr=True).status("drawing scenes") as status:
+        done = optimise_in_use(
+            candidates,
+            list(random_scenes(site, settings.grid, room, options.scenes, seed=seed)),
+            settings,
+            goal,
+            existing=cameras_of(site) if options.keep else (),
+            seconds=options.seconds,
+            seed=seed,
+            progress=lambda text: status.update(text),
+        )
+        status.update("rehearsing in other scenes")
+        seed += OTHER_SEED
+        others = random_scenes(site, settings.grid, room, options.scenes, seed=seed)
+        return done, rehearse(done.cameras, others, settings, seed=seed, by_camera=False)
 
 
 def _found(done: FoundInUse, rehearsed: Rehearsal) -> dict[str, Any]:

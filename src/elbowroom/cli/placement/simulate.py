@@ -7,6 +7,7 @@ from typing import Any
 
 from rich.console import Console
 
+from elbowroom.cli.options import options_named
 from elbowroom.cli.placement.options import SimulateOptions
 from elbowroom.cli.screen import note, show
 from elbowroom.errors import InputError
@@ -42,7 +43,8 @@ def run_simulate(options: SimulateOptions, json_file: Path | None) -> None:
     )
     begun = time.perf_counter()
     with json_rows(json_file) as add:
-        with Console(stderr=True).status("compiling kernels") as status:
+        status = Console(stderr=True).status("compiling kernels")
+        with status, options_named(people="--people", table="--table"):
             done = rehearse(
                 cameras,
                 moments,

@@ -6,17 +6,19 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from elbowroom.choices import Detail
+from elbowroom.evaluate.rooms.room import cameras_row
 from elbowroom.evaluate.speed.kernels.reference import reference
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, parallel
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
 from elbowroom.motion import joint_motions
 from elbowroom.reconstruct import Terms, carve
-from elbowroom.sensing import NOISE_PRESETS, DepthFrame, Snapshot
+from elbowroom.sensing import NOISE_PRESETS, DepthFrame, NoiseModel, Snapshot
 
 SPEEDS = {"long": 0.15, "larm": np.radians(12), "propeller": np.radians(25), "carc": np.radians(25)}
 """Full speeds of the ceiling C-arm [m/s or rad/s]."""
@@ -41,7 +43,7 @@ def _times(work: Callable[[int], object], rounds: int, beside: list[float]) -> l
 
 
 def run_case(
-    scene_file: Path, voxel_size_m: float, detail: str, noise: bool, threads: int, rounds: int
+    scene_file: Path, voxel_size_m: float, detail: Detail, noise: bool, threads: int, rounds: int
 ) -> list[dict[str, Any]]:
     """Carve alone in the bare room, then whole cycles with machine and motions, then the cycle's stages.
 
@@ -52,23 +54,12 @@ def run_case(
         noise: whether cameras have a noise model, hence margins and the filter of flying pixels.
         rounds: how many times each is measured.
     """
-    with np.load(scene_file, allow_pickle=False) as scenes:
-        poses, lens, depths, joints = (scenes[name] for name in ("poses", "lens", "depths", "joints"))
-    machine = ceiling_c_arm()
-    model = NOISE_PRESETS["tof"] if noise else None
-    height, width = depths.shape[2:]
-    cameras = [
-        DepthCamera(f"cam{n:02d}", width, height, pose, Intrinsics(*lens), noise=model)
-        for n, pose in enumerate(poses)
-    ]
-    moments = [
-        [DepthFrame(camera.name, m, image) for camera, image in zip(cameras, images, strict=True)]
-        for m, images in enumerate(depths)
-    ]
-    positions = [dict(zip(machine.joint_names, row, strict=True)) for row in joints.tolist()]
+    scene = _Scene.load(scene_file, NOISE_PRESETS["tof"] if noise else None)
+    machine, moments = ceiling_c_arm(), scene.moments
+    positions = [dict(zip(machine.joint_names, row, strict=True)) for row in scene.joints]
     grid = VoxelGrid.covering((-2.0, -2.0, 0.0), (2.0, 2.0, 2.5), voxel_size_m)
     motions = joint_motions(machine, SPEEDS, BRAKING_TIME_S)
-    cycle = Cycle(grid, cameras, machine, motions, Terms(detail=detail))  # type: ignore[arg-type]
+    cycle = Cycle(grid, scene.cameras, machine, motions, Terms(detail=detail))
     stages: list[Mapping[str, float]] = []
 
     def pass_once(n: int) -> None:
@@ -79,36 +70,44 @@ def run_case(
         stages.append(result.stage_ms)
 
     def carve_once(n: int) -> None:
-        carve(grid, cameras, moments[n % len(moments)], detail=detail)  # type: ignore[arg-type]
+        carve(grid, scene.cameras, moments[n % len(moments)], detail=detail)
 
-    shared = {
-        "voxel_size_m": voxel_size_m,
-        "cameras": len(cameras),
-        "width": width,
-        "height": height,
-        "detail": detail,
-        "noise": noise,
-        "threads": threads,
-        "rounds": rounds,
-    }
     beside: list[float] = []
     with parallel.threads(threads):
-        carves = _times(carve_once, rounds, beside)
-        cycles = _times(pass_once, rounds, beside)
+        measured = {"carve": _times(carve_once, rounds, beside), "cycle": _times(pass_once, rounds, beside)}
+    measured |= {f"cycle/{name}": [stage[name] for stage in stages[2:]] for name in stages[-1]}
+    said = {"voxel_size_m": voxel_size_m, **cameras_row(scene.cameras), "detail": detail, "noise": noise}
+    said |= {"threads": threads, "rounds": rounds}
+    peak = {"peak_rss_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}
     against = float(np.median(beside))
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    measured = [("carve", carves), ("cycle", cycles)]
-    measured += [(f"cycle/{name}", [stage[name] for stage in stages[2:]]) for name in stages[-1]]
     return [
-        {
-            "case": case,
-            **shared,
-            **_summary(spent),
-            "peak_rss_mb": peak,
-            "ratio": float(np.median(spent)) / against,
-        }
-        for case, spent in measured
+        {"case": case, **said, **_summary(spent), **peak, "ratio": float(np.median(spent)) / against}
+        for case, spent in measured.items()
     ]
+
+
+class _Scene(NamedTuple):
+    """Cameras, and the frames and joint positions of some moments."""
+
+    cameras: list[DepthCamera]
+    moments: list[list[DepthFrame]]
+    joints: list[list[float]]
+
+    @classmethod
+    def load(cls, path: Path, noise: NoiseModel | None) -> "_Scene":
+        """As `bench.save_scenes` wrote it."""
+        with np.load(path, allow_pickle=False) as scenes:
+            poses, lens, depths, joints = (scenes[name] for name in ("poses", "lens", "depths", "joints"))
+        height, width = depths.shape[2:]
+        cameras = [
+            DepthCamera(f"cam{n:02d}", width, height, pose, Intrinsics(*lens), noise=noise)
+            for n, pose in enumerate(poses)
+        ]
+        moments = [
+            [DepthFrame(camera.name, m, image) for camera, image in zip(cameras, images, strict=True)]
+            for m, images in enumerate(depths)
+        ]
+        return cls(cameras, moments, joints.tolist())
 
 
 def _summary(spent: Sequence[float]) -> dict[str, float]:

@@ -33,10 +33,10 @@ FIRST_SEED = 10_000
 
 
 class Shown(NamedTuple):
-    """What candidates see of a way, voxels in the order in which they are met; the last is the contact, seen by none.
+    """What candidates see of a way, voxels in the order in which they are met.
 
     Args:
-        short_mm: how long before the contact each voxel is met, shape (n,) [mm].
+        short_mm: how long before the contact each voxel is met, and the contact itself, shape (n + 1,) [mm].
         in_view: the candidate sees through the voxel in an exact image, shape (candidates, n).
         through: the candidate sees through it, in every draw of noise, shape (candidates, n).
         disputed: it disputes it, in some draw, shape (candidates, n).

@@ -2,11 +2,12 @@
 
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from elbowroom.files.progress import Progress
 from elbowroom.geometry.parallel import default_threads, spread
 from elbowroom.placement.solver.layout import Layout
 from elbowroom.placement.solver.model import Model
@@ -50,7 +51,7 @@ def cheapest(
     *,
     first: Sequence[int] = (),
     seed: int = 1,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> Layout:
     """The cheapest layout that is found with this share of valid points.
 
@@ -99,7 +100,7 @@ def fullest(
     course: Course,
     *,
     seed: int = 1,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> Layout:
     """The layout with most valid points that is found for at most this price.
 
@@ -141,7 +142,7 @@ def in_scenes(
     course: Course,
     *,
     seed: int = 1,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> SceneLayout:
     """The cheapest layout with a share of the free space of scenes, or with None the one that finds most for a price.
 

@@ -5,6 +5,8 @@ and comparison are loops of their own over rows of one scratch record: so LLVM c
 vectorises the first and the last. Divisions need numba's "numpy" error model, or each would be a branch.
 """
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 
@@ -16,20 +18,19 @@ from elbowroom.reconstruct.kernels.texels import NO_RETURN
 _FLOATS = ("near", "far", "least", "greatest", "state", "u", "v")
 _INTS = ("texel", "least_quanta", "greatest_quanta")
 
-LANES = np.dtype(
-    {
-        "names": [*_FLOATS, *_INTS, "flags", "flag_words"],
-        "formats": [("f4", 64)] * 7 + [("i4", 64)] * 3 + [("u1", (3, 64)), ("u8", (3, 8))],
-        # the last two are the same bytes
-        "offsets": [*range(0, 10 * 256, 256), 2560, 2560],
-        "itemsize": 2560 + 192,
-    }
-)
+_ROWS: Any = {
+    "names": [*_FLOATS, *_INTS, "marks", "mark_words"],
+    "formats": [("f4", 64)] * 7 + [("i4", 64)] * 3 + [("u1", (3, 64)), ("u8", (3, 8))],
+    # the last two are the same bytes
+    "offsets": [*range(0, 10 * 256, 256), 2560, 2560],
+    "itemsize": 2560 + 192,
+}
+LANES = np.dtype((np.record, np.dtype(_ROWS)))
 """Scratch memory for 64 boxes, one in each lane.
 
 near, far: bounds of their depth, by the margin wider [m]; least, greatest: depth in their windows [m]; state: where
 they lie in the image; u, v: the pixel of their centre. texel: where to look; least_quanta, greatest_quanta: what was
-found there. flags: three rows of yes or no, flag_words: the same, eight bytes at a time.
+found there. marks: three rows of yes or no, mark_words: the same, eight bytes at a time.
 """
 OUTSIDE, PARTLY, INSIDE, CROSSING = (np.float32(state) for state in range(4))
 
@@ -232,10 +233,10 @@ def look_up(windows, quantum, lanes):
 
 @njit(inline="always")
 def bits_of(lanes, row):
-    """A row of flags as one word, lane n to bit n."""
+    """A row of marks as one word, lane n to bit n."""
     out = np.uint64(0)
     for n in range(8):
-        out |= ((lanes.flag_words[row, n] * GATHER) >> np.uint64(56)) << np.uint64(8 * n)
+        out |= ((lanes.mark_words[row, n] * GATHER) >> np.uint64(56)) << np.uint64(8 * n)
     return out
 
 
@@ -245,8 +246,8 @@ def decide_inside(lanes):
     for lane in range(64):
         front = lanes.least[lane] > lanes.far[lane]
         hidden = lanes.greatest[lane] < lanes.near[lane]
-        lanes.flags[0, lane] = front
-        lanes.flags[1, lane] = hidden
+        lanes.marks[0, lane] = front
+        lanes.marks[1, lane] = hidden
     through = bits_of(lanes, 0)
     return through, ~(through | bits_of(lanes, 1))
 
@@ -262,7 +263,7 @@ def decide_partly(lanes):
         state = lanes.state[lane]
         front = lanes.least[lane] > lanes.far[lane]
         hidden = lanes.greatest[lane] < lanes.near[lane]
-        lanes.flags[0, lane] = (state == INSIDE) & front
-        lanes.flags[1, lane] = (state == CROSSING) | ((state != OUTSIDE) & (not hidden) & (not front))
-        lanes.flags[2, lane] = (state == PARTLY) & front
+        lanes.marks[0, lane] = (state == INSIDE) & front
+        lanes.marks[1, lane] = (state == CROSSING) | ((state != OUTSIDE) & (not hidden) & (not front))
+        lanes.marks[2, lane] = (state == PARTLY) & front
     return bits_of(lanes, 0), bits_of(lanes, 1), bits_of(lanes, 2)

@@ -4,12 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from elbowroom.geometry.kernels.noise import DepthMargin
+
 LEVELS = 15
 """Of windows at most: so often the side of an image halves until one texel is left (`geometry.camera.MAX_SIDE_PX`)."""
 
-_MARGIN = [(name, "f8") for name in ("constant", "linear", "quadratic", "beyond", "offset")]
-
-CAMERA = np.dtype(
+_MARGIN = np.dtype((np.record, [(name, "f8") for name in DepthMargin._fields]))
+_FIELDS = np.dtype(
     [
         ("camera_from_world", "f8", (3, 4)),
         ("centre_in_world", "f8", 3),
@@ -19,7 +20,6 @@ CAMERA = np.dtype(
         ("cy", "f8"),
         ("width", "i8"),
         ("height", "i8"),
-        ("radial", "?"),
         ("margin", _MARGIN),
         ("lateral_px", "f8"),
         ("quantum", "f8"),
@@ -35,11 +35,14 @@ CAMERA = np.dtype(
         ("level_stride", "i8", LEVELS),
         ("first_texel", "i8"),
         ("first_tile", "i8"),
+        ("radial", "?"),
         ("blank", "?"),
         ("explained", "?"),
     ],
     align=True,
 )
+# records, and not plain structures: outside compiled code, too, their fields are attributes
+CAMERA = np.dtype((np.record, _FIELDS))
 """One camera.
 
 Pose: camera_from_world, centre_in_world [m]. Lens: fx, fy, cx, cy [px], width, height, and whether depth is radial.

@@ -8,9 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numba.cpython.unsafe.numbers import trailing_zeros
 
-from elbowroom.geometry.kernels.bits import uncounted
+from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
 from elbowroom.reconstruct.kernels.box import ALL, LANES
 from elbowroom.reconstruct.kernels.look import Look, ask, contested, measured_at_centre, sort_out
 from elbowroom.reconstruct.kernels.pixel import VOXEL, settle_word
@@ -108,7 +107,7 @@ def _ask_voxels(cube, c, views, answers, scratch):
     camera = views.cameras[c]
     blocks, undecided = scratch.mixed[c], NOTHING
     while blocks:
-        lane = np.int64(trailing_zeros(blocks))
+        lane = lowest_bit(blocks)
         here = np.uint64(1) << np.uint64(lane)
         blocks &= ~here
         word = cube.word + lane
@@ -156,7 +155,7 @@ def _ask_pixels(cube, c, turn, views, answers, scratch):
     planes = answers.planes
     blocks = scratch.undecided[c]
     while blocks:
-        lane = np.int64(trailing_zeros(blocks))
+        lane = lowest_bit(blocks)
         blocks &= ~(np.uint64(1) << np.uint64(lane))
         word = cube.word + lane
         stopped = scratch.stopped[c, lane]

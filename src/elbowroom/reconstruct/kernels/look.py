@@ -4,9 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numba.cpython.unsafe.numbers import trailing_zeros
 
-from elbowroom.geometry.kernels.bits import uncounted
+from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
 from elbowroom.reconstruct.kernels.box import (
     CROSSING,
     INSIDE,
@@ -84,9 +83,9 @@ def _may_be_measured(camera, doubt_tiles, lanes):
         least = np.float32(lanes.least_quanta[lane]) * quantum
         greatest = np.float32(lanes.greatest_quanta[lane]) * quantum
         beyond_all = (greatest < lanes.near[lane]) & (lanes.greatest_quanta[lane] != np.int32(NO_RETURN))
-        lanes.flags[0, lane] = (not beyond_all) & (least <= lanes.far[lane])
-        lanes.flags[1, lane] = lanes.greatest[lane] == np.float32(np.inf)
-        lanes.flags[2, lane] = lanes.state[lane] != CROSSING
+        lanes.marks[0, lane] = (not beyond_all) & (least <= lanes.far[lane])
+        lanes.marks[1, lane] = lanes.greatest[lane] == np.float32(np.inf)
+        lanes.marks[2, lane] = lanes.state[lane] != CROSSING
     return bits_of(lanes, 0), bits_of(lanes, 1), bits_of(lanes, 2)
 
 
@@ -110,7 +109,7 @@ def measured_at_centre(camera, texels, look, known, lanes):
     rest &= unsure & ~known
     # without branches, so that the looks of many lanes are under way at once
     while rest:
-        lane = np.int64(trailing_zeros(rest))
+        lane = lowest_bit(rest)
         rest &= rest - np.uint64(1)
         texel = texels.doubt_texels[_centre_pixel(camera, lanes, lane)]
         greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
@@ -136,7 +135,7 @@ def sort_out(camera, texels, edge, unsure, lanes):
     inner = 0.5 * edge * (1.0 if camera.radial else camera.least_cosine)
     rest = unsure
     while rest:
-        lane = np.int64(trailing_zeros(rest))
+        lane = lowest_bit(rest)
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
         near, far = np.float64(lanes.near[lane]), np.float64(lanes.far[lane])
@@ -167,7 +166,7 @@ def contested(camera, texels, asked, look, lanes):
     quantum = np.float32(camera.quantum)
     rest = asked
     while rest:
-        lane = np.int64(trailing_zeros(rest))
+        lane = lowest_bit(rest)
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
         if look.partly and lanes.state[lane] == CROSSING:

@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numba.cpython.unsafe.numbers import trailing_zeros
 
-from elbowroom.geometry.kernels.bits import uncounted
+from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
 from elbowroom.geometry.kernels.noise import margin_at
 from elbowroom.geometry.kernels.pinhole import pixel_of
 from elbowroom.geometry.kernels.rigid import moved
@@ -25,7 +24,7 @@ from elbowroom.reconstruct.kernels.texels import NEUTRAL, NO_RETURN
 THROUGH, DISPUTES, IS_SURFACE, IS_BLIND, BLOCKED = 1, 2, 4, 8, 16
 """Answers. BLOCKED is said within this file alone: some pixel is not free beyond the voxel."""
 
-VOXEL = np.dtype([("low", "f8", 3), ("high", "f8", 3), ("lines", "i8"), ("line", "f8", (6, 4))])
+VOXEL = np.dtype((np.record, [("low", "f8", 3), ("high", "f8", 3), ("lines", "i8"), ("line", "f8", (6, 4))]))
 """Scratch memory for one voxel and camera: its faces, as seen from the camera's centre [m], and silhouette lines.
 
 A pixel is beyond a line, outside the voxel, where line[0] + line[1] u + line[2] v + line[3] < 0; the last is the line's
@@ -366,7 +365,7 @@ def settle_word(camera, texels, voxels, boxes, voxel):
     through, disputed, surface, blind = np.uint64(0), np.uint64(0), np.uint64(0), np.uint64(0)
     rest = voxels
     while rest:
-        lane = np.int64(trailing_zeros(rest))
+        lane = lowest_bit(rest)
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
         answer = settle_voxel(camera, texels, box_in(boxes, lane), voxel)

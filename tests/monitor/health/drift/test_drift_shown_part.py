@@ -28,7 +28,7 @@ def heard(move_m, moments=60):
 
 def test_the_view_of_the_corner_does_not_show_one_direction_and_that_of_the_room_all():
     part = ShownPart.of(REFERENCE, TOLERANCE)
-    assert part is not None and part.names == ("move along y",) and len(part.across) == 1
+    assert part is not None and part.names == ("moving up and down",) and len(part.across) == 1
     hidden = np.linalg.pinv(part.across)[3:, 0]
     assert abs(hidden @ UP) / np.linalg.norm(hidden) > 0.99
     assert ShownPart.of(commissioned([OPEN], NOISE_M)[0], TOLERANCE) is None
@@ -45,7 +45,7 @@ def test_a_move_that_is_not_shown_leaves_the_image_as_it_is():
 def test_a_move_of_2_cm_along_y_is_named_by_the_part_that_is_shown(sign):
     health, shift = heard((0.0, sign * 0.02, 0.0))
     assert list(health.stops) == ["corner"]
-    assert "may be a part of it: its view does not show move along y" in health.reason
+    assert "may be a part of it: its view does not show moving up and down" in health.reason
     shown = np.array((0.0, sign * 0.02, 0.0)) - sign * 0.02 * UP[1] * UP
     assert shift.move_m == pytest.approx(shown, abs=0.001)
     assert 4 < shift.move_mm < 12

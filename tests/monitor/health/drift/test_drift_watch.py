@@ -9,8 +9,9 @@ from elbowroom.errors import CalibrationError, InputError
 from elbowroom.geometry import parallel
 from elbowroom.monitor import Condition, Watch
 from elbowroom.monitor.health.drift.commission import Commissioning
-from elbowroom.monitor.health.drift.sequential import Tally, mean_run_length
+from elbowroom.monitor.health.drift.sequential import Tally
 from elbowroom.sensing import DepthFrame, Snapshot
+from reference.watch_run_length import mean_run_length
 from reference.watch_twins import CAMERAS, NOISE_M, camera_at, commissioned, frame, knocked, walls
 
 MS = 1_000_000
@@ -145,7 +146,11 @@ def test_a_camera_that_sees_one_wall_says_which_motions_it_cannot_tell():
     for number in range(6):
         room.add(Snapshot.taken([frame(facing, number, NOISE_M, depth=depth)]))
     reference = room.reference_of(facing)
-    assert reference.unseen_motions(0.007, 0.008) == ("turn about z", "move along x", "move along y")
+    assert reference.unseen_motions(0.007, 0.008) == (
+        "rolling about its line of sight",
+        "moving sideways",
+        "moving up and down",
+    )
     # and what it cannot tell it does not claim
     sideways = frame(facing, 1, NOISE_M, depth=depth)
     watch = Watch([facing], [reference])
