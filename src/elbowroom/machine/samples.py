@@ -135,7 +135,7 @@ def _name_of(links: Sequence[Link], rows: Sequence[int], voxel_size_m: float) ->
 @cache
 def _making() -> bytes:
     """What samples are made by: this file, its kernels, and what compiles and runs them."""
-    cpu, plain = llvmlite.binding.get_host_cpu_name(), numba.config.DISABLE_JIT
+    cpu, plain = llvmlite.binding.get_host_cpu_name(), numba.config.DISABLE_JIT  # type: ignore[attr-defined]
     made_by = f"{numba.__version__} {np.__version__} {cpu} {plain}"
     return b"".join([made_by.encode(), *(Path(file).read_bytes() for file in (__file__, kernels.__file__))])
 
