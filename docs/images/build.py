@@ -32,7 +32,8 @@ def main() -> None:
     warm_up(machine)
     # recorded as on a terminal, shown nowhere
     console = Console(record=True, width=COLUMNS, file=io.StringIO(), force_terminal=True)
-    view = TerminalView(watched_of(room), console)
+    view = TerminalView(console)
+    view.watched = watched_of(room)
     for n, (snapshot, source_ms) in enumerate(timed_source(room.source.at(TIMES_S))):
         result = cycle.run(snapshot)
         # the first pass is slow, others are not

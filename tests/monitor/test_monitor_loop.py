@@ -9,8 +9,10 @@ from elbowroom.errors import FrameError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.monitor import Checks, Cycle, Health, Loop, Pass, cycle
 from elbowroom.motion import Cause, Level, Motion, Verdict
+from elbowroom.reconstruct import Terms
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.sensing import DepthFrame, Snapshot
+from elbowroom.sources import Room
 
 GRID = VoxelGrid(origin_m=(0, 0, 0), shape=(4, 4, 4), voxel_size_m=0.1)
 SPACE = FreeSpace.from_occupied(GRID, np.zeros(GRID.shape, dtype=bool))
@@ -54,8 +56,13 @@ class Listener:
 
     def __init__(self, fails_at: int | None = None, error: BaseException | None = None) -> None:
         self.fails_at, self.error = fails_at, error or OSError("disk full")
+        self.begun: list[Room] = []
         self.shown: list[Pass] = []
         self.ended = 0
+
+    def begin(self, room: Room) -> None:
+        assert not self.shown
+        self.begun.append(room)
 
     def show(self, done: Pass) -> None:
         self.shown.append(done)
@@ -94,13 +101,16 @@ def _all_is_clear(monkeypatch):
 
 
 def a_loop(source: Script, checks: Checks | None = None, pace=None) -> Loop:
-    return Loop(source, checks or Checks(), Cycle(GRID, (), OneJoint(), (MOTION,), focused=False), pace)
+    room = Room(None, GRID, (), OneJoint(), Terms(), source)
+    return Loop(room, checks or Checks(), Cycle(GRID, (), OneJoint(), (MOTION,), focused=False), pace)
 
 
-def test_every_face_is_told_of_every_pass_in_order_and_of_the_end():
+def test_every_face_is_told_of_the_room_of_every_pass_in_order_and_of_the_end():
     source, faces = Script(at(1), at(2), at(3)), (Listener(), Listener())
-    a_loop(source).run(faces)
+    loop = a_loop(source)
+    loop.run(faces)
     for face in faces:
+        assert face.begun == [loop.room]
         assert [done.snapshot.now_ns for done in face.shown] == [1, 2, 3]
         assert [done.result.sequence for done in face.shown] == [0, 1, 2]
         assert all(done.source_ms >= 0 for done in face.shown)
@@ -162,6 +172,17 @@ def test_a_face_that_always_raises_keeps_no_other_from_hearing_stop():
     with pytest.raises(OSError, match="gone"):
         a_loop(Script(at(1))).run([Broken(), behind])
     assert behind.levels == [Level.STOP] and behind.ended == 1
+
+
+def test_a_face_that_cannot_begin_is_a_stop_too():
+    class Absent(Listener):
+        def begin(self, room: Room) -> None:
+            raise OSError("no screen")
+
+    source, behind = Script(at(1)), Listener()
+    with pytest.raises(OSError, match="no screen"):
+        a_loop(source).run([Absent(), behind])
+    assert behind.levels == [Level.STOP] and behind.ended == 1 and source.closed == 1
 
 
 def test_a_face_that_cannot_end_keeps_no_other_from_ending():

@@ -1,8 +1,8 @@
 """The solver's own model, its search and its bound; every layout is judged again by `verify`."""
 
-import builtins
 import itertools
 import math
+import sys
 import time
 
 import numpy as np
@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.errors import InputError
+from elbowroom.errors import InputError, PackageError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.placement.candidates import candidates_of
 from elbowroom.placement.optimisation import Goal, Search, optimise, sample_points
@@ -274,16 +274,9 @@ def test_goals_that_are_none_are_refused(make, words):
 
 
 def test_without_cp_sat_the_error_says_what_to_install(site, monkeypatch):
-    plain = builtins.__import__
-
-    def without(name, *args, **kwargs):
-        if name.startswith("ortools"):
-            raise ImportError(name)
-        return plain(name, *args, **kwargs)
-
-    monkeypatch.setattr(builtins, "__import__", without)
+    monkeypatch.setitem(sys.modules, "ortools.sat.python.cp_model", None)
     grid, room = site.grid(), room_of()
-    with pytest.raises(InputError, match=r"pip install 'elbowroom\[placement\]'"):
+    with pytest.raises(PackageError, match=r"pip install 'elbowroom\[placement\]'"):
         optimise(grid, room, candidates_of(site, grid, room), search=Search(1.0))
 
 

@@ -1,7 +1,7 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,6 +17,9 @@ from elbowroom.cli.options import (
     parse_resolution,
     use_threads,
 )
+
+if TYPE_CHECKING:
+    from elbowroom.sources import Room
 
 
 def monitor(
@@ -67,22 +70,9 @@ def monitor(
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
 
-    from rich.console import Console
-
-    from elbowroom.cli.progress import Steps
-    from elbowroom.files.json_rows import json_rows
-    from elbowroom.monitor import Face
-    from elbowroom.monitor.rows import Rows, room_row
-    from elbowroom.monitor.start.compiling import compile_kernels
-    from elbowroom.monitor.start.start import started
     from elbowroom.site import Site
-    from elbowroom.site.notes import notes_of
     from elbowroom.sources import open_room
-    from elbowroom.view.draw.last_pictures import LastPictures
-    from elbowroom.view.screen.terminal import TerminalView
-    from elbowroom.view.screen.watched import watched_of
 
-    console = Console()
     with options_named(joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock"):
         room = open_room(
             Site.simulated_room() if site is None else Site.load(site),
@@ -94,19 +84,35 @@ def monitor(
             resolution=size_px,
             knocks=knock or (),
         )
-        room.machine_and_motions()  # said before anything is compiled
-        pictures = [] if out is None else [LastPictures(room, out, console)]
-        with json_rows(json) as add, TerminalView(watched_of(room), console) as view:
-            for note in notes_of(room.site):
-                view.note(note)
-            compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
-            with Steps(console, 4) as steps:
-                loop = started(room, steps.begin)
-            if loop.checks.unwatched is not None:
-                view.note(loop.checks.unwatched)
-            add(room_row(room))
-            view.start()
-            faces: list[Face] = [view, Rows(add), *pictures]
-            with ended_by_interrupt():
-                loop.run(faces, seconds)
-            add(view.log.row())
+        _watch(room, seconds, json, out)
+
+
+def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None) -> None:
+    """Runs the loop over a room, with the faces that were asked for."""
+    from rich.console import Console
+
+    from elbowroom.cli.progress import Steps
+    from elbowroom.files.json_rows import json_rows
+    from elbowroom.monitor import Face
+    from elbowroom.monitor.rows import Rows
+    from elbowroom.monitor.start.compiling import compile_kernels
+    from elbowroom.monitor.start.start import started
+    from elbowroom.site.notes import notes_of
+    from elbowroom.view.draw.last_pictures import LastPictures
+    from elbowroom.view.screen.terminal import TerminalView
+
+    room.machine_and_motions()  # said before anything is compiled
+    console = Console()
+    pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
+    with json_rows(json_file) as add, TerminalView(console) as view:
+        for note in notes_of(room.site):
+            view.note(note)
+        compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
+        with Steps(console, 4) as steps:
+            loop = started(room, steps.begin)
+        if loop.checks.unwatched is not None:
+            view.note(loop.checks.unwatched)
+        faces: list[Face] = [view, Rows(add), *pictures]
+        with ended_by_interrupt():
+            loop.run(faces, seconds)
+        add(view.log.row())

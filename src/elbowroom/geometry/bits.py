@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import GridError
 from elbowroom.geometry.grid import VoxelGrid
-from elbowroom.geometry.kernels.bits import Lattice, bit_of, word_of
+from elbowroom.geometry.kernels.bits import Lattice, bit_of, plain, word_of
 
 __all__ = ["Words", "empty", "inside", "lattice", "pack", "place_of", "unpack", "word_count"]
 
@@ -38,7 +38,7 @@ def place_of(index: tuple[int, int, int], grid: VoxelGrid) -> tuple[int, np.uint
     """Where a voxel's bit lies: index of its word, and the bit within it."""
     cells = lattice(grid)
     # not the compiled ones: these would be compiled when first called, perhaps while the machine moves
-    return word_of.py_func(*index, cells.cubes_y, cells.cubes_z), bit_of.py_func(*index)
+    return plain(word_of)(*index, cells.cubes_y, cells.cubes_z), plain(bit_of)(*index)
 
 
 def pack(mask: NDArray[np.bool_], grid: VoxelGrid) -> Words:

@@ -1,10 +1,11 @@
-"""Who shows or keeps what a run comes to: the screen, the rows of a file, pictures."""
+"""Who shows or keeps what a run comes to, or acts on it: the screen, the rows of a file, pictures."""
 
 from dataclasses import dataclass
 from typing import Protocol
 
 from elbowroom.monitor.result import CycleResult
 from elbowroom.sensing import Snapshot
+from elbowroom.sources import Room
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,7 +24,10 @@ class Pass:
 
 
 class Face(Protocol):
-    """Is told of every pass, in order, and of the end."""
+    """Is told by the loop of the room, of every pass, in order, and of the end."""
+
+    def begin(self, room: Room) -> None:
+        """A run begins; nothing has been judged: who commands a machine says stop."""
 
     def show(self, done: Pass) -> None:
         """A pass has just ended."""

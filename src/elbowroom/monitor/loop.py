@@ -10,7 +10,7 @@ from elbowroom.monitor.face import Face, Pass
 from elbowroom.monitor.health.checks import Checks
 from elbowroom.monitor.result import CycleResult
 from elbowroom.sensing import Snapshot
-from elbowroom.sources import Source
+from elbowroom.sources import Room, Source
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -18,13 +18,13 @@ class Loop:
     """What takes part in a run, faces apart.
 
     Args:
-        source: of snapshots.
+        room: whose source gives the snapshots.
         checks: look after cameras and machine.
         cycle: judges.
         pace: called with each snapshot before it is judged, and may wait; None: nobody waits.
     """
 
-    source: Source
+    room: Room
     checks: Checks
     cycle: Cycle
     pace: Callable[[Snapshot], None] | None = None
@@ -41,9 +41,11 @@ class Loop:
         """
         until = time.perf_counter() + (float("inf") if seconds is None else seconds)
         snapshot: Snapshot | None = None
-        with _ended(faces, self.source):
+        with _ended(faces, self.room.source):
             try:
-                for snapshot, source_ms in timed_source(self.source):
+                for face in faces:
+                    face.begin(self.room)
+                for snapshot, source_ms in timed_source(self.room.source):
                     if self.pace is not None:
                         self.pace(snapshot)
                     result = self.judge(snapshot)

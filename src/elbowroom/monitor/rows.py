@@ -15,7 +15,7 @@ from elbowroom.sources import Room
 
 
 class Rows:
-    """The face that adds each pass to a file: what was judged, and what newly became known of cameras and machine.
+    """The face that adds to a file: the room, of each pass what was judged, and what is news of cameras and machine.
 
     Args:
         add: takes a row.
@@ -24,6 +24,10 @@ class Rows:
     def __init__(self, add: AddRow) -> None:
         self._add = add
         self._told: dict[str, str] = {}
+
+    def begin(self, room: Room) -> None:
+        """Adds the row of the room."""
+        self._add(room_row(room))
 
     def show(self, done: Pass) -> None:
         """Adds the rows of a pass."""

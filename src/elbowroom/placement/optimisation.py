@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.extras import package
 from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.placement.candidates import Candidate
@@ -18,7 +19,7 @@ from elbowroom.placement.solver.bound import price_bound, share_bound
 from elbowroom.placement.solver.layout import Layout
 from elbowroom.placement.solver.model import Model, build_model
 from elbowroom.placement.solver.run import Course, cheapest, fullest
-from elbowroom.placement.solver.sectors import ortools
+from elbowroom.placement.solver.sectors import CP_SAT
 from elbowroom.placement.verification import Verification, verify
 
 TAKEN_M = 0.1
@@ -166,12 +167,13 @@ def optimise(
         progress: called with what is being done.
 
     Raises:
-        InputError: no candidates, CP-SAT is not installed, or a goal that no choice of the candidates can meet: then
-            the message says where nobody can see, and what share is within reach.
+        PackageError: CP-SAT is not installed.
+        InputError: no candidates, or a goal that no choice of the candidates can meet: then the message says where
+            nobody can see, and what share is within reach.
     """
     begun = time.perf_counter()
     wanted, aim = requirement or Requirement(), goal or Goal()
-    ortools()
+    package(CP_SAT)
     free = free_candidates(candidates, existing)
     if aim.cameras is not None and aim.cameras < len(existing):
         raise InputError(f"placement: {aim.cameras} cameras wanted, {len(existing)} hang there already")

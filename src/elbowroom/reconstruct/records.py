@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry.kernels.bits import plain
 from elbowroom.geometry.kernels.noise import DepthMargin, margin_at
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.kernels.camera import CAMERA
@@ -94,7 +95,7 @@ def _put_margin(record: np.record, camera: DepthCamera, margin: Margin, grid: Vo
         np.meshgrid((0, 1), (0, 1), (0, 1), indexing="ij"), axis=-1
     ).reshape(8, 3)
     reach = float(np.linalg.norm(corners - camera.centre_in_world, axis=1).max()) + SPARE_M
-    reach += float(margin_at.py_func(of_depth, reach))
+    reach += float(plain(margin_at)(of_depth, reach))
     pitch = pitch_of(camera)
     if camera.flying_pixels and pitch < 1.0:
         # the farthest that is told apart, less the pitch that specks are short of it, lies beyond the grid as well

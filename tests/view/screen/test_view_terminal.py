@@ -48,8 +48,8 @@ def a_pass(result: CycleResult) -> Pass:
 
 def shown(width: int, fault: str | None = None, *, terminal: bool = True) -> str:
     console = Console(file=io.StringIO(), width=width, force_terminal=terminal, color_system=None)
-    with TerminalView(WATCHED, console) as view:
-        view.start()
+    with TerminalView(console) as view:
+        view.open(WATCHED)
         view.show(a_pass(a_result(fault)))
     view.end()
     return console.file.getvalue()
@@ -127,7 +127,8 @@ def test_without_a_terminal_there_are_plain_lines_and_a_summary():
 
 def test_plain_lines_come_about_once_a_second():
     console = Console(file=io.StringIO(), width=200, force_terminal=False)
-    with TerminalView(WATCHED, console) as view:
+    with TerminalView(console) as view:
+        view.open(WATCHED)
         for _ in range(50):
             view.show(a_pass(a_result()))
     assert console.file.getvalue().count("long + STOP") == 1
@@ -183,8 +184,8 @@ def test_the_health_line_says_how_cameras_and_machine_are():
 @pytest.mark.parametrize("terminal", [True, False])
 def test_a_stop_of_the_watch_is_shown_with_its_reason_and_stays_in_the_summary(terminal):
     console = Console(file=io.StringIO(), width=140, force_terminal=terminal, color_system=None)
-    with TerminalView(WATCHED, console) as view:
-        view.start()
+    with TerminalView(console) as view:
+        view.open(WATCHED)
         view.show(a_pass(of_health({"cam03": "camera cam03 has turned by 0.9 degrees"})))
     assert "camera cam03 has turned by 0.9 degrees" in console.file.getvalue()
     view.end()

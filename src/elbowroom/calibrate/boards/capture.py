@@ -110,7 +110,8 @@ def sightings(site: Site, on_image: Callable[[int, int], None] = lambda done, of
         on_image: is told how many images of how many are done.
 
     Raises:
-        CalibrationError: no board, no images, OpenCV is not installed, or the board is not seen at all.
+        CalibrationError: no board, no images, or the board is not seen at all.
+        PackageError: OpenCV is not installed.
         FrameError: an image is not what its camera delivers.
     """
     board, poses = board_of(site), images_by_pose(site)

@@ -116,7 +116,7 @@ def solve_extrinsics(
 
     Raises:
         CalibrationError: views that do not fix the poses or do not go together; the message says what to capture.
-        ElbowroomError: OpenCV is not installed.
+        PackageError: OpenCV is not installed.
     """
     named = {camera.name: camera for camera in cameras}
     _require_once(views)

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
-from elbowroom.calibrate.boards.opencv import opencv
 from elbowroom.calibrate.intrinsics.coverage import advice, cells_seen, tilt_deg
 from elbowroom.calibrate.intrinsics.lens_model import PINHOLE, LensModel
 from elbowroom.errors import CalibrationError, CameraError
+from elbowroom.extras import package
 from elbowroom.geometry import DepthCamera
 
 Array = NDArray[np.float64]
@@ -109,7 +109,7 @@ def solve_intrinsics(
 
 def _first_solution(camera: DepthCamera, board: Board, views: Sequence[BoardView]) -> tuple[Array, Array]:
     """Pinhole numbers by OpenCV, shape (4,), and poses as rotation vector and translation, shape (views, 6)."""
-    cv2 = opencv()
+    cv2 = package("cv2")
     k = camera.intrinsics
     matrix = np.array([[k.fx, 0, k.cx], [0, k.fy, k.cy], [0, 0, 1.0]])
     points = [board.corners_in_board[view.corner_ids].astype(np.float32) for view in views]

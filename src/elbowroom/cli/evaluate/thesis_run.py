@@ -69,7 +69,7 @@ def run_parts(
 
     Raises:
         InputError: a folder that cannot be written to, no scheduler at the address.
-        ElbowroomError: an extra is not installed.
+        PackageError: an extra is not installed.
     """
     # at once: a result file that is written into the checkout makes it differ from its commit
     said = meta()

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import ElbowroomError, MachineError
+from elbowroom.errors import MachineError
+from elbowroom.extras import package
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
 from elbowroom.motion import Motion
@@ -57,11 +58,11 @@ class ExactTravel:
         solids: what they may touch, as closed meshes; solids of the machine itself are left out.
 
     Raises:
-        ElbowroomError: coal is not installed.
+        PackageError: coal is not installed.
     """
 
     def __init__(self, machine: Machine, solids: Sequence[Solid]) -> None:
-        self._coal = load_coal()
+        self._coal = package("coal")
         self._machine = machine
         self._links = {name: _Body(self._coal, mesh) for name, mesh in _meshes_of(machine).items()}
         self._solids = [_Obstacle(self._coal, solid) for solid in solids if not solid.is_machine]
@@ -135,21 +136,6 @@ class ExactTravel:
             body.tree, place, obstacle.body.tree, obstacle.place, coal.DistanceRequest(True), result
         )
         return max(0.0, float(distance)), np.array(result.getNearestPoint1())
-
-
-def load_coal() -> Any:
-    """The library of mesh distances.
-
-    Raises:
-        ElbowroomError: it is not installed.
-    """
-    try:
-        import coal
-    except ImportError as error:
-        raise ElbowroomError(
-            f"exact mesh distance needs the package coal ({error}); install 'elbowroom[evaluate]'"
-        ) from error
-    return coal
 
 
 @kept

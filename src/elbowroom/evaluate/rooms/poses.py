@@ -49,7 +49,7 @@ def poses_rows(
         A row of kind "verdict" for each moment and motion.
 
     Raises:
-        ElbowroomError: coal is not installed.
+        PackageError: coal is not installed.
     """
     room = InterventionRoom()
     motions = room_motions(room.machine)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.evaluate.rooms.exact import ExactTravel, load_coal
+from elbowroom.evaluate.rooms.exact import ExactTravel
 from elbowroom.evaluate.rooms.room import Tally
 from elbowroom.evaluate.rooms.scene import room_grid, room_motions
 from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
@@ -18,6 +18,7 @@ from elbowroom.evaluate.tables import table_of
 from elbowroom.evaluate.thesis.fig3 import fig3_picture
 from elbowroom.evaluate.thesis.part import Part, about
 from elbowroom.evaluate.thesis.thesis import HEIGHTS_M, c_arm, sensor_cameras
+from elbowroom.extras import package
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.simulate import Moment, Solid, render, setup, true_occupancy
@@ -38,9 +39,9 @@ def tasks(settings: Settings) -> list[Task]:
     """Numbers of cameras in two setups, sizes of objects by sensor, and the figure.
 
     Raises:
-        ElbowroomError: coal is not installed.
+        PackageError: coal is not installed.
     """
-    load_coal()
+    package("coal")
     edge = settings.voxel_sizes_m[0] if settings.voxel_sizes_m else VOXEL_M
     result = [
         Task("more", f"cameras-setup{number}", judge_counts, {"number": number, "voxel_size_m": edge})

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.evaluate.due import Due, figure_of, where
-from elbowroom.evaluate.rooms.exact import Contact, load_coal
+from elbowroom.evaluate.rooms.exact import Contact
 from elbowroom.evaluate.rooms.scene import DECIMALS, SAME, WELL_KNOWN, lean, only
 from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.tables import table_of
@@ -40,6 +40,7 @@ from elbowroom.evaluate.thesis.scale_model import (
     model_solids,
 )
 from elbowroom.evaluate.thesis.way_view import WayView
+from elbowroom.extras import package
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.motion import Motion, Verdict, blocks_in_reach, check_motions
 from elbowroom.reconstruct import FreeSpace, reconstruct
@@ -94,9 +95,9 @@ def tasks(settings: Settings) -> list[Task]:
     """One for each pose.
 
     Raises:
-        ElbowroomError: coal is not installed.
+        PackageError: coal is not installed.
     """
-    load_coal()
+    package("coal")
     edges = [FACTOR * edge for edge in settings.voxel_sizes_m or ()] or list(VOXEL_SIZES_M)
     return [
         Task("scale", f"pose{pose}", judge_pose, {"pose": pose, "voxel_sizes_m": edges, "picture": pose == 0})

@@ -89,7 +89,7 @@ def scale_budget_rows(tell: Tell, asked: Sequence[Group], *, jobs: int = 1) -> I
         Rows of voxel_size_m, judged, motions, in_view, short_mm: by cause the median and the worst [mm].
 
     Raises:
-        ElbowroomError: coal is not installed.
+        PackageError: coal is not installed.
     """
     for group in asked:
         poses = range(group.first, group.first + group.count)

@@ -17,6 +17,11 @@ def uncounted(**options: Any) -> Any:
     return njit(nogil=True, _nrt=False, **options)  # type: ignore[call-overload]
 
 
+def plain(kernel: Any) -> Any:
+    """The Python function of a kernel, which need not be compiled first; with the JIT off it is one already."""
+    return getattr(kernel, "py_func", kernel)
+
+
 def lowest_bit(word: np.uint64) -> int:
     """Which is the lowest bit of a word that is set; the word must not be 0."""
     return (int(word) & -int(word)).bit_length() - 1

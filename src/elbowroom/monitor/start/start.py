@@ -27,7 +27,7 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
     machine, motions = room.machine_and_motions()
     cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
     pace = Pace().wait if isinstance(room.source, Recorded) else None
-    loop = Loop(room.source, checks_of(room, begin), cycle, pace)
+    loop = Loop(room, checks_of(room, begin), cycle, pace)
     _warm_up(loop, begin)
     return loop
 
@@ -36,7 +36,7 @@ def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
     """Compiles all that the loop uses, by doing it once; also where something is in the way."""
     cycle = loop.cycle
     begin("first frames")
-    snapshot = next(iter(loop.source), None)
+    snapshot = next(iter(loop.room.source), None)
     if snapshot is None:
         return
     begin("motions that are blocked")

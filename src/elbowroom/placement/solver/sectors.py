@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import InputError
+from elbowroom.extras import package
 from elbowroom.placement.solver.model import Model
 
+CP_SAT = "ortools.sat.python.cp_model"
 ROTATIONS = 12
 LEAST_WIDTH_DEG = 2.0
 """Narrower sectors hold hardly any view: then the search starts without them."""
@@ -23,21 +24,6 @@ class SectorChoice(NamedTuple):
 
     chosen: list[int]
     bound: float
-
-
-def ortools() -> object:
-    """CP-SAT.
-
-    Raises:
-        InputError: it is not installed.
-    """
-    try:
-        from ortools.sat.python import cp_model
-    except ImportError:
-        raise InputError(
-            "placement optimise: needs CP-SAT, which is not installed; pip install 'elbowroom[placement]'"
-        ) from None
-    return cp_model
 
 
 def sector_layout(
@@ -64,13 +50,13 @@ def sector_layout(
         The choice; None if none was found in time, or the sectors are too narrow.
 
     Raises:
-        InputError: CP-SAT is not installed.
+        PackageError: CP-SAT is not installed.
     """
-    cp = ortools()
+    cp = package(CP_SAT)
     inside = _inside(model)
     if inside is None:
         return None
-    problem = cp.CpModel()  # type: ignore[attr-defined]
+    problem = cp.CpModel()
     chosen = _choices(model, problem)
     valid = _valid_points(model, inside, problem, chosen)
     # CP-SAT counts in whole numbers: prices in thousandths of the greatest
@@ -90,11 +76,11 @@ def sector_layout(
     for c in range(model.candidates):
         if hint:
             problem.add_hint(chosen[c], c in set(hint))
-    solver = cp.CpSolver()  # type: ignore[attr-defined]
+    solver = cp.CpSolver()
     solver.parameters.max_time_in_seconds = seconds
     solver.parameters.num_workers = threads
     solver.parameters.random_seed = seed
-    if solver.solve(problem) not in (cp.OPTIMAL, cp.FEASIBLE):  # type: ignore[attr-defined]
+    if solver.solve(problem) not in (cp.OPTIMAL, cp.FEASIBLE):
         return None
     members = [c for c in range(model.candidates) if solver.value(chosen[c])]
     bound = solver.best_objective_bound

@@ -15,7 +15,6 @@ class LastPictures:
     """Draws sections of the last pass when the run ends. A pass looks only where motions can go; pictures show all.
 
     Args:
-        room: of the run.
         out: folder of the pictures, made if it is not there.
         console: told how many there are.
 
@@ -23,10 +22,15 @@ class LastPictures:
         InputError: the folder cannot be made.
     """
 
-    def __init__(self, room: Room, out: Path, console: Console) -> None:
-        self._room, self._out, self._console = room, folder(out), console
+    def __init__(self, out: Path, console: Console) -> None:
+        self._out, self._console = folder(out), console
+        self._room: Room | None = None
         self._last: Snapshot | None = None
         self._failed = False
+
+    def begin(self, room: Room) -> None:
+        """Keeps the room, to be drawn at the end."""
+        self._room = room
 
     def show(self, done: Pass) -> None:
         """Keeps the snapshot; the one before it is let go."""
@@ -34,15 +38,15 @@ class LastPictures:
 
     def end(self) -> None:
         """Reconstructs all of the room once more, and draws it."""
-        if self._last is None:
+        room, last = self._room, self._last
+        if room is None or last is None:
             return
         if self._failed:
             self._console.print(
                 "no pictures: the last cycle failed and has no free space", style="red", highlight=False
             )
             return
-        room, joints = self._room, self._last.joints
-        paths = save_sections(room.space_of(self._last), self._out, room.machine, joints, room.cameras)
+        paths = save_sections(room.space_of(last), self._out, room.machine, last.joints, room.cameras)
         self._console.print(
             f"{len(paths)} pictures of the last cycle in {self._out}", highlight=False, soft_wrap=True
         )

@@ -13,8 +13,9 @@ from rich.text import Text
 
 from elbowroom.monitor import CycleResult, Pass
 from elbowroom.motion import Cause, Level, Motion, Verdict
+from elbowroom.sources import Room
 from elbowroom.view.screen.run_log import RunLog
-from elbowroom.view.screen.watched import Watched
+from elbowroom.view.screen.watched import Watched, watched_of
 from elbowroom.view.screen.words import (
     CAUSE_WORDS,
     LEVEL_WORDS,
@@ -51,13 +52,14 @@ class TerminalView:
     As a context, it stops the screen at its end.
 
     Args:
-        watched: what the run watches.
         console: where to show it; None: standard output.
     """
 
-    def __init__(self, watched: Watched, console: Console | None = None) -> None:
-        self.watched = watched
-        self.log = RunLog(watched.source, watched.unchecked_links)
+    watched: Watched
+    """What the run watches; there from its beginning on."""
+
+    def __init__(self, console: Console | None = None) -> None:
+        self.log = RunLog()
         self.console = console or Console()
         # a screen of its own: what the keyboard echoes there does not stay behind
         live = (
@@ -75,9 +77,13 @@ class TerminalView:
     ) -> None:
         self.stop()
 
-    def start(self) -> None:
-        """Begins the screen and the time that rates are counted over."""
-        self.log.start_s = time.perf_counter()
+    def begin(self, room: Room) -> None:
+        """Begins the screen, and the time that rates are counted over."""
+        self.open(watched_of(room))
+
+    def open(self, watched: Watched) -> None:
+        """As `begin`, by what its head says."""
+        self.watched, self.log = watched, RunLog(watched.source, watched.unchecked_links)
         if self._live is not None:
             self._live.start()
         else:

@@ -110,12 +110,7 @@ class CameraWatch:
 
     def _judge(self, frame: DepthFrame) -> CameraHealth:
         """What one frame says by itself."""
-        image, name = frame.depth_m, self.camera.name
-        if image.shape != (self.reference.height, self.reference.width):
-            raise InputError(
-                f"watch: frame of {name} is {image.shape[1]} x {image.shape[0]} pixels, its reference "
-                f"{self.reference.width} x {self.reference.height}"
-            )
+        self._require_size(frame)
         (within, nearer, farther, lost), fit = self._listen(frame, self._memory)
         total = len(self.reference.pixel)
         fits = max(fit.support.fits_still, fit.support.fits_moved) * within
@@ -134,7 +129,15 @@ class CameraWatch:
             moved = convinces(fit.support) and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
             still = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.STILL
             condition = Condition.MOVED if moved else still
-        return CameraHealth(name, condition, shift, seen, hidden)
+        return CameraHealth(self.camera.name, condition, shift, seen, hidden)
+
+    def _require_size(self, frame: DepthFrame) -> None:
+        height, width = frame.depth_m.shape
+        if (height, width) != (self.reference.height, self.reference.width):
+            raise InputError(
+                f"watch: frame of {self.camera.name} is {width} x {height} pixels, its reference "
+                f"{self.reference.width} x {self.reference.height}"
+            )
 
     def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[Counts, Fit]:
         """Adds a frame to a memory: numbers of spots, and the motion that fits them."""
