@@ -7,7 +7,7 @@ import pytest
 
 from elbowroom.files import kept_arrays as module
 from elbowroom.files.kept_arrays import cache_folder, kept_arrays
-from elbowroom.machine.samples import BodySamples, _sample, body_samples
+from elbowroom.machine.samples import BodySamples, body_samples
 from reference import motion_machines as machines
 
 LARGE = {"a": np.arange(30_000, dtype=np.int64), "b": np.ones((3, 5), dtype=np.float32)}
@@ -17,11 +17,6 @@ LARGE = {"a": np.arange(30_000, dtype=np.int64), "b": np.ones((3, 5), dtype=np.f
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("ELBOWROOM_CACHE", str(tmp_path / "kept"))
     return tmp_path / "kept"
-
-
-@pytest.fixture
-def arm(tmp_path):
-    return machines.slider_and_arm(tmp_path)
 
 
 def counting(arrays):
@@ -97,12 +92,12 @@ def test_what_was_written_first_goes_first(folder, monkeypatch):
     assert sorted(file.name for file in folder.iterdir()) == ["large2.npz", "large3.npz"]
 
 
-def test_samples_of_a_machine_are_the_same_made_or_read_and_each_size_has_its_own(folder, arm):
-    sizes = (0.02, 0.021)
-    made = [body_samples(arm, size, unchecked=True) for size in sizes]
+def test_samples_of_a_machine_are_the_same_made_or_read_and_each_size_has_its_own(folder, tmp_path):
+    first, again = (machines.slider_and_arm(tmp_path) for _ in range(2))
+    made = [body_samples(first, size) for size in (0.02, 0.021)]
     assert len(list(folder.iterdir())) == 2
     for samples in made:
-        read = _sample(arm, samples.voxel_size_m, False)
+        read = body_samples(again, samples.voxel_size_m)
         assert read is not samples
         for name in BodySamples.__slots__:
             if name != "__weakref__":

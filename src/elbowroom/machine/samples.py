@@ -135,8 +135,9 @@ def _name_of(links: Sequence[Link], rows: Sequence[int], voxel_size_m: float) ->
 @cache
 def _making() -> bytes:
     """What samples are made by: this file, its kernels, and what compiles and runs them."""
-    made_by = f"{numba.__version__} {np.__version__} {llvmlite.binding.get_host_cpu_name()}".encode()
-    return b"".join([made_by, *(Path(file).read_bytes() for file in (__file__, kernels.__file__))])
+    cpu, plain = llvmlite.binding.get_host_cpu_name(), numba.config.DISABLE_JIT  # type: ignore[attr-defined]
+    made_by = f"{numba.__version__} {np.__version__} {cpu} {plain}"
+    return b"".join([made_by.encode(), *(Path(file).read_bytes() for file in (__file__, kernels.__file__))])
 
 
 def _arrays(machine: Machine, rows: Sequence[int], voxel_size_m: float, cover_m: float) -> Arrays:
