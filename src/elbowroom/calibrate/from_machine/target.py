@@ -13,8 +13,8 @@ from elbowroom.calibrate.from_machine.start import start
 from elbowroom.calibrate.from_machine.surface_sums import SurfaceSums
 from elbowroom.calibrate.from_machine.verdict import check_camera, notes_of
 from elbowroom.calibrate.from_machine.views import MachineViews, machine_views
-from elbowroom.calibrate.pages.surface_picture import SurfacePicture
 from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
+from elbowroom.calibrate.result.surface_picture import SurfacePicture
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.geometry.parallel import spread

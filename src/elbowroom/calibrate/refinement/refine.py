@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.pages.surface_picture import SurfacePicture
 from elbowroom.calibrate.refinement.agreement import Agreement, agreement, seen_from
 from elbowroom.calibrate.refinement.kernels.overlap import Overlap
 from elbowroom.calibrate.refinement.overlap import PairSums, Surfaces, pair_sums, pairs_of, surfaces
 from elbowroom.calibrate.refinement.step import Before, equations, step
 from elbowroom.calibrate.refinement.verdict import FEWEST_COMMON, check_refined, untouched_notes
 from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
+from elbowroom.calibrate.result.surface_picture import SurfacePicture
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import DepthFrame, Snapshot
