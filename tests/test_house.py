@@ -34,7 +34,6 @@ def test_functions_take_few_parameters(today: House) -> None:
     assert max(counts) <= house.MOST_PARAMETERS, told(figure, today.many_parameters())
 
 
-@being_moved
 def test_functions_fit_on_a_screen(today: House) -> None:
     counts = today.code_lines()
     figure = f"code lines: {house.above_nine_tenths(counts, house.DUE_LINES)}; most {max(counts)}"
