@@ -100,12 +100,7 @@ def open_room(
             raise InputError(f"joints: {site.path} names no machine; leave them out")
         machine.checked(joints)
     made = _cameras(site, cameras, resolution)
-    if site.simulated is not None:
-        source: Source = _simulated(site, made, joints, knocks)
-    elif knocks:
-        raise InputError(f"knocks: for simulated rooms, and {site.path} is none; leave them out")
-    else:
-        source = Recorded(site, joints)
+    source = _source(site, made, joints, knocks)
     return Room(site, grid, made, machine, site.terms(rule, detail), source)
 
 
@@ -129,17 +124,20 @@ def _cameras(site: Site, count: int | None, resolution: tuple[int, int] | None) 
     return wall_cameras(**settings)
 
 
-def _simulated(
+def _source(
     site: Site,
     cameras: tuple[DepthCamera, ...],
     joints: Mapping[str, float] | None,
     knocks: Sequence[str],
 ) -> Source:
-    """The simulated room as a source; the simulator is imported for it alone."""
+    """The recording, or the simulated room; the simulator is imported for it alone."""
+    if site.simulated is None:
+        if knocks:
+            raise InputError(f"knocks: for simulated rooms, and {site.path} is none; leave them out")
+        return Recorded(site, joints)
     from elbowroom.simulate.knock import Knock, require_known
     from elbowroom.sources.simulated import Simulated
 
-    assert site.simulated is not None
     machine, given = site.machine(), tuple(Knock.parse(text) for text in knocks)
     require_known(given, cameras, machine.joint_names if machine else ())
     return Simulated(cameras, machine, joints, site.simulated.seed, given)

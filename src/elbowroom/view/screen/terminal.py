@@ -131,13 +131,7 @@ class TerminalView:
             Text(),
             Text(health_text(result.health), "dim"),
         ]
-        if result.health is not None:
-            lines += [
-                Text(f" Stop: {reason}. Stays until the monitor is started again. ", STYLES[Level.STOP])
-                for reason in result.health.stops.values()
-            ]
-        if result.fault is not None:
-            lines.append(Text(f" Stop, since the cycle failed: {result.fault} ", STYLES[Level.STOP]))
+        lines += [Text(f" {line} ", STYLES[Level.STOP]) for line in _stops(result)]
         if self.watched.unchecked_links:
             lines.append(
                 Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
@@ -206,6 +200,13 @@ class TerminalView:
             Text("joint limit" if at_limit else CAUSE_WORDS[verdict.cause]),
             Text(place_text(verdict), "dim"),
         ]
+
+
+def _stops(result: CycleResult) -> list[str]:
+    """Why every motion is stop, a line each."""
+    found = () if result.health is None else result.health.stops.values()
+    lines = [f"Stop: {reason}. Stays until the monitor is started again." for reason in found]
+    return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
 
 
 def _looked_at(verdict: Verdict) -> float:

@@ -103,31 +103,7 @@ class Commissioning:
             raise CalibrationError(
                 f"commission: camera {camera.name} gave {count} frames, at least 5 are needed; is it connected?"
             )
-        depth, scatter = _still(self._stacks[camera.name][:count])
-        rays = pixel_rays(camera)
-        x, y = rays.x.astype(np.float64), rays.y.astype(np.float64)
-        per_planar = np.sqrt(1 + x * x + y * y) if camera.depth_kind == "radial" else np.ones_like(x)
-        found = flat_spots(depth / per_planar, x, y, 1.25 * scatter / np.sqrt(count))
-        chosen = _spread_out(found.flat, found.normal)
-        if len(chosen) < LEAST_SPOTS:
-            raise CalibrationError(
-                f"commission: camera {camera.name} shows {len(chosen)} flat spots that stood still, at least "
-                f"{LEAST_SPOTS} are needed; clear its view of floor and walls, or take more frames"
-            )
-        at = np.unravel_index(chosen, depth.shape)
-        # the median of the frames at the very pixel carries its noise; the plane about it averages that out
-        return CameraReference(
-            camera=camera.name,
-            width=camera.width,
-            height=camera.height,
-            lens=lens_of(camera),
-            radial=camera.depth_kind == "radial",
-            pixel=chosen,
-            depth_m=(found.planar_m * per_planar)[at],
-            sigma_m=scatter[at],
-            ray=np.column_stack([x[at], y[at]]),
-            normal=found.normal[at],
-        )
+        return _reference(camera, self._stacks[camera.name][:count])
 
     def references(self) -> tuple[CameraReference, ...]:
         """Those of all cameras, in their order.
@@ -136,6 +112,35 @@ class Commissioning:
             CalibrationError: as `reference_of`.
         """
         return tuple(self.reference_of(camera) for camera in self.cameras)
+
+
+def _reference(camera: DepthCamera, stack: NDArray[np.uint16]) -> CameraReference:
+    """What stood still and is flat in some frames of a camera."""
+    depth, scatter = _still(stack)
+    rays = pixel_rays(camera)
+    x, y = rays.x.astype(np.float64), rays.y.astype(np.float64)
+    per_planar = np.sqrt(1 + x * x + y * y) if camera.depth_kind == "radial" else np.ones_like(x)
+    found = flat_spots(depth / per_planar, x, y, 1.25 * scatter / np.sqrt(len(stack)))
+    chosen = _spread_out(found.flat, found.normal)
+    if len(chosen) < LEAST_SPOTS:
+        raise CalibrationError(
+            f"commission: camera {camera.name} shows {len(chosen)} flat spots that stood still, at least "
+            f"{LEAST_SPOTS} are needed; clear its view of floor and walls, or take more frames"
+        )
+    at = np.unravel_index(chosen, depth.shape)
+    # the median of the frames at the very pixel carries its noise; the plane about it averages that out
+    return CameraReference(
+        camera=camera.name,
+        width=camera.width,
+        height=camera.height,
+        lens=lens_of(camera),
+        radial=camera.depth_kind == "radial",
+        pixel=chosen,
+        depth_m=(found.planar_m * per_planar)[at],
+        sigma_m=scatter[at],
+        ray=np.column_stack([x[at], y[at]]),
+        normal=found.normal[at],
+    )
 
 
 def _still(stack: NDArray[np.uint16]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
