@@ -45,7 +45,9 @@ def start_tables(rows: Sequence[Row]) -> list[str]:
             "median ms": of("median_ms", 0, due=start.DUE),
             "99 % ms": of("p99_ms", 0),
             "worst ms": of("max_ms", 0),
+            "processor time, median ms": of("cpu_median_ms", 0),
             "before, median ms": of("before_ms", 0),
+            "before, processor time ms": of("before_cpu_ms", 0),
         },
     )
 

@@ -8,7 +8,8 @@ from elbowroom.cli import run
 from elbowroom.errors import InputError
 from elbowroom.evaluate.speed import start
 
-KEYS = ("import_ms", "values_ms", "first_ms", "second_ms", "to_answer_ms")
+STEPS = ("import", "values", "first", "second", "to_answer")
+KEYS = tuple(f"{step}_ms" for step in STEPS)
 
 
 def test_a_process_answers_and_its_times_add_up():
@@ -30,7 +31,9 @@ def started(monkeypatch):
     def answer(what, tree):
         calls.append((what, tree.name))
         ms = 100.0 if tree == start.HERE else 400.0
-        return dict.fromkeys(KEYS, ms + len(calls) / 100)
+        return dict.fromkeys(
+            [f"{step}{kind}_ms" for step in STEPS for kind in ("", "_cpu")], ms + len(calls) / 100
+        )
 
     monkeypatch.setattr(start, "_started", answer)
     return calls

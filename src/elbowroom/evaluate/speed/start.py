@@ -19,13 +19,13 @@ HERE = Path(__file__).resolve().parents[3]
 SCRIPT = Path(__file__).with_name("start_case.py")
 FIRST, FIRST_WITH_MACHINE = "first call of er.reconstruct", "first call with the C-arm"
 CASES = {
-    "import elbowroom": ("alone", "import_ms"),
-    FIRST: ("alone", "first_ms"),
-    FIRST_WITH_MACHINE: ("machine", "first_ms"),
-    "import to the first answer": ("alone", "to_answer_ms"),
-    "import to the first answer with the C-arm": ("machine", "to_answer_ms"),
-    "second call": ("alone", "second_ms"),
-    "second call with the C-arm": ("machine", "second_ms"),
+    "import elbowroom": ("alone", "import"),
+    FIRST: ("alone", "first"),
+    FIRST_WITH_MACHINE: ("machine", "first"),
+    "import to the first answer": ("alone", "to_answer"),
+    "import to the first answer with the C-arm": ("machine", "to_answer"),
+    "second call": ("alone", "second"),
+    "second call with the C-arm": ("machine", "second"),
 }
 """What is timed: how the script is called, and which of its times it is."""
 SHARE = 3
@@ -51,7 +51,8 @@ def start_rows(rounds: int = 15, against: Path | None = None) -> Iterator[dict[s
         against: folder that holds an earlier package, such as src of another checkout; None: there is none.
 
     Yields:
-        Rows of case, rounds, median_ms, p99_ms, max_ms, before_ms: the other tree's median.
+        Rows of case, rounds, median_ms, p99_ms, max_ms, and cpu_median_ms: processor time; before_ms and
+        before_cpu_ms: the other tree's medians.
 
     Raises:
         InputError: a process failed; its message is the child's last line.
@@ -64,19 +65,22 @@ def start_rows(rounds: int = 15, against: Path | None = None) -> Iterator[dict[s
             if number:
                 found.setdefault((tree, what), []).append(times)
     for case, (what, key) in CASES.items():
-        spent_ms, *before = ([times[key] for times in found[tree, what]] for tree in trees)
+        spent_ms, *before_ms = ([times[f"{key}_ms"] for times in found[tree, what]] for tree in trees)
+        cpu_ms, *before_cpu_ms = ([times[f"{key}_cpu_ms"] for times in found[tree, what]] for tree in trees)
         yield {
             "case": case,
             "rounds": rounds,
             "median_ms": float(np.median(spent_ms)),
             "p99_ms": float(np.percentile(spent_ms, 99)),
             "max_ms": float(np.max(spent_ms)),
-            "before_ms": float(np.median(before[0])) if before else None,
+            "cpu_median_ms": float(np.median(cpu_ms)),
+            "before_ms": float(np.median(before_ms[0])) if before_ms else None,
+            "before_cpu_ms": float(np.median(before_cpu_ms[0])) if before_cpu_ms else None,
         }
 
 
 def _started(what: str, tree: Path) -> dict[str, float]:
-    """Times of one process [ms]."""
+    """Times of one process, and its processor times [ms]."""
     done = subprocess.run(
         [sys.executable, "-P", str(SCRIPT), what],
         capture_output=True,
