@@ -14,6 +14,7 @@ from typing import Any
 
 from elbowroom.evaluate.thesis.due import due_table
 from elbowroom.evaluate.thesis.parts import PARTS
+from elbowroom.evaluate.thesis.scale_budget import budget_table
 from elbowroom.view.report.blocks import Block, Picture, Table, Words
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -122,16 +123,6 @@ def render(results: Path = RESULTS) -> str:
 
 def _budget(content: dict[str, Any]) -> list[str]:
     """Where the scale model's free travel is lost, as `elbowroom evaluate scale-budget` measured it."""
-    names = list(content["rows"][0]["short_mm"])
-    lines = [
-        (
-            f"{1000 * row['voxel_size_m']:g} mm{'' if row['judged'] else ', other poses'}",
-            f"{row['in_view']} of {row['motions']}",
-            *(f"{median:.1f} / {worst:.1f}" for median, worst in row["short_mm"].values()),
-        )
-        for row in content["rows"]
-    ]
-    title = "Ways in view: short by, median / worst [mm], each column with one cause more"
     meta = content["meta"]
     return [
         "What it is lost to: *voxels* that the true objects touch, in an else open space; *view*, up to the first "
@@ -139,7 +130,7 @@ def _budget(content: dict[str, Any]) -> list[str]:
         "*noise*. The cameras are placed for the smallest of these voxels and for the poses that are judged; *other "
         "poses* are drawn in the same way.",
         "",
-        *_lines([Table(title, ("voxel", "ways in view", *names), lines)]),
+        *_lines([budget_table(content["rows"])]),
         f"Measured by `{meta['command']}`; commit {meta['commit']}; {meta['processor']}.",
         "",
     ]

@@ -27,7 +27,6 @@ def told(figure: str, offenders: Sequence[Place]) -> str:
 # figures of the house
 
 
-@being_moved
 def test_functions_take_few_parameters(today: House) -> None:
     counts = today.parameters()
     figure = f"parameters: {house.above_nine_tenths(counts, house.DUE_PARAMETERS)}; most {max(counts)}"
@@ -43,7 +42,6 @@ def test_functions_fit_on_a_screen(today: House) -> None:
     assert max(counts) <= house.MOST_LINES, told(figure, today.long_functions())
 
 
-@being_moved
 def test_calls_name_what_they_pass(today: House) -> None:
     calls = today.positional_calls()
     assert len(calls) <= house.DUE_CALLS, told(f"{len(calls)} calls with nine positions or more", calls)

@@ -8,7 +8,8 @@
     │   ├── MachineError     a URDF, a mesh, a joint that is unknown or out of its limits
     │   ├── SiteError        a site file or a recording's folder
     │   └── CalibrationError a board, a capture, or what was seen in it does not fix a pose
-    └── EvidenceError        evidence that cannot be merged or resolved
+    ├── EvidenceError        evidence that cannot be merged or resolved
+    └── PackageError         an optional package is not installed
 
 `PoseWarning` is a warning, not an error: a pose was a little off a rotation and was brought to the nearest one.
 """
@@ -48,6 +49,10 @@ class CalibrationError(InputError):
 
 class EvidenceError(ElbowroomError):
     """Evidence of unlike grids, of a camera named twice, or of a kind that the rule cannot be decided from."""
+
+
+class PackageError(ElbowroomError):
+    """A package that only some commands need is not installed; the message says how to install it."""
 
 
 class PoseWarning(UserWarning):

@@ -1,57 +1,15 @@
-"""Lenses, small motions, planes of depth points, the graph's parts: each beside something plain."""
+"""Planes of depth points, the graph's parts, pictures: each beside something plain."""
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from elbowroom.calibrate.boards.seen_plane import rays_of, seen_plane
 from elbowroom.calibrate.extrinsics.disagreement import unseen_parts
-from elbowroom.calibrate.lens import directions, project
 from elbowroom.calibrate.pages.pictures import camera_graph, coverage, histogram, reprojection
 from elbowroom.calibrate.result.change import pose_difference
-from elbowroom.errors import CalibrationError
 from elbowroom.evaluate.calibrating.board_views import ring
-from elbowroom.geometry import Intrinsics, invert_rigid
-from elbowroom.geometry.lens import distorted
-from elbowroom.geometry.rigid import cross_matrix, exp, log
-
-LENSES = [
-    Intrinsics(500, 510, 320, 240),
-    Intrinsics(500, 510, 320, 240, (0.1, -0.05, 0.003, -0.002, 0.01)),
-    Intrinsics(500, 510, 320, 240, (0.1, -0.05, 0.003, -0.002, 0.01, 0.02, -0.01, 0.003)),
-]
-
-
-@pytest.mark.parametrize("lens", LENSES, ids=["pinhole", "5", "8"])
-def test_projection_is_that_of_the_rectifier_and_goes_back(lens):
-    points = np.random.default_rng(0).uniform((-0.8, -0.6, 1), (0.8, 0.6, 3), (50, 3))
-    pixels, slopes = project(lens, points)
-    x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
-    np.testing.assert_allclose(pixels, np.stack(distorted(lens, x, y), axis=1), atol=1e-9)
-    np.testing.assert_allclose(directions(lens, pixels), np.stack([x, y], axis=1), atol=1e-9)
-    for axis in range(3):
-        step = np.eye(3)[axis] * 1e-6
-        plain = (project(lens, points + step)[0] - project(lens, points - step)[0]) / 2e-6
-        np.testing.assert_allclose(slopes[:, :, axis], plain, rtol=1e-4, atol=1e-3)
-
-
-def test_a_lens_that_has_no_direction_for_a_pixel_is_told():
-    with pytest.raises(CalibrationError, match="calibrate intrinsics first"):
-        directions(Intrinsics(500, 500, 320, 240, (-2.0, 0, 0, 0, 0)), np.array([[0.0, 0.0]]))
-
-
-@given(st.lists(st.floats(-1.7, 1.7), min_size=6, max_size=6))
-@settings(max_examples=60, deadline=None)
-def test_log_undoes_exp(motion):
-    motion = np.array(motion)
-    np.testing.assert_allclose(log(exp(motion)), motion, atol=1e-8)
-    np.testing.assert_allclose(exp(motion) @ exp(-motion), np.eye(4), atol=1e-9)
-
-
-def test_cross_matrix_is_the_cross_product():
-    a, b = np.random.default_rng(0).normal(0, 1, (2, 5, 3))
-    np.testing.assert_allclose((cross_matrix(a) @ b[:, :, None])[:, :, 0], np.cross(a, b))
+from elbowroom.geometry import invert_rigid
+from elbowroom.geometry.twist import exp
 
 
 def test_pose_difference_is_that_of_the_motion():

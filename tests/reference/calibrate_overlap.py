@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from elbowroom.geometry.rigid import exp
+from elbowroom.geometry.twist import exp
 
 LITTLE = 1e-6
 

@@ -50,8 +50,8 @@ def test_triangle_touches_the_boxes_that_clipping_leaves_it_in(triangle):
 def test_boxes_below_no_shrinking_are_grown_and_what_is_marked_keeps_its_mark(triangle):
     found = np.zeros(SHAPE, dtype=np.uint16)
     found[::2] = 7
-    kernels.touch_surface(triangle, GRID.lower_m, EDGE, -0.3 * EDGE, found, 300)
-    touched = naive.touched(triangle, GRID.lower_m, EDGE, SHAPE, -0.3 * EDGE)
+    kernels.touch_surface(triangle, GRID.lower_m, EDGE, -0.3137 * EDGE, found, 300)
+    touched = naive.touched(triangle, GRID.lower_m, EDGE, SHAPE, -0.3137 * EDGE)
     assert (found[::2] == 7).all()
     assert (found[1::2] == 300 * touched[1::2]).all()
 

@@ -13,6 +13,9 @@ __all__ = ["Words", "empty", "inside", "lattice", "pack", "place_of", "unpack", 
 
 Words = NDArray[np.uint64]
 
+_CUBES_FIRST = (0, 3, 6, 1, 4, 7, 2, 5, 8)
+"""Per axis cube, block, voxel -> cubes, blocks, voxels; the same order undoes itself."""
+
 
 def lattice(grid: VoxelGrid) -> Lattice:
     """The grid as kernels take it."""
@@ -49,8 +52,8 @@ def pack(mask: NDArray[np.bool_], grid: VoxelGrid) -> Words:
     cells = lattice(grid)
     padded = np.zeros((cells.cubes_x * 16, cells.cubes_y * 16, cells.cubes_z * 16), dtype=np.bool_)
     padded[: grid.shape[0], : grid.shape[1], : grid.shape[2]] = mask
-    blocks = padded.reshape(cells.cubes_x, 4, 4, cells.cubes_y, 4, 4, cells.cubes_z, 4, 4)
-    ordered = blocks.transpose(0, 3, 6, 1, 4, 7, 2, 5, 8).reshape(-1)
+    blocks = padded.reshape((cells.cubes_x, 4, 4, cells.cubes_y, 4, 4, cells.cubes_z, 4, 4))
+    ordered = blocks.transpose(_CUBES_FIRST).reshape(-1)
     return np.packbits(ordered, bitorder="little").view(np.uint64)
 
 
@@ -58,8 +61,8 @@ def unpack(words: Words, grid: VoxelGrid) -> NDArray[np.bool_]:
     """The bool array of the grid's shape that a plane stands for."""
     cells = lattice(grid)
     flat = np.unpackbits(words.view(np.uint8), bitorder="little").view(np.bool_)
-    blocks = flat.reshape(cells.cubes_x, cells.cubes_y, cells.cubes_z, 4, 4, 4, 4, 4, 4)
-    padded = blocks.transpose(0, 3, 6, 1, 4, 7, 2, 5, 8).reshape(
+    blocks = flat.reshape((cells.cubes_x, cells.cubes_y, cells.cubes_z, 4, 4, 4, 4, 4, 4))
+    padded = blocks.transpose(_CUBES_FIRST).reshape(
         cells.cubes_x * 16, cells.cubes_y * 16, cells.cubes_z * 16
     )
     return np.ascontiguousarray(padded[: grid.shape[0], : grid.shape[1], : grid.shape[2]])

@@ -4,11 +4,51 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from elbowroom.geometry.rigid import cross_matrix, exp, log
 from elbowroom.geometry.transforms import invert_rigid
 
 Array = NDArray[Any]
+CAMERA_MOTIONS = (
+    "tilting up and down",
+    "turning left and right",
+    "rolling about its line of sight",
+    "moving sideways",
+    "moving up and down",
+    "moving along its line of sight",
+)
+"""Of the six numbers in a camera's frame, x right, y down, z forward: what the camera does."""
+
+
+def cross_matrix(vectors: Array) -> Array:
+    """[v]x, so that [v]x w = v × w; shape (..., 3) to (..., 3, 3)."""
+    v = np.asarray(vectors, dtype=np.float64)
+    result = np.zeros((*v.shape, 3))
+    result[..., 2, 1], result[..., 0, 2], result[..., 1, 0] = v[..., 0], v[..., 1], v[..., 2]
+    result[..., 1, 2], result[..., 2, 0], result[..., 0, 1] = -v[..., 0], -v[..., 1], -v[..., 2]
+    return result
+
+
+def exp(twist: Array) -> Array:
+    """The rigid transform of a twist.
+
+    Args:
+        twist: rotation vector [rad], then translation [m], shape (6,).
+
+    Returns:
+        shape (4, 4).
+    """
+    turn, way = twist[:3], twist[3:]
+    result = np.eye(4)
+    result[:3, :3] = Rotation.from_rotvec(turn).as_matrix()
+    result[:3, 3] = _left(turn) @ way
+    return result
+
+
+def log(b_from_a: Array) -> Array:
+    """The twist of a rigid transform, shape (4, 4) to (6,); the inverse of `exp`."""
+    turn = Rotation.from_matrix(b_from_a[:3, :3]).as_rotvec()
+    return np.concatenate([turn, np.linalg.solve(_left(turn), b_from_a[:3, 3])])
 
 
 def moved(to_from_frame: Array, twist: Array) -> Array:
@@ -38,3 +78,13 @@ def adjoint(to_from_frame: Array) -> Array:
 def sizes(twist: Array) -> tuple[float, float]:
     """How far a twist moves and turns [m, rad]."""
     return float(np.linalg.norm(twist[3:])), float(np.linalg.norm(twist[:3]))
+
+
+def _left(turn: Array) -> Array:
+    """The left Jacobian of rotations (Barfoot: State Estimation for Robotics, 2017, eq. 7.37)."""
+    angle, k = float(np.linalg.norm(turn)), cross_matrix(turn)
+    if angle < 1e-6:
+        return np.asarray(np.eye(3) + k / 2 + k @ k / 6)
+    return np.asarray(
+        np.eye(3) + (1 - np.cos(angle)) / angle**2 * k + (angle - np.sin(angle)) / angle**3 * k @ k
+    )

@@ -1,20 +1,16 @@
 """The machine as a depth camera would see it if nothing else were there."""
 
-from weakref import WeakKeyDictionary
-
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError
 from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.kept import kept
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.machine.buffers import zero_image
-from elbowroom.machine.kernels.draw import Drawn, Mesh, View, draw, to_kind
+from elbowroom.machine.kernels.draw import Canvas, Mesh, View, draw, to_kind
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Joints, Machine
-
-_meshes: WeakKeyDictionary[Machine, Mesh] = WeakKeyDictionary()
 
 
 def rasterise(machine: Machine, camera: DepthCamera, joints: Joints) -> NDArray[np.float32]:
@@ -35,8 +31,8 @@ def rasterise(machine: Machine, camera: DepthCamera, joints: Joints) -> NDArray[
     view = view_of(camera)
     world_from_link = machine.world_from_link_array(np.atleast_2d(machine.positions(joints)))[0]
     drawn = canvas(camera.height, camera.width)
-    draw(mesh_of(machine), camera.camera_from_world @ world_from_link, view, *drawn)
-    to_kind(view, *drawn)
+    draw(mesh_of(machine), camera.camera_from_world @ world_from_link, view, drawn)
+    to_kind(view, drawn)
     inverse: NDArray[np.float32] = drawn.inverse
     with np.errstate(divide="ignore"):
         return np.float32(1.0) / inverse
@@ -69,45 +65,49 @@ def view_of(camera: DepthCamera) -> View:
     )
 
 
-def canvas(height: int, width: int, inverse: NDArray[np.float32] | None = None) -> Drawn:
-    """An empty image of inverse depth, nothing drawn in any of its rows.
+def canvas(height: int, width: int, inverse: NDArray[np.float32] | None = None) -> Canvas:
+    """An empty image of inverse depth, in which no column of any row is drawn.
 
     Args:
         height, width: of the image [px].
-        inverse: zeros of this shape to draw on; None: new ones.
+        inverse: its memory, all zeros; None: new.
     """
-    empty = zero_image(height, width) if inverse is None else inverse
-    return Drawn(empty, np.full(height, width, dtype=np.int64), np.full(height, -1, dtype=np.int64))
+    return Canvas(
+        zero_image(height, width) if inverse is None else inverse,
+        np.full(height, width, dtype=np.int64),
+        np.full(height, -1, dtype=np.int64),
+    )
 
 
+@kept
 def mesh_of(machine: Machine) -> Mesh:
     """All triangles of the machine as kernels take them; made once."""
-    if machine not in _meshes:
-        links = machine.links
-        counts = np.cumsum([0] + [len(link.vertices) for link in links])
-        centre = np.zeros((len(links), 3))
-        radius = np.zeros(len(links))
-        for row, link in enumerate(links):
-            if link.has_geometry:
-                centre[row] = (link.vertices.min(axis=0) + link.vertices.max(axis=0)) / 2
-                radius[row] = np.linalg.norm(link.vertices - centre[row], axis=1).max()
-        faces = [link.faces.astype(np.int64) + first for link, first in zip(links, counts, strict=False)]
-        _meshes[machine] = Mesh(
-            vertices=np.concatenate([link.vertices for link in links]),
-            faces=np.concatenate(faces),
-            vertex_start=counts,
-            face_start=np.cumsum([0] + [len(link.faces) for link in links]),
-            centre=centre,
-            radius=radius,
-            closed=np.array([_is_closed(link) for link in links]),
-        )
-    return _meshes[machine]
+    links = machine.links
+    counts = np.cumsum([0] + [len(link.vertices) for link in links])
+    centre = np.zeros((len(links), 3))
+    radius = np.zeros(len(links))
+    for row, link in enumerate(links):
+        if link.has_geometry:
+            centre[row] = (link.vertices.min(axis=0) + link.vertices.max(axis=0)) / 2
+            radius[row] = np.linalg.norm(link.vertices - centre[row], axis=1).max()
+    faces = [link.faces.astype(np.int64) + first for link, first in zip(links, counts, strict=False)]
+    return Mesh(
+        vertices=np.concatenate([link.vertices for link in links]),
+        faces=np.concatenate(faces),
+        vertex_start=counts,
+        face_start=np.cumsum([0] + [len(link.faces) for link in links]),
+        centre=centre,
+        radius=radius,
+        closed=np.array([_is_closed(link) for link in links]),
+    )
 
 
 def _is_closed(link: Link) -> bool:
     """Whether the link's surface is made of closed shells whose faces turn outwards."""
     if not link.has_geometry:
         return False
+    import trimesh  # slow to load, and there where the links were read
+
     mesh = trimesh.Trimesh(link.vertices, link.faces, process=True)
     if not (mesh.is_watertight and mesh.is_winding_consistent):
         return False

@@ -1,19 +1,15 @@
 """A machine's surface as the sweep takes it: samples to look with, triangles to decide."""
 
-from threading import Lock
-from weakref import WeakKeyDictionary
-
 import numpy as np
 
+from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
 from elbowroom.machine.samples import ROUNDING_M, BodySamples, body_samples
 from elbowroom.motion.kernels.sweep import Skin
 from elbowroom.motion.kernels.triangles import list_patches
 
-_kept: WeakKeyDictionary[Machine, dict[float, Skin]] = WeakKeyDictionary()
-_keeping = Lock()
 
-
+@kept
 def skin_of(machine: Machine, voxel_size_m: float) -> Skin:
     """The skin of a machine's checked links for voxels of a size; made once per machine and size, then kept.
 
@@ -24,11 +20,7 @@ def skin_of(machine: Machine, voxel_size_m: float) -> Skin:
     Raises:
         MachineError: as `body_samples`.
     """
-    with _keeping:
-        kept = _kept.setdefault(machine, {})
-        if voxel_size_m not in kept:
-            kept[voxel_size_m] = _skin(machine, body_samples(machine, voxel_size_m))
-        return kept[voxel_size_m]
+    return _skin(machine, body_samples(machine, voxel_size_m))
 
 
 def _skin(machine: Machine, samples: BodySamples) -> Skin:
@@ -61,7 +53,13 @@ def _list(
     written = 0
     for link in np.unique(samples.cluster_link):
         first, last = np.searchsorted(samples.cluster_link, [link, link + 1])
-        place, reach = near[written:] if fill else near, samples.cover_m + ROUNDING_M
         written += list_patches(
-            samples.clusters, reach, first, last, triangles, stops[link : link + 2], place, fill
+            samples.clusters,
+            samples.cover_m + ROUNDING_M,
+            first,
+            last,
+            triangles,
+            stops[link : link + 2],
+            near[written:] if fill else near,
+            fill,
         )

@@ -85,12 +85,12 @@ def carve_images(
     layout = layout_of(grid, images.cameras, terms.margin)
     asked = layout.inside.copy() if focus is None else np.where(focus, layout.inside, np.uint64(0))
     answers = _no_answers(asked, terms.detail, complete)
-    cells, worth = bits.lattice(grid), np.flatnonzero(asked.reshape(-1, 64).any(axis=1))
+    lattice, worth = bits.lattice(grid), np.flatnonzero(asked.reshape(-1, 64).any(axis=1))
     kernel = carve_points if terms.detail == "point" else carve_cubes
     views, buffers = fill(layout, images, explained.model_depth)
     try:
         spread(
-            lambda share: kernel(np.ascontiguousarray(worth[share::SHARES]), cells, views, answers),
+            lambda share: kernel(np.ascontiguousarray(worth[share::SHARES]), lattice, views, answers),
             range(min(SHARES, len(worth))),
         )
     finally:

@@ -1,10 +1,10 @@
 """The machine's links as solids of the room, and the smooth course that its joints take."""
 
 from collections.abc import Mapping
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
 from elbowroom.simulate.solid import Mesh, Solid
 
@@ -64,12 +64,6 @@ def _limits(machine: Machine, name: str) -> tuple[float, float]:
     return max(joint.lower, -np.pi), min(joint.upper, np.pi)
 
 
-_meshes: WeakKeyDictionary[Machine, dict[str, Mesh]] = WeakKeyDictionary()
-
-
+@kept
 def _meshes_of(machine: Machine) -> dict[str, Mesh]:
-    if machine not in _meshes:
-        _meshes[machine] = {
-            link.name: Mesh(link.vertices, link.faces) for link in machine.links if link.has_geometry
-        }
-    return _meshes[machine]
+    return {link.name: Mesh(link.vertices, link.faces) for link in machine.links if link.has_geometry}

@@ -6,7 +6,6 @@ turned instead. What never moves is cast once for each camera.
 
 from dataclasses import dataclass
 from functools import lru_cache
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
@@ -14,6 +13,7 @@ from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.kept import kept
 from elbowroom.sensing.rays import PixelRays, pixel_rays
 from elbowroom.simulate.kernels import sensor as kernels
 from elbowroom.simulate.solid import Mesh, Moment, Solid
@@ -84,13 +84,8 @@ def _cast(camera_from_world: NDArray[np.float64], solid: Solid, image: RangeImag
         kernels.keep_nearer(hits, pixels, solid.is_dark, image.depth, image.dark)
 
 
-_scenes: WeakKeyDictionary[Mesh, EmbreeScene] = WeakKeyDictionary()
-
-
+@kept
 def _scene_of(mesh: Mesh) -> EmbreeScene:
-    scene = _scenes.get(mesh)
-    if scene is None:
-        scene = EmbreeScene()
-        TriangleMesh(scene, mesh.vertices.astype(np.float32), mesh.faces)
-        _scenes[mesh] = scene
+    scene = EmbreeScene()
+    TriangleMesh(scene, mesh.vertices.astype(np.float32), mesh.faces)
     return scene

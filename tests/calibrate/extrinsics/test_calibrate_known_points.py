@@ -9,7 +9,6 @@ from scipy.stats import chi2
 from elbowroom.calibrate.extrinsics import BoardAnchor, PointsAnchor, SeenPoint, solve_extrinsics
 from elbowroom.calibrate.extrinsics.known_points import KnownPoints
 from elbowroom.calibrate.extrinsics.unknowns import Index, State
-from elbowroom.calibrate.lens import project
 from elbowroom.errors import CalibrationError
 from elbowroom.evaluate.calibrating.board_views import (
     BOARD,
@@ -21,7 +20,8 @@ from elbowroom.evaluate.calibrating.board_views import (
     views_of,
 )
 from elbowroom.geometry import invert_rigid
-from elbowroom.geometry.rigid import exp, log
+from elbowroom.geometry.lens import project
+from elbowroom.geometry.twist import exp, log
 from elbowroom.sensing import NOISE_PRESETS
 
 SIGMA_M = 0.002

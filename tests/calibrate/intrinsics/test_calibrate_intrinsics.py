@@ -6,9 +6,9 @@ from scipy.spatial.transform import Rotation
 
 from elbowroom.calibrate import Board, BoardView
 from elbowroom.calibrate.intrinsics import advice, cells_seen, solve_intrinsics
-from elbowroom.calibrate.lens import directions, project
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.geometry.lens import directions, project
 from elbowroom.sensing import NOISE_PRESETS
 
 BOARD = Board(8, 5, 0.1, "cut_out", 0.04, marked=True)

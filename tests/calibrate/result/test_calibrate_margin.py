@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import chi2, norm
 
-from elbowroom.calibrate.lens import project
 from elbowroom.calibrate.result.margin import is_within, pose_margin
 from elbowroom.errors import CalibrationError
 from elbowroom.evaluate.calibrating.board_views import ring
-from elbowroom.geometry.rigid import exp
+from elbowroom.geometry.lens import project
+from elbowroom.geometry.twist import exp
 from elbowroom.sensing import Margin
 
 CAMERA = ring(1)[0]

@@ -15,8 +15,8 @@ from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.boards.printed import points_within
 from elbowroom.calibrate.boards.seen_board import seen_board
-from elbowroom.calibrate.lens import directions, project
 from elbowroom.geometry import DepthCamera, invert_rigid
+from elbowroom.geometry.lens import directions, project
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,12 @@ def carried_to_depth(
         depth_m: its image, shape (h, w) [m, the camera's kind].
     """
     pose = seen_board({colour.name: colour}, board, view).lone[0].camera_from_board
-    rays = np.column_stack([directions(colour.intrinsics, view.corners_px), np.ones(len(view.corners_px))])
+    rays = np.column_stack(
+        [
+            directions(colour.intrinsics, view.corners_px, f"camera {colour.name}"),
+            np.ones(len(view.corners_px)),
+        ]
+    )
     points = rays * (pose[:3, 2] @ pose[:3, 3] / (rays @ pose[:3, 2]))[:, None]
     depth_from_colour = invert_rigid(colour_from_depth)
     pixels = project(camera.intrinsics, points @ depth_from_colour[:3, :3].T + depth_from_colour[:3, 3])[0]

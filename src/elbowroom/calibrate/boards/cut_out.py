@@ -8,13 +8,12 @@ from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.boards.edge_fit import EDGE_PX, LEAST_AGREEMENT, Fit, edges_fitted
 from elbowroom.calibrate.boards.near_far import NearFar, cropped, near_far
-from elbowroom.calibrate.boards.pixel_rays import pixel_rays_of
 from elbowroom.calibrate.boards.plate import Plate, View, plates
 from elbowroom.calibrate.boards.registration import Registration, registered
 from elbowroom.calibrate.boards.trouble import Fault, Trouble
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.lens import distorted
-from elbowroom.sensing.rays import PixelRays
+from elbowroom.sensing.rays import PixelRays, pixel_rays
 
 Array = NDArray[np.float64]
 LEAST_SCORE = 0.2
@@ -60,7 +59,7 @@ def cut_out_view(
         stamp_ns: time of exposure [ns].
         other_sizes: where no board is seen, look for one whose squares are larger or smaller, to say so; takes long.
     """
-    rays = pixel_rays_of(camera)
+    rays = pixel_rays(camera)
     view = View(camera, rays, _planar(camera, rays, depth_m))
     reach = float(np.linalg.norm(np.ptp(board.outline_in_board, axis=0)))
     worst: Trouble | None = None

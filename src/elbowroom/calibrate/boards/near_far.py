@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.boards.opencv import opencv
 from elbowroom.calibrate.boards.plate import Plate, View
+from elbowroom.extras import package
 
 Array = NDArray[np.float64]
 GAP_M = 0.05
@@ -61,7 +61,7 @@ def near_far(view: View, plate: Plate, reach_m: float) -> NearFar | None:
     known = np.isfinite(off) & (off > -4 * sigma)
     band = SIGMAS * sigma
     window = np.ones((NEIGHBOURHOOD, NEIGHBOURHOOD), np.uint8)
-    farthest = opencv().dilate(np.where(known, off, 0.0), window)
+    farthest = package("cv2").dilate(np.where(known, off, 0.0), window)
     depth_of_hole = np.maximum(farthest, np.maximum(GAP_M, 2 * band))
     near = 1 - np.clip((np.nan_to_num(off) - band) / (depth_of_hole - band), 0, 1)
     return NearFar(

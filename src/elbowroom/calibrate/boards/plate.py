@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.boards.opencv import opencv
+from elbowroom.extras import package
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing.rays import PixelRays
 
@@ -73,7 +73,7 @@ def beside_holes(view: View, square_m: float) -> NDArray[np.bool_]:
     window lie evenly about the middle; with a plate before it they do not. At the image's edge windows are cut and say
     nothing.
     """
-    cv2 = opencv()
+    cv2 = package("cv2")
     z = view.z
     with np.errstate(divide="ignore"):
         inverse = (1 / z).astype(np.float32)

@@ -7,12 +7,11 @@ from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.boards.edge_fit import LEAST_AGREEMENT, edges_fitted
 from elbowroom.calibrate.boards.near_far import NearFar
-from elbowroom.calibrate.boards.opencv import opencv
-from elbowroom.calibrate.boards.pixel_rays import pixel_rays_of
 from elbowroom.calibrate.boards.trouble import Fault, Trouble
+from elbowroom.extras import package
 from elbowroom.geometry import DepthCamera
-from elbowroom.geometry.lens import distorted
-from elbowroom.sensing.rays import undistort
+from elbowroom.geometry.lens import directions, distorted
+from elbowroom.sensing.rays import pixel_rays
 
 Array = NDArray[np.float64]
 LEAST_SIGMA_PX = 0.02
@@ -89,7 +88,7 @@ def _found(grey: NDArray[np.uint8], board: Board) -> tuple[NDArray[np.uint8], Ar
 
     An image whose board is nearly black, far from the lamp, needs its local contrast raised; others are better without.
     """
-    cv2 = opencv()
+    cv2 = package("cv2")
     raised = cv2.createCLAHE(clipLimit=4.0, tileGridSize=(8, 8)).apply(grey)
     thorough = cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_ACCURACY
     for image, flags in ((grey, cv2.CALIB_CB_ACCURACY), (grey, thorough), (raised, thorough)):
@@ -108,10 +107,8 @@ def _refined(
     """
     intrinsics = camera.intrinsics
     flat = corners.reshape(-1, 2)
-    x, y = undistort(flat[:, :1], flat[:, 1:], intrinsics, f"camera {camera.name}")
-    image_from_board = np.asarray(
-        opencv().findHomography(board.corners_in_board[:, :2], np.hstack([x, y]))[0]
-    )
+    seen = directions(intrinsics, flat, f"camera {camera.name}")
+    image_from_board = np.asarray(package("cv2").findHomography(board.corners_in_board[:, :2], seen)[0])
     picture = _as_near_far(camera, board, grey, image_from_board, flat)
     fit = edges_fitted(picture, board, image_from_board, (1 / intrinsics.fx, 1 / intrinsics.fy))
     if fit is None or fit.agreement < LEAST_AGREEMENT:
@@ -127,7 +124,7 @@ def _as_near_far(
     camera: DepthCamera, board: Board, grey: NDArray[np.uint8], image_from_board: Array, corners: Array
 ) -> NearFar:
     """The image about the board with dark squares 1 and bright ones 0, however the light falls."""
-    rays = pixel_rays_of(camera)
+    rays = pixel_rays(camera)
     span = 0.2 * np.ptp(corners, axis=0) + 3
     low = np.maximum(np.floor(corners.min(axis=0) - span).astype(int), 0)
     high = np.ceil(corners.max(axis=0) + span).astype(int) + 1
@@ -155,7 +152,7 @@ def _as_near_far(
 
 def _why_not(grey: NDArray[np.uint8], board: Board) -> tuple[Fault, str]:
     """What is there instead of the board: nothing, a part of it, or a board of another count."""
-    cv2 = opencv()
+    cv2 = package("cv2")
     flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER
     found, corners, layout = cv2.findChessboardCornersSBWithMeta(grey, (FEWEST, FEWEST), flags)
     if not found:
@@ -191,7 +188,7 @@ def _from_first(grey: NDArray[np.uint8], corners: Array, board: Board) -> Array 
 def _homography(board: Board, corners: Array) -> Array:
     """From the board's plane, in squares, to pixels."""
     places = board.corners_in_board[:, :2] / board.square_m
-    return np.asarray(opencv().findHomography(places, corners.reshape(-1, 2))[0])
+    return np.asarray(package("cv2").findHomography(places, corners.reshape(-1, 2))[0])
 
 
 def _square_grey(grey: NDArray[np.uint8], homography: Array, board: Board, column: int, row: int) -> float:
@@ -225,7 +222,7 @@ def _scatter(corners: Array) -> float:
     x, y = np.meshgrid(np.linspace(-1, 1, columns), np.linspace(-1, 1, rows))
     places = np.stack([x, y], axis=-1).reshape(-1, 2)
     seen = corners.reshape(-1, 2)
-    homography, _ = opencv().findHomography(places, seen)
+    homography, _ = package("cv2").findHomography(places, seen)
     at = np.column_stack([places, np.ones(len(places))]) @ homography.T
     left = seen - at[:, :2] / at[:, 2:]
     powers = [(a, b) for a in range(4) for b in range(4 - a)]
@@ -254,7 +251,7 @@ def points_within(
     nothing = np.zeros((0, 2)), np.zeros(0)
     if depth_m is None:
         return nothing
-    cv2 = opencv()
+    cv2 = package("cv2")
     hull = np.rint(np.stack([corners[0, 0], corners[0, -1], corners[-1, -1], corners[-1, 0]])).astype(
         np.int32
     )

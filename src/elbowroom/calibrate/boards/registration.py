@@ -9,8 +9,8 @@ from scipy.ndimage import gaussian_filter
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.near_far import NearFar
-from elbowroom.calibrate.boards.opencv import opencv
 from elbowroom.calibrate.boards.plate import Plate
+from elbowroom.extras import package
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.lens import distorted
 
@@ -99,7 +99,7 @@ def _raster(
         u, v = distorted(camera.intrinsics, points[..., 0] / z, points[..., 1] / z)
     u = np.nan_to_num(u - picture.left, nan=-1e4).astype(np.float32)
     v = np.nan_to_num(v - picture.top, nan=-1e4).astype(np.float32)
-    cv2 = opencv()
+    cv2 = package("cv2")
 
     def taken(image: Array) -> Array:
         return np.asarray(

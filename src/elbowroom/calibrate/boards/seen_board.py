@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.boards.seen_plane import SeenPlane, seen_plane
-from elbowroom.calibrate.lens import directions, project
-from elbowroom.errors import CalibrationError, ElbowroomError
+from elbowroom.errors import CalibrationError
+from elbowroom.extras import package
 from elbowroom.geometry import DepthCamera
-from elbowroom.geometry.rigid import cross_matrix, exp
+from elbowroom.geometry.lens import directions, project
+from elbowroom.geometry.twist import cross_matrix, moved
 
 Array = NDArray[np.float64]
 LEAST_CORNERS = 6
@@ -129,7 +130,7 @@ def seen_boards(
 
     Raises:
         CalibrationError: a view of a camera that is not there, or that does not show this board.
-        ElbowroomError: OpenCV is not installed.
+        PackageError: OpenCV is not installed.
     """
     return [seen_board(cameras, board, view) for view in views]
 
@@ -177,11 +178,8 @@ def seen_board(cameras: Mapping[str, DepthCamera], board: Board, view: BoardView
 
 def _starts(camera: DepthCamera, corners: Array, view: BoardView, what: str) -> list[Array]:
     """The two poses that a plane has by its corners (Collins, Bartoli: Infinitesimal plane-based pose, 2014)."""
-    try:
-        import cv2
-    except ImportError as error:
-        raise ElbowroomError(f"calibration needs OpenCV ({error}); install 'elbowroom[calibrate]'") from error
-    seen = directions(camera.intrinsics, view.corners_px)
+    cv2 = package("cv2")
+    seen = directions(camera.intrinsics, view.corners_px, f"camera {camera.name}")
     middle = corners.mean(axis=0)
     try:
         _, turns, ways, _ = cv2.solvePnPGeneric(
@@ -214,7 +212,7 @@ def _refined(
         normal = rows.T @ rows
         damped = normal + damping * np.diag(np.diag(normal) + 1e-12)
         step = np.asarray(-np.linalg.solve(damped, rows.T @ residual), dtype=np.float64)
-        tried = pose @ exp(step)
+        tried = moved(pose, step)
         if (corners @ tried[2, :3] + tried[2, 3]).min() <= 0:
             damping *= 10
             continue

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.lens import directions
 from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.lens import directions
 
 Array = NDArray[np.float64]
 LEAST_POINTS = 12
@@ -46,7 +46,9 @@ class SeenPlane:
 
 def rays_of(camera: DepthCamera, pixels: Array) -> Array:
     """Directions whose multiple by the camera's kind of depth is the point, shape (n, 3)."""
-    rays = np.column_stack([directions(camera.intrinsics, pixels), np.ones(len(pixels))])
+    rays = np.column_stack(
+        [directions(camera.intrinsics, pixels, f"camera {camera.name}"), np.ones(len(pixels))]
+    )
     return rays if camera.depth_kind == "planar" else rays / np.linalg.norm(rays, axis=1, keepdims=True)
 
 

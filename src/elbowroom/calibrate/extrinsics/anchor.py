@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.lens import directions
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, invert_rigid
+from elbowroom.geometry.lens import directions
 
 Array = NDArray[np.float64]
 POINT_SIGMA_PX = 0.5
@@ -164,7 +164,7 @@ def _crossing(
     """The point nearest to the rays of all cameras, base frame."""
     left, right = np.zeros((3, 3)), np.zeros(3)
     for camera, pixel in point.seen_px.items():
-        ray = np.append(directions(cameras[camera].intrinsics, pixel[None])[0], 1.0)
+        ray = np.append(directions(cameras[camera].intrinsics, pixel[None], f"camera {camera}")[0], 1.0)
         pose = base_from_camera[camera]
         along = pose[:3, :3] @ (ray / np.linalg.norm(ray))
         across = np.eye(3) - np.outer(along, along)

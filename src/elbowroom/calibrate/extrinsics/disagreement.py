@@ -125,7 +125,7 @@ def require_still(seen: Sequence[SeenBoard], solution: Solution, corners: Array)
     more = f" (and poses {', '.join(str(p) for p in poses if p != pose)})" if len(poses) > 1 else ""
     raise CalibrationError(
         f"pose {pose}{more}: cameras {', '.join(cameras)} do not agree where the board was ({apart * 1e3:.0f} mm); "
-        f"it was moved between their images: capture again, or leave out by --without-pose {pose}"
+        f"it was moved between their images: capture again, or leave pose {pose} out"
     )
 
 

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate.extrinsics.anchor import BoardCorner, PointsAnchor, SeenPoint
 from elbowroom.calibrate.extrinsics.unknowns import Index, State
-from elbowroom.calibrate.lens import project
 from elbowroom.geometry import DepthCamera, invert_rigid
-from elbowroom.geometry.rigid import cross_matrix
+from elbowroom.geometry.lens import project
+from elbowroom.geometry.twist import cross_matrix
 
 Array = NDArray[np.float64]
 

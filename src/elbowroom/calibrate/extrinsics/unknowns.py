@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.extrinsics.anchor import BoardAnchor, CameraAnchor
-from elbowroom.geometry.rigid import exp
+from elbowroom.geometry.twist import moved
 
 Array = NDArray[np.float64]
 
@@ -29,11 +29,11 @@ class State:
         """The state after a step, shape (n,)."""
         return State(
             {
-                name: pose @ exp(step[index.cameras[name]]) if name in index.cameras else pose
+                name: moved(pose, step[index.cameras[name]]) if name in index.cameras else pose
                 for name, pose in self.cameras.items()
             },
             {
-                pose: at @ exp(step[index.boards[pose]]) if pose in index.boards else at
+                pose: moved(at, step[index.boards[pose]]) if pose in index.boards else at
                 for pose, at in self.boards.items()
             },
             {name: error + step[index.depths[name]] for name, error in self.depth_errors.items()},

@@ -3,7 +3,6 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-import small_gicp
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter
 from scipy.spatial import cKDTree
@@ -11,6 +10,7 @@ from scipy.spatial import cKDTree
 from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
 from elbowroom.calibrate.from_machine.views import MachineViews
 from elbowroom.errors import CalibrationError
+from elbowroom.extras import package
 from elbowroom.geometry.twist import between, moved, sizes
 from elbowroom.sensing.planar_images import PlanarImages, thinned
 
@@ -74,7 +74,7 @@ def start(drawn: DrawnMachine, views: MachineViews) -> Array:
         )
     candidates = [rough]
     for seen, surface in usable:
-        laid = small_gicp.align(
+        laid = package("small_gicp").align(
             surface.points,
             seen,
             rough,

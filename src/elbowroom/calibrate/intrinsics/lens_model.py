@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
-from elbowroom.calibrate.lens import directions, project
 from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.geometry.lens import directions, project
 
 Array = NDArray[np.float64]
 PINHOLE = 4

@@ -2,16 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
-from elbowroom.calibrate.boards.opencv import opencv
-from elbowroom.calibrate.intrinsics.coverage import advice, tilt_deg
+from elbowroom.calibrate.intrinsics.coverage import advice, cells_seen, tilt_deg
 from elbowroom.calibrate.intrinsics.lens_model import PINHOLE, LensModel
 from elbowroom.errors import CalibrationError, CameraError
+from elbowroom.extras import package
 from elbowroom.geometry import DepthCamera
 
 Array = NDArray[np.float64]
@@ -53,6 +54,27 @@ class FoundIntrinsics:
     camera_from_boards: Array
     notes: tuple[str, ...]
 
+    def row(self) -> dict[str, Any]:
+        """A row of kind "intrinsics"."""
+        k, before = self.camera.intrinsics, self.before.intrinsics
+        return {
+            "kind": "intrinsics",
+            "camera": self.camera.name,
+            **{name: getattr(k, name) for name in ("fx", "fy", "cx", "cy")},
+            "distortion": list(k.distortion),
+            "sigma": self.sigma,
+            "fx_before": before.fx,
+            "fy_before": before.fy,
+            "depth_scale": self.depth_scale,
+            "depth_bias_m": self.depth_bias_m,
+            "depth_sigma": list(self.depth_sigma),
+            "residual_px": float(np.sqrt(np.mean(self.residuals_px**2))),
+            "residual_m": float(np.sqrt(np.mean(self.residuals_m**2))) if len(self.residuals_m) else None,
+            "views": len(self.views),
+            "corners_by_ninth": cells_seen(self.camera, self.views),
+            "notes": list(self.notes),
+        }
+
 
 def solve_intrinsics(
     camera: DepthCamera,
@@ -87,7 +109,7 @@ def solve_intrinsics(
 
 def _first_solution(camera: DepthCamera, board: Board, views: Sequence[BoardView]) -> tuple[Array, Array]:
     """Pinhole numbers by OpenCV, shape (4,), and poses as rotation vector and translation, shape (views, 6)."""
-    cv2 = opencv()
+    cv2 = package("cv2")
     k = camera.intrinsics
     matrix = np.array([[k.fx, 0, k.cx], [0, k.fy, k.cy], [0, 0, 1.0]])
     points = [board.corners_in_board[view.corner_ids].astype(np.float32) for view in views]

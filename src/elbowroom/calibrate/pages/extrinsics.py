@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.seen_board import SeenBoard
 from elbowroom.calibrate.extrinsics.solve import Extrinsics
-from elbowroom.calibrate.lens import project
 from elbowroom.calibrate.pages.board_report import (
     ImageOf,
     Reprojected,
@@ -20,6 +19,7 @@ from elbowroom.calibrate.pages.board_report import (
 from elbowroom.calibrate.pages.pictures import camera_graph
 from elbowroom.calibrate.result.change import change_table
 from elbowroom.geometry import invert_rigid
+from elbowroom.geometry.lens import project
 from elbowroom.view.report.blocks import Block, Picture, Table, Words
 
 Array = NDArray[np.float64]

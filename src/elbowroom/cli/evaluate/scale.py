@@ -1,6 +1,7 @@
 """`elbowroom evaluate scale-cameras` and `scale-budget`: where the scale model's figures come from."""
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 import typer
 
@@ -33,14 +34,13 @@ def scale_cameras(
             "search": "{search}",
             "score": "{score:.2f}",
             "ways in view": "{ways_in_view} of {ways}",
-            "short by, median [mm]": text("{:.1f}", "median_in_view_mm"),
-            "worst": text("{:.1f}", "worst_in_view_mm"),
+            "short by [mm]": text("{:.1f}", "median_in_view_mm", "worst_in_view_mm"),
             "all but in view": "{all_but_in_view}",
-            "worst of these": text("{:.1f}", "worst_all_but_mm"),
-            "places [m]": lambda row: "; ".join(
-                ", ".join(f"{x:g}" for x in place) for place in row["places_m"]
-            ),
-        }
+            "these [mm]": text("{:.1f}", "median_all_but_mm", "worst_all_but_mm"),
+            "all [mm]": text("{:.1f}", "median_all_mm", "worst_all_mm"),
+            "places [m]": _places,
+        },
+        "Ways by how much they are short of the contact, median / worst.",
     )
     extent = Extent(min(poses or POSES, POSES), step)
     rows = told(lambda tell: scale_camera_rows(tell, extent, jobs=jobs or default_threads()))
@@ -52,24 +52,16 @@ def scale_budget(
 ) -> None:
     """Say what the scale model's free travel is lost to, cause by cause; voxels as of the full size."""
     from elbowroom.cli.evaluate.measured import measured, told
-    from elbowroom.cli.evaluate.shown import as_table
-    from elbowroom.evaluate.due import Row
-    from elbowroom.evaluate.tables import Cell
-    from elbowroom.evaluate.thesis.scale_budget import CAUSES, groups, scale_budget_rows
+    from elbowroom.cli.evaluate.shown import print_
+    from elbowroom.evaluate.thesis.scale_budget import budget_table, groups, scale_budget_rows
     from elbowroom.evaluate.thesis.scale_model import FACTOR, POSES, VOXEL_SIZES_M
     from elbowroom.geometry.parallel import default_threads
+    from elbowroom.view.report.tables import rich_table
 
-    def pair(cause: str) -> Cell:
-        return lambda row: " / ".join(f"{mm:.1f}" for mm in row["short_mm"][cause])
-
-    def voxel_and_poses(row: Row) -> str:
-        return f"{1000 * row['voxel_size_m']:g} mm{'' if row['judged'] else ', other poses'}"
-
-    columns: dict[str, Cell] = {"voxel": voxel_and_poses, "ways in view": "{in_view} of {motions}"}
-    show = as_table(
-        columns | {cause: pair(cause) for cause in CAUSES},
-        "Short of the truth, median / worst [mm]; each column adds one cause to those before it.",
-    )
     asked = groups(min(poses or POSES, POSES), [FACTOR * edge for edge in voxel_size or ()] or VOXEL_SIZES_M)
     rows = told(lambda tell: scale_budget_rows(tell, asked, jobs=jobs or default_threads()))
-    measured("groups of poses", rows, None, json, show)
+    measured("groups of poses", rows, None, json, lambda rows: print_(rich_table(budget_table(rows))))
+
+
+def _places(row: Mapping[str, Any]) -> str:
+    return "; ".join(", ".join(f"{x:g}" for x in place) for place in row["places_m"])

@@ -5,6 +5,7 @@ from typing import Any
 
 from rich.console import Console
 from rich.table import Table as RichTable
+from rich.text import Text
 
 from elbowroom.evaluate.due import Due, Row, due_of
 from elbowroom.evaluate.tables import Cell, table_of
@@ -59,7 +60,7 @@ def print_(what: RichTable | str) -> None:
     console = Console(highlight=False)
     if not console.is_terminal:
         console.width = max(console.width, WIDE)
-    console.print(what)
+    console.print(Text(what) if isinstance(what, str) else what)
 
 
 def voxel(row: Row) -> str:
@@ -72,11 +73,11 @@ def yes_or_no(key: str) -> Callable[[Row], str]:
     return lambda row: "yes" if row[key] else "no"
 
 
-def text(form: str, key: str) -> Callable[[Row], str]:
-    """A cell for a value that a row may lack.
+def text(form: str, *keys: str) -> Callable[[Row], str]:
+    """A cell for values that a row may lack.
 
     Args:
-        form: how the value is written.
-        key: of the value.
+        form: how a value is written.
+        keys: of the values.
     """
-    return lambda row: "-" if row.get(key) is None else form.format(row[key])
+    return lambda row: " / ".join("-" if row.get(key) is None else form.format(row[key]) for key in keys)

@@ -10,10 +10,10 @@ from scipy.stats import chi2
 from elbowroom.calibrate import Board, BoardView
 from elbowroom.calibrate.boards.cut_out import cut_out_view
 from elbowroom.calibrate.boards.seen_board import seen_board
-from elbowroom.calibrate.lens import project
 from elbowroom.calibrate.simulated.hand_poses import hand_poses
-from elbowroom.geometry import DepthCamera, invert_rigid
-from elbowroom.geometry.rigid import log
+from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.lens import project
+from elbowroom.geometry.twist import between
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import Moment, Solid, render, wall_cameras
 from elbowroom.simulate.board_plate import plate_mesh
@@ -92,7 +92,7 @@ def misses_of(camera: DepthCamera, board: Board, view: BoardView, world_from_boa
     points = corners @ camera_from_board[:3, :3].T + camera_from_board[:3, 3]
     off = view.corners_px - project(camera.intrinsics, points)[0]
     lone = seen_board({camera.name: camera}, board, view).lone[0]
-    error = log(invert_rigid(lone.camera_from_board) @ camera_from_board)
+    error = between(lone.camera_from_board, camera_from_board)
     return Misses(
         off.mean(axis=0),
         float(np.sqrt(off.var(axis=0).mean())),

@@ -63,11 +63,8 @@ def setup_rows(effort: Effort) -> Iterator[dict[str, Any]]:
 def in_use(site: Site) -> Settings:
     """How the site declares space free, at 5 cm."""
     machine = site.machine()
-    return Settings(
-        VoxelGrid.covering((-2, -2, 0), (2, 2, 2.5), VOXEL_M),
-        machine=machine,
-        terms=Terms(margin=site.margin()),
-    )
+    grid = VoxelGrid.covering((-2, -2, 0), (2, 2, 2.5), VOXEL_M)
+    return Settings(grid, Terms(margin=site.margin()), machine)
 
 
 def found_pct(cameras: Sequence[DepthCamera], moment: Moment, settings: Settings) -> float:

@@ -32,7 +32,7 @@ def placement_rows(parts: Sequence[str] = tuple(PARTS), effort: Effort = FULL) -
 
     Raises:
         InputError: a part that is none.
-        ElbowroomError: the solver of the optimisation is not installed.
+        PackageError: the solver of the optimisation is not installed.
     """
     for part in parts:
         if part not in PARTS:

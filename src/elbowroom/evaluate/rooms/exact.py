@@ -9,12 +9,13 @@ import heapq
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import ElbowroomError, MachineError
+from elbowroom.errors import MachineError
+from elbowroom.extras import package
+from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
 from elbowroom.motion import Motion
 from elbowroom.simulate.solid import Mesh, Solid
@@ -57,11 +58,11 @@ class ExactTravel:
         solids: what they may touch, as closed meshes; solids of the machine itself are left out.
 
     Raises:
-        ElbowroomError: coal is not installed.
+        PackageError: coal is not installed.
     """
 
     def __init__(self, machine: Machine, solids: Sequence[Solid]) -> None:
-        self._coal = load_coal()
+        self._coal = package("coal")
         self._machine = machine
         self._links = {name: _Body(self._coal, mesh) for name, mesh in _meshes_of(machine).items()}
         self._solids = [_Obstacle(self._coal, solid) for solid in solids if not solid.is_machine]
@@ -137,52 +138,31 @@ class ExactTravel:
         return max(0.0, float(distance)), np.array(result.getNearestPoint1())
 
 
-def load_coal() -> Any:
-    """The library of mesh distances.
-
-    Raises:
-        ElbowroomError: it is not installed.
-    """
-    try:
-        import coal
-    except ImportError as error:
-        raise ElbowroomError(
-            f"exact mesh distance needs the package coal ({error}); install 'elbowroom[evaluate]'"
-        ) from error
-    return coal
-
-
-_trees: WeakKeyDictionary[Mesh, Any] = WeakKeyDictionary()
-_link_meshes: WeakKeyDictionary[Machine, dict[str, Mesh]] = WeakKeyDictionary()
-
-
-def _tree_of(coal: Any, mesh: Mesh) -> Any:
+@kept
+def _tree_of(mesh: Mesh, coal: Any) -> Any:
     """The mesh's bounding-volume tree, built once."""
-    if mesh not in _trees:
-        tree = coal.BVHModelOBBRSS()
-        tree.beginModel(len(mesh.faces), len(mesh.vertices))
-        tree.addVertices(mesh.vertices)
-        tree.addTriangles(mesh.faces.astype(np.int64))
-        tree.endModel()
-        _trees[mesh] = tree
-    return _trees[mesh]
+    tree = coal.BVHModelOBBRSS()
+    tree.beginModel(len(mesh.faces), len(mesh.vertices))
+    tree.addVertices(mesh.vertices)
+    tree.addTriangles(mesh.faces.astype(np.int64))
+    tree.endModel()
+    return tree
 
 
+@kept
 def _meshes_of(machine: Machine) -> dict[str, Mesh]:
-    if machine not in _link_meshes:
-        _link_meshes[machine] = {
-            link.name: Mesh(link.vertices, link.faces)
-            for link in machine.links
-            if link.name in machine.checked_links
-        }
-    return _link_meshes[machine]
+    return {
+        link.name: Mesh(link.vertices, link.faces)
+        for link in machine.links
+        if link.name in machine.checked_links
+    }
 
 
 class _Body:
     """A mesh with its tree and a ball about it."""
 
     def __init__(self, coal: Any, mesh: Mesh) -> None:
-        self.mesh, self.tree = mesh, _tree_of(coal, mesh)
+        self.mesh, self.tree = mesh, _tree_of(mesh, coal)
         self.centre = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
         self.radius = float(np.linalg.norm(mesh.vertices - self.centre, axis=1).max())
 

@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from elbowroom.choices import Detail, Rule
 from elbowroom.evaluate.rooms.lone_solids import Hang, LoneSolid, Rod, TurnedBox
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, looking_at
 from elbowroom.reconstruct import reconstruct
-from elbowroom.reconstruct.carve import Detail
-from elbowroom.reconstruct.resolve import Rule
 from elbowroom.sensing import DepthFrame
 
 GRID = VoxelGrid((-0.6, -0.6, -0.6), (24, 24, 24), 0.05)

@@ -35,7 +35,7 @@ def travel_rows(
         A row of kind "travel" for each pose and motion; without a shortfall where nothing is touched.
 
     Raises:
-        ElbowroomError: coal is not installed.
+        PackageError: coal is not installed.
     """
     room = InterventionRoom()
     motions = room_motions(room.machine)

@@ -10,6 +10,7 @@ from typing import TypeVar
 
 from elbowroom.errors import ElbowroomError, InputError
 from elbowroom.evaluate.shares.task import Outcome, Task
+from elbowroom.extras import package
 
 Done = TypeVar("Done")
 TRIES = 3
@@ -28,7 +29,8 @@ def do_tasks(
 
     Raises:
         InputError: no such scheduler, or fewer than one job.
-        ElbowroomError: Dask is not installed; a worker was lost more than three times.
+        PackageError: Dask is not installed.
+        ElbowroomError: a worker was lost more than three times.
     """
     if cluster is not None:
         yield from _on_cluster(tasks, cluster)
@@ -104,17 +106,14 @@ def _settle(number: "multiprocessing.sharedctypes.Synchronized[int]", jobs: int)
 
 
 def _on_cluster(tasks: Sequence[Task], address: str) -> Iterator[tuple[int, Outcome]]:
+    distributed = package("distributed")
     try:
-        from distributed import Client, as_completed
-    except ImportError as error:
-        raise ElbowroomError(f"a cluster needs Dask ({error}); install 'elbowroom[cluster]'") from error
-    try:
-        client = Client(address, timeout="10s")
+        client = distributed.Client(address, timeout="10s")
     except (OSError, ValueError) as error:
         raise InputError(f"cluster: no Dask scheduler answers at {address} ({error})") from error
     with client:
         # Dask itself gives the work of a lost worker to another
         futures = client.map(Task.run, list(tasks), pure=False, retries=TRIES - 1)
         index_of = {future.key: index for index, future in enumerate(futures)}
-        for future in as_completed(futures):
+        for future in distributed.as_completed(futures):
             yield index_of[future.key], future.result()

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from elbowroom.choices import Detail
 from elbowroom.evaluate.rooms.room import Tally
 from elbowroom.evaluate.rooms.scene import DECIMALS, room_grid
 from elbowroom.evaluate.shares.task import Outcome
 from elbowroom.evaluate.thesis.thesis import HEIGHTS_M, c_arm
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.reconstruct import FreeSpace, reconstruct
-from elbowroom.reconstruct.carve import Detail
 from elbowroom.sensing import DepthFrame, Margin
 from elbowroom.simulate import Moment, Truth, render, setup, true_occupancy, wall_cameras
 from elbowroom.view.report.blocks import mean

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.evaluate.rooms.exact import ExactTravel, load_coal
+from elbowroom.evaluate.rooms.exact import ExactTravel
 from elbowroom.evaluate.rooms.room import Tally
 from elbowroom.evaluate.rooms.scene import room_grid, room_motions
 from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
@@ -18,6 +18,7 @@ from elbowroom.evaluate.tables import table_of
 from elbowroom.evaluate.thesis.fig3 import fig3_picture
 from elbowroom.evaluate.thesis.part import Part, about
 from elbowroom.evaluate.thesis.thesis import HEIGHTS_M, c_arm, sensor_cameras
+from elbowroom.extras import package
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import reconstruct
 from elbowroom.simulate import Moment, Solid, render, setup, true_occupancy
@@ -38,9 +39,9 @@ def tasks(settings: Settings) -> list[Task]:
     """Numbers of cameras in two setups, sizes of objects by sensor, and the figure.
 
     Raises:
-        ElbowroomError: coal is not installed.
+        PackageError: coal is not installed.
     """
-    load_coal()
+    package("coal")
     edge = settings.voxel_sizes_m[0] if settings.voxel_sizes_m else VOXEL_M
     result = [
         Task("more", f"cameras-setup{number}", judge_counts, {"number": number, "voxel_size_m": edge})
@@ -62,6 +63,7 @@ def judge_counts(number: int, voxel_size_m: float) -> Outcome:
     truth = true_occupancy(grid, moment)
     exact = ExactTravel(machine, scene.solids())
     travels = [exact.until_contact(moment.joints, motion).travel for motion in motions]
+    said = {"kind": "cameras", "setup": number, **_said("640x480", voxel_size_m), "detail": "pixel"}
     rows = []
     for count in COUNTS:
         views = hung_clear(sensor_cameras("640x480", count=count), scene.solids(), max(HEIGHTS_M))
@@ -76,27 +78,19 @@ def judge_counts(number: int, voxel_size_m: float) -> Outcome:
             for verdict, travel in zip(verdicts, travels, strict=True)
             if travel > 0
         ]
-        rows.append(
-            {
-                "kind": "cameras",
-                "setup": number,
-                "sensor": "640x480",
-                "noise": False,
-                "voxel_size_m": voxel_size_m,
-                "rule": "three",
-                "detail": "pixel",
-                "cameras": count,
-                **tally.row(),
-                "travel_pct": mean(shares),
-            }
-        )
+        rows.append({**said, "cameras": count, **tally.row(), "travel_pct": mean(shares)})
     return Outcome(rows)
+
+
+def _said(sensor: str, voxel_size_m: float) -> dict[str, Any]:
+    return {"sensor": sensor, "noise": False, "voxel_size_m": voxel_size_m, "rule": "three"}
 
 
 def judge_balls(sensor: str, voxel_size_m: float) -> Outcome:
     """Balls of each size in the bare room, by the thesis' test and ours."""
     grid = room_grid(voxel_size_m)
     views = sensor_cameras(sensor)
+    said = {"kind": "balls", **_said(sensor, voxel_size_m)}
     rows: list[dict[str, Any]] = []
     for size in SIZES_M:
         balls = hung_balls(size)
@@ -112,11 +106,7 @@ def judge_balls(sensor: str, voxel_size_m: float) -> Outcome:
             ]
             rows.append(
                 {
-                    "kind": "balls",
-                    "sensor": sensor,
-                    "noise": False,
-                    "voxel_size_m": voxel_size_m,
-                    "rule": "three",
+                    **said,
                     "detail": detail,
                     "size_m": size,
                     "balls": len(balls),

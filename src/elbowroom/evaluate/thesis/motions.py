@@ -10,12 +10,12 @@ that nobody chose them; a *false stop* is a stop where the truth is none.
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from elbowroom.evaluate.rooms.exact import load_coal
 from elbowroom.evaluate.shares.task import Row, Settings, Task
 from elbowroom.evaluate.thesis import movements, random_motions
 from elbowroom.evaluate.thesis.movements import movement_blocks, movement_summary, movement_tasks
 from elbowroom.evaluate.thesis.part import Part, about
 from elbowroom.evaluate.thesis.random_motions import random_blocks, random_summary, random_tasks
+from elbowroom.extras import package
 from elbowroom.view.report.blocks import Block
 
 
@@ -23,9 +23,9 @@ def tasks(settings: Settings) -> list[Task]:
     """One for each setup's movements, and one for every 21 random motions.
 
     Raises:
-        ElbowroomError: coal is not installed.
+        PackageError: coal is not installed.
     """
-    load_coal()
+    package("coal")
     return movement_tasks(settings) + random_tasks(settings)
 
 

@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.errors import InputError
+from elbowroom.evaluate.due import Row
 from elbowroom.evaluate.rooms.scene import WELL_KNOWN
 from elbowroom.evaluate.shares.work_force import do_work
+from elbowroom.evaluate.tables import Cell, table_of
 from elbowroom.evaluate.thesis.scale import EXPLAIN_M, near_m, noisy_frames
 from elbowroom.evaluate.thesis.scale_model import (
     POSES,
@@ -34,6 +35,7 @@ from elbowroom.motion import Motion, blocks_in_reach, check_motions
 from elbowroom.reconstruct import FreeSpace, reconstruct
 from elbowroom.simulate import Moment, true_occupancy
 from elbowroom.simulate.machine_solids import link_solids
+from elbowroom.view.report.blocks import Table
 
 CAUSES = ("voxels", "view", "pixels", "margin", "noise")
 IMAGES = ((False, False), (True, False), (True, True))
@@ -62,7 +64,7 @@ class Group:
     @property
     def words(self) -> str:
         """As tables and messages call it."""
-        return f"{1000 * self.voxel_size_m:g} mm{'' if self.judged else ', other poses'}"
+        return _words(self.voxel_size_m, self.judged)
 
 
 def groups(poses: int = POSES, voxel_sizes_m: Sequence[float] = VOXEL_SIZES_M) -> list[Group]:
@@ -87,8 +89,7 @@ def scale_budget_rows(tell: Tell, asked: Sequence[Group], *, jobs: int = 1) -> I
         Rows of voxel_size_m, judged, motions, in_view, short_mm: by cause the median and the worst [mm].
 
     Raises:
-        InputError: no way of a group is in view.
-        ElbowroomError: coal is not installed.
+        PackageError: coal is not installed.
     """
     for group in asked:
         poses = range(group.first, group.first + group.count)
@@ -101,27 +102,42 @@ def scale_budget_rows(tell: Tell, asked: Sequence[Group], *, jobs: int = 1) -> I
 
 
 def budget_row(group: Group, shortfalls_mm: Sequence[Sequence[float]]) -> dict[str, Any]:
-    """Median and worst over the ways in view.
+    """Median and worst over the ways in view; None where there is none.
 
     Args:
         group: whose motions.
         shortfalls_mm: for each motion by each of `CAUSES` [mm].
-
-    Raises:
-        InputError: none is in view.
     """
     rows = np.array(shortfalls_mm)
     mine = rows[rows[:, CAUSES.index("view")] <= 1000 * near_m(group.voxel_size_m)]
-    if not len(mine):
-        raise InputError(f"poses: {group.words}: no way of {group.count} is in view; ask for more")
-    pairs = [[round(float(np.median(column)), 2), round(float(column.max()), 2)] for column in mine.T]
+    pairs: list[list[float | None]] = [
+        [round(float(np.median(mm)), 2), round(float(mm.max()), 2)] for mm in mine.T if len(mm)
+    ]
     return {
         "voxel_size_m": group.voxel_size_m,
         "judged": group.judged,
         "motions": len(rows),
         "in_view": len(mine),
-        "short_mm": dict(zip(CAUSES, pairs, strict=True)),
+        "short_mm": dict(zip(CAUSES, pairs or [[None, None]] * len(CAUSES), strict=True)),
     }
+
+
+def budget_table(rows: Sequence[Row]) -> Table:
+    """Median and worst for each cause."""
+
+    def pair(cause: str) -> Cell:
+        return lambda row: " / ".join("-" if mm is None else f"{mm:.1f}" for mm in row["short_mm"][cause])
+
+    columns: dict[str, Cell] = {
+        "voxel": lambda row: _words(row["voxel_size_m"], row["judged"]),
+        "ways in view": "{in_view} of {motions}",
+    }
+    title = "Ways in view: short by, median / worst [mm], each column with one cause more"
+    return table_of(title, rows, columns | {cause: pair(cause) for cause in CAUSES}, left=("voxel",))
+
+
+def _words(voxel_size_m: float, judged: bool) -> str:
+    return f"{1000 * voxel_size_m:g} mm{'' if judged else ', other poses'}"
 
 
 def shortfalls(pose: int, voxel_size_m: float) -> list[list[float]]:

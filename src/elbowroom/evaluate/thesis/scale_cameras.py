@@ -12,13 +12,12 @@ among candidates far apart, then among closer ones about the best fours.
 import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import InputError
 from elbowroom.evaluate.shares.work_force import do_work
 from elbowroom.evaluate.thesis.best_fours import ALL_BUT_IN_VIEW, best_fours, shortfalls
 from elbowroom.evaluate.thesis.scale import near_m
@@ -52,7 +51,7 @@ BEST, NEAR_BEST_M = 3, 0.085
 CLEAR_M = 0.53
 """Nothing is nearer to a Kinect than this, which measures from 0.5 m on [m]."""
 FEWEST = 5
-"""Candidates of a search: four of them are chosen."""
+"""At least so many candidates are asked: four of them are chosen."""
 Tell = Callable[[str], None]
 
 
@@ -62,7 +61,7 @@ class Extent:
 
     Args:
         poses: of the machine, the first of those that are judged.
-        step: one of so many candidates is asked.
+        step: one of so many candidates is asked, but at least five.
         draws: of noise, in the first search and the second.
     """
 
@@ -85,9 +84,6 @@ def scale_camera_rows(tell: Tell, extent: Extent = WHOLE, *, jobs: int = 1) -> I
     Yields:
         Rows of search, candidates, score, ways_in_view, median and worst of what these are short by, of those all but
         in view and of all [mm], places_m.
-
-    Raises:
-        InputError: fewer than five candidates are left.
     """
     search = _Search(tell, extent, jobs)
     best = []
@@ -116,11 +112,16 @@ def on_rings(
         if across_squared > 0.1:
             across = np.sqrt(across_squared)
             places.append((across * np.cos(azimuth), across * np.sin(azimuth), height))
-    near = np.concatenate([s.vertices_in_world for s in model_solids() if s.name not in LABORATORY])
-    links = [link_solids(model_machine(), model_pose(pose)[0]) for pose in range(POSES)]
-    near = np.concatenate([near, *(s.vertices_in_world for solids in links for s in solids)])
-    clear = [np.linalg.norm(near - place, axis=1).min() > CLEAR_M for place in places]
+    clear = [np.linalg.norm(_in_the_way() - place, axis=1).min() > CLEAR_M for place in places]
     return np.array(places)[clear]
+
+
+@cache
+def _in_the_way() -> NDArray[np.float64]:
+    """Corners of the model, and of the machine in all poses, shape (n, 3), world frame [m]."""
+    objects = [s.vertices_in_world for s in model_solids() if s.name not in LABORATORY]
+    links = [link_solids(model_machine(), model_pose(pose)[0]) for pose in range(POSES)]
+    return np.concatenate([*objects, *(s.vertices_in_world for solids in links for s in solids)])
 
 
 class _Search:
@@ -133,11 +134,7 @@ class _Search:
         self, name: str, places: NDArray[np.float64], draws: int
     ) -> Iterator[tuple[dict[str, Any], NDArray[np.float64]]]:
         """The best fours among some places, by so many draws of noise: what they see, and where they stand."""
-        places = places[:: self._extent.step]
-        if len(places) < FEWEST:
-            raise InputError(
-                f"step: {self._extent.step} leaves {len(places)} candidates {name}, must leave {FEWEST}"
-            )
+        places = places[:: min(self._extent.step, max(1, len(places) // FEWEST))]
         ways = self._ways(name, places, draws)
         self._tell(f"{name}: choosing four of {len(places)} candidates")
         for score, chosen in best_fours(ways, len(places))[: 2 * BEST]:

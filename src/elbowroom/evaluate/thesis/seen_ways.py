@@ -120,8 +120,8 @@ def _words_and_bits(
     grid: VoxelGrid, centres: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], NDArray[np.uint64]]:
     """Where voxels lie in a plane."""
-    cells, (i, j, k) = bits.lattice(grid), grid.index_of(centres).T
-    return plain(word_of)(i, j, k, cells.cubes_y, cells.cubes_z), plain(bit_of)(i, j, k)
+    lattice, (i, j, k) = bits.lattice(grid), grid.index_of(centres).T
+    return plain(word_of)(i, j, k, lattice.cubes_y, lattice.cubes_z), plain(bit_of)(i, j, k)
 
 
 def _shortened(short_mm: NDArray[np.float64], seen: NDArray[np.bool_]) -> Shown:

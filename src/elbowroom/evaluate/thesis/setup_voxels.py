@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from elbowroom.choices import Detail
 from elbowroom.evaluate.rooms.room import Tally
 from elbowroom.evaluate.thesis.cases import cases_of, counts_of, section_picture, voxel_picture
 from elbowroom.evaluate.thesis.thesis import TABLE_2, c_arm
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.reconstruct import FreeSpace, reconstruct
-from elbowroom.reconstruct.carve import Detail
 from elbowroom.sensing import DepthFrame, Margin
 from elbowroom.simulate import Moment, true_occupancy
 from elbowroom.simulate.truth import true_centres

@@ -5,14 +5,15 @@ views that are pairwise at least the angle apart. That is sufficient, not necess
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import InputError
+from elbowroom.extras import package
 from elbowroom.placement.solver.model import Model
 
+CP_SAT = "ortools.sat.python.cp_model"
 ROTATIONS = 12
 LEAST_WIDTH_DEG = 2.0
 """Narrower sectors hold hardly any view: then the search starts without them."""
@@ -23,21 +24,6 @@ class SectorChoice(NamedTuple):
 
     chosen: list[int]
     bound: float
-
-
-def ortools() -> object:
-    """CP-SAT.
-
-    Raises:
-        InputError: it is not installed.
-    """
-    try:
-        from ortools.sat.python import cp_model
-    except ImportError:
-        raise InputError(
-            "placement optimise: needs CP-SAT, which is not installed; pip install 'elbowroom[placement]'"
-        ) from None
-    return cp_model
 
 
 def sector_layout(
@@ -64,14 +50,45 @@ def sector_layout(
         The choice; None if none was found in time, or the sectors are too narrow.
 
     Raises:
-        InputError: CP-SAT is not installed.
+        PackageError: CP-SAT is not installed.
     """
-    cp = ortools()
+    cp = package(CP_SAT)
     inside = _inside(model)
     if inside is None:
         return None
-    views = model.requirement.views
-    problem = cp.CpModel()  # type: ignore[attr-defined]
+    problem = cp.CpModel()
+    chosen = _choices(model, problem)
+    valid = _valid_points(model, inside, problem, chosen)
+    # CP-SAT counts in whole numbers: prices in thousandths of the greatest
+    scale = 1000 / max(float(model.price.max()), 1e-9)
+    price = sum(
+        round(float(model.price[c]) * scale) * chosen[c]
+        for c in range(model.candidates)
+        if c not in model.kept
+    )
+    if budget is None:
+        wanted = int(np.floor(share * model.points))
+        problem.add(sum(valid) >= min(wanted, len(valid)))
+        problem.minimize(price)
+    else:
+        problem.add(price <= int(np.floor(budget * scale + 1e-6)))
+        problem.maximize(sum(valid))
+    for c in range(model.candidates):
+        if hint:
+            problem.add_hint(chosen[c], c in set(hint))
+    solver = cp.CpSolver()
+    solver.parameters.max_time_in_seconds = seconds
+    solver.parameters.num_workers = threads
+    solver.parameters.random_seed = seed
+    if solver.solve(problem) not in (cp.OPTIMAL, cp.FEASIBLE):
+        return None
+    members = [c for c in range(model.candidates) if solver.value(chosen[c])]
+    bound = solver.best_objective_bound
+    return SectorChoice(members, bound / scale if budget is None else bound / model.points)
+
+
+def _choices(model: Model, problem: Any) -> list[Any]:
+    """A variable for each candidate: kept ones are chosen, of each place one at most."""
     chosen = [problem.new_bool_var(f"c{c}") for c in range(model.candidates)]
     for c in model.kept:
         problem.add(chosen[c] == 1)
@@ -79,7 +96,14 @@ def sector_layout(
         here = np.flatnonzero(model.place_of == place)
         if len(here) > 1:
             problem.add_at_most_one([chosen[c] for c in here])
-    valid = []
+    return chosen
+
+
+def _valid_points(
+    model: Model, inside: list[list[NDArray[np.bool_]]], problem: Any, chosen: list[Any]
+) -> list[Any]:
+    """A variable for each point that can be valid: it needs a view in each sector of one of the rotations."""
+    views, valid = model.requirement.views, []
     for p in range(model.points):
         turns = []
         for turn in range(ROTATIONS):
@@ -98,32 +122,7 @@ def sector_layout(
             # follows from the sectors; it is what the solver's linear relaxation works with
             problem.add(sum(chosen[c] for c in np.flatnonzero(model.sees[:, p])) >= views * point)
             valid.append(point)
-    scale = 1000 / max(float(model.price.max()), 1e-9)
-    price = sum(
-        round(float(model.price[c]) * scale) * chosen[c]
-        for c in range(model.candidates)
-        if c not in model.kept
-    )
-    if budget is None:
-        wanted = int(np.floor(share * model.points))
-        problem.add(sum(valid) >= min(wanted, len(valid)))
-        problem.minimize(price)
-    else:
-        problem.add(price <= int(np.floor(budget * scale + 1e-6)))
-        problem.maximize(sum(valid))
-    for c in range(model.candidates):
-        if hint:
-            problem.add_hint(chosen[c], c in set(hint))
-    solver = cp.CpSolver()  # type: ignore[attr-defined]
-    solver.parameters.max_time_in_seconds = seconds
-    solver.parameters.num_workers = threads
-    solver.parameters.random_seed = seed
-    status = solver.solve(problem)
-    if status not in (cp.OPTIMAL, cp.FEASIBLE):  # type: ignore[attr-defined]
-        return None
-    members = [c for c in range(model.candidates) if solver.value(chosen[c])]
-    bound = solver.best_objective_bound
-    return SectorChoice(members, bound / scale if budget is None else bound / model.points)
+    return valid
 
 
 def _inside(model: Model) -> list[list[NDArray[np.bool_]]] | None:

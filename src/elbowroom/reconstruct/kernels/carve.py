@@ -45,12 +45,12 @@ class Scratch(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def carve_cubes(cubes, cells, views, answers):
+def carve_cubes(cubes, lattice, views, answers):
     """Carves some 16-voxel cubes; each writes only its own 64 words.
 
     Args:
         cubes: (n,) indices of cubes.
-        cells: the grid.
+        lattice: the grid.
         views: all cameras.
         answers: what is asked of them, and where the answers go.
     """
@@ -65,7 +65,7 @@ def carve_cubes(cubes, cells, views, answers):
         np.empty((cameras, 64), dtype=np.uint64),
     )
     for number in cubes:
-        cube = cube_at(cells, number)
+        cube = cube_at(lattice, number)
         _ask_blocks(cube, views, answers, scratch)
         # camera by camera, so that the part of its image that the cube covers stays in the cache
         for c in range(cameras):

@@ -40,14 +40,14 @@ class Box(NamedTuple):
 
 
 @njit(inline="always")
-def cube_at(cells, cube):
+def cube_at(lattice, cube):
     """Cube number `cube` of a grid."""
-    edge = cells.edge
+    edge = lattice.edge
     return Cube(
         cube * 64,
-        cells.x0 + (cube // (cells.cubes_y * cells.cubes_z)) * 16 * edge,
-        cells.y0 + ((cube // cells.cubes_z) % cells.cubes_y) * 16 * edge,
-        cells.z0 + (cube % cells.cubes_z) * 16 * edge,
+        lattice.x0 + (cube // (lattice.cubes_y * lattice.cubes_z)) * 16 * edge,
+        lattice.y0 + ((cube // lattice.cubes_z) % lattice.cubes_y) * 16 * edge,
+        lattice.z0 + (cube % lattice.cubes_z) * 16 * edge,
         edge,
     )
 

@@ -10,10 +10,10 @@ from elbowroom.reconstruct.kernels.planes import NOTHING, make_canonical, note_d
 
 
 @njit(cache=True, nogil=True)
-def carve_points(cubes, cells, views, answers):
+def carve_points(cubes, lattice, views, answers):
     """The thesis' test of centres, every voxel with every camera; arguments as of `kernels.carve.carve_cubes`."""
     for number in cubes:
-        cube = cube_at(cells, number)
+        cube = cube_at(lattice, number)
         for lane in range(64):
             word = cube.word + lane
             if not answers.asked[word]:

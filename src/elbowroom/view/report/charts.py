@@ -4,7 +4,7 @@ import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from elbowroom.errors import ElbowroomError
+from elbowroom.extras import package
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 """After Okabe and Ito (2008): colour-blind eyes tell them apart."""
@@ -35,14 +35,9 @@ def chart(
         y_range: least and greatest y; None: what the lines need.
 
     Raises:
-        ElbowroomError: Matplotlib is not installed.
+        PackageError: Matplotlib is not installed.
     """
-    try:
-        from matplotlib.backends.backend_svg import FigureCanvasSVG
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise ElbowroomError(f"charts need Matplotlib ({error}); install 'elbowroom[evaluate]'") from error
-    figure = Figure(figsize=(6.4, 3.8), layout="constrained")
+    figure = package("matplotlib.figure").Figure(figsize=(6.4, 3.8), layout="constrained")
     axes = figure.add_subplot()
     marks = "osD^vP"
     for number, line in enumerate(lines):
@@ -57,6 +52,6 @@ def chart(
     axes.legend(fontsize=8)
     buffer = io.BytesIO()
     # without a date and with fixed names the same lines give the same file
-    figure.canvas = FigureCanvasSVG(figure)
+    figure.canvas = package("matplotlib.backends.backend_svg").FigureCanvasSVG(figure)
     figure.savefig(buffer, format="svg", metadata={"Date": None})
     return buffer.getvalue()

@@ -1,6 +1,6 @@
 """Finds what stands still in front of the cameras: the reference that the watch compares with."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,7 +12,7 @@ from elbowroom.machine import Machine
 from elbowroom.machine.rasterise import rasterise
 from elbowroom.monitor.health.drift.flat_spots import flat_spots
 from elbowroom.monitor.health.drift.reference import CameraReference, lens_of
-from elbowroom.sensing import DepthFrame, rectified
+from elbowroom.sensing import Snapshot, rectified
 from elbowroom.sensing.rays import pixel_rays
 
 UNIT_M = 0.00025
@@ -64,20 +64,16 @@ class Commissioning:
             self._stacks[camera.name] = np.zeros(shape, dtype=np.uint16)
             self._counts[camera.name] = 0
 
-    def add(self, frames: Iterable[DepthFrame], joints: Mapping[str, float] | None) -> None:
-        """Adds one moment.
-
-        Args:
-            frames: at most one of each camera.
-            joints: of the machine, if there is one [m or rad].
+    def add(self, snapshot: Snapshot) -> None:
+        """Adds one moment; if there is a machine, with where it was.
 
         Raises:
             CalibrationError: a machine without joints, a frame of another size or of no camera, too many moments.
         """
         by_name = {camera.name: camera for camera in self.cameras}
-        if self.machine is not None and joints is None:
+        if self.machine is not None and snapshot.joints is None:
             raise CalibrationError("commission: a machine without joints; give its joint positions")
-        for frame in frames:
+        for frame in snapshot.frames:
             camera = by_name.get(frame.camera)
             if camera is None or frame.depth_m.shape != (camera.height, camera.width):
                 raise CalibrationError(
@@ -90,8 +86,8 @@ class Commissioning:
                 frame.depth_m <= camera.max_depth_m
             )
             usable &= frame.depth_m < 65535 * UNIT_M
-            if self.machine is not None and joints is not None:
-                usable &= ~_machine_pixels(self.machine, camera, joints)
+            if self.machine is not None:
+                usable &= ~_machine_pixels(self.machine, camera, snapshot.joints_at(camera.name) or {})
             depth = np.where(usable, frame.depth_m, 0) / UNIT_M
             self._stacks[camera.name][number] = np.round(depth).astype(np.uint16)
             self._counts[camera.name] += 1
