@@ -1,1 +1,1 @@
-"""What the kernels of all stages share: bits of voxels, a pinhole camera, noise of depth, rigid transforms."""
+"""What kernels of all stages share: bits of voxels, a pinhole camera, noise of depth, rigid transforms, neighbours."""

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.neighbours import is_about
 from elbowroom.geometry.kernels.noise import sigma
 from elbowroom.machine.kernels.returns import (
     MOST_M,
@@ -184,10 +185,7 @@ def _sees_past_all_about(view, depth, model, u, v, ou, ov):
     least = -model[v, u]
     for nv in range(min(v, ov) - 1, max(v, ov) + 2):
         for nu in range(min(u, ou) - 1, max(u, ou) + 2):
-            near_one = abs(nv - v) <= 1 and abs(nu - u) <= 1
-            near_other = abs(nv - ov) <= 1 and abs(nu - ou) <= 1
-            own = (nv == v and nu == u) or (nv == ov and nu == ou)
-            if (near_one or near_other) and not own:
+            if is_about((nv, nu), (v, u), (ov, ou)):
                 d = depth[nv, nu]
                 if not (model[nv, nu] > 0.0 or (is_return(view, d) and d > least)):
                     return False

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.neighbours import is_about
 from elbowroom.geometry.kernels.noise import margin_at
 from elbowroom.reconstruct.kernels.texels import NEUTRAL, NEXT_TO_NOTHING_M, free_to_model
 
@@ -97,10 +98,7 @@ def _short_of_neighbours(texels, v, u):
             least = np.uint32(0xFFFF)
             for nv in range(min(v, ov) - 1, max(v, ov) + 2):
                 for nu in range(min(u, ou) - 1, max(u, ou) + 2):
-                    near_one = abs(nv - v) <= 1 and abs(nu - u) <= 1
-                    near_other = abs(nv - ov) <= 1 and abs(nu - ou) <= 1
-                    own = (nv == v and nu == u) or (nv == ov and nu == ou)
-                    if (near_one or near_other) and not own:
+                    if is_about((nv, nu), (v, u), (ov, ou)):
                         least = min(least, texels[nv, nu] >> np.uint32(16))
             best = max(best, least)
     return best
