@@ -48,6 +48,17 @@ that computers compare. The due figures are for two cores.
         tables.bench_tables,
     ),
     Section(
+        "start.json",
+        "Start",
+        """
+New processes in which kernels are compiled and kept: what importing the package takes, what the first call of
+`er.reconstruct` takes (one image of 640x480, 5 cm; what it is given is made before), and both together. *before*: an
+earlier commit, 6c252c1, in turns in the same run; a third of it is due.
+""",
+        "elbowroom bench start --against ../before/src",
+        tables.start_tables,
+    ),
+    Section(
         "evaluate_room.json",
         "Against the truth of the simulated room",
         """

@@ -55,8 +55,6 @@ for camera in site.cameras():
 
 for moment in moments(site):
     space = er.reconstruct(site.grid(), site.cameras(), moment.frames, margin=site.margin())
-    print(
-        f"{moment.stamp_ns / 1e6:5.0f} ms: {len(moment.frames)} images, {100 * space.free.mean():.1f} % free"
-    )
+    print(f"{moment.now_ns / 1e6:5.0f} ms: {len(moment.frames)} images, {100 * space.free.mean():.1f} % free")
 
 print("the same from the command line: elbowroom site check my_room.yaml --out my_room.png")

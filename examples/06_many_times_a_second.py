@@ -9,13 +9,13 @@ import itertools
 
 from elbowroom.monitor import Cycle
 from elbowroom.site import Site
-from elbowroom.sources import open_room
+from elbowroom.sources.room import open_room
 
 room = open_room(Site.simulated_room(), cameras=8, resolution=(160, 120))
 machine, motions = room.machine_and_motions()
 cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
 
-for snapshot in itertools.islice(room.source(), 5):
+for snapshot in itertools.islice(room.source, 5):
     result = cycle.run(snapshot)
     worst = min(result.verdicts, key=lambda verdict: verdict.free_travel)
     print(

@@ -1,13 +1,27 @@
 """Shared by all tests. With this file here, `tests/` is importable: naive twins are `reference.<name>`."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numba
+import numpy as np
 import pytest
+
+if numba.config.DISABLE_JIT:
+    # as in compiled code: whole numbers wrap, and floats divide by zero, without a word
+    np.seterr(all="ignore")
 
 PROJECT = Path(__file__).resolve().parents[1]
 EXAMPLES = PROJECT / "examples"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _kept_apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What is kept from one process to the next is kept in a folder of the tests, not in the user's."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ELBOWROOM_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
 
 
 @pytest.fixture(scope="session")

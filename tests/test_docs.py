@@ -76,7 +76,7 @@ def test_continuous_integration_runs_the_test_command_of_the_readme() -> None:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_commands_that_pages_name_exist(page: Path) -> None:
     root = typer.main.get_command(app)
-    for words in re.findall(r"\belbowroom ((?:[a-z]+ ?)+)", commands_in(page)):
+    for words in re.findall(r"\belbowroom ((?:[a-z]+(?:-[a-z]+)* ?)+)", commands_in(page)):
         command = root
         for word in words.split():
             known = getattr(command, "commands", None)

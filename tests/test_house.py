@@ -11,8 +11,6 @@ from reference.house import House, Place
 
 HouseOf = Callable[[dict[str, str]], House]
 
-being_moved = pytest.mark.xfail(strict=True, raises=AssertionError, reason="being moved")
-
 
 @pytest.fixture(scope="module")
 def today() -> House:
@@ -27,7 +25,6 @@ def told(figure: str, offenders: Sequence[Place]) -> str:
 # figures of the house
 
 
-@being_moved
 def test_functions_take_few_parameters(today: House) -> None:
     counts = today.parameters()
     figure = f"parameters: {house.above_nine_tenths(counts, house.DUE_PARAMETERS)}; most {max(counts)}"
@@ -35,7 +32,6 @@ def test_functions_take_few_parameters(today: House) -> None:
     assert max(counts) <= house.MOST_PARAMETERS, told(figure, today.many_parameters())
 
 
-@being_moved
 def test_functions_fit_on_a_screen(today: House) -> None:
     counts = today.code_lines()
     figure = f"code lines: {house.above_nine_tenths(counts, house.DUE_LINES)}; most {max(counts)}"
@@ -43,19 +39,16 @@ def test_functions_fit_on_a_screen(today: House) -> None:
     assert max(counts) <= house.MOST_LINES, told(figure, today.long_functions())
 
 
-@being_moved
 def test_calls_name_what_they_pass(today: House) -> None:
     calls = today.positional_calls()
     assert len(calls) <= house.DUE_CALLS, told(f"{len(calls)} calls with nine positions or more", calls)
 
 
-@being_moved
 def test_no_circle_of_files_or_folders(today: House) -> None:
     circles = [*today.file_circles(), *today.folder_circles()]
     assert len(circles) <= house.DUE_CIRCLES, told(f"{len(circles)} circles", today.circle_places())
 
 
-@being_moved
 def test_docstrings_tell_of_every_argument(today: House) -> None:
     silent = today.unexplained()
     share = 1 - len(silent) / len(today.explained())

@@ -100,3 +100,12 @@ def test_importing_the_package_loads_no_kernels():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_free_space_of_a_bare_room_loads_nothing_that_reads_meshes():
+    code = (
+        "import sys, elbowroom as er; er.reconstruct, er.Machine, er.check_motion; "
+        "print(sorted(m for m in sys.modules if m in ('trimesh', 'yourdfpy', 'scipy.ndimage', 'embreex')))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -5,7 +5,7 @@ from result_tables.cells import Row, any_tables
 from result_tables.drift import drift_tables
 from result_tables.placement import placement_tables, sweep_tables
 from result_tables.space import room_tables, sevenscenes_tables
-from result_tables.speed import bench_tables
+from result_tables.speed import bench_tables, start_tables
 from result_tables.verdicts import alone_tables, poses_tables, travel_tables
 
 __all__ = [
@@ -19,6 +19,7 @@ __all__ = [
     "poses_tables",
     "room_tables",
     "sevenscenes_tables",
+    "start_tables",
     "sweep_tables",
     "travel_tables",
 ]

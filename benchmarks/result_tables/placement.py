@@ -8,58 +8,52 @@ from result_tables.cells import Cell, Row, centimetres, of, plain, table
 
 def placement_tables(rows: Sequence[Row]) -> list[str]:
     """Time of verification and sweep, optimised layouts, prediction beside what is found."""
-    kinds = {kind: [row for row in rows if row["kind"] == kind] for kind in {row["kind"] for row in rows}}
-    lines = table(
-        [*kinds.get("verify", []), *kinds.get("sweep", [])],
-        {
-            "what": lambda row: (
-                f"{row['cameras']} cameras, {row['points']:,} points"
-                if row["kind"] == "verify"
-                else f"{row['layouts']} layouts at {centimetres(row)}"
-            ),
-            "seconds": lambda row: (
-                of("median_s", 2, due=DUE["verify"])(row)
-                if row["kind"] == "verify"
-                else of("seconds", 1, due=DUE["sweep"])(row)
-            ),
-        },
-    )
-    lines += [
+    kinds = {kind: [row for row in rows if row["kind"] == kind] for kind in DUE}
+    return [
+        *table([*kinds["verify"], *kinds["sweep"]], {"what": _what, "seconds": _seconds}),
         "",
-        *table(
-            kinds.get("optimise", []),
-            {
-                "optimised for": of("what"),
-                "cameras": of("cameras", due=DUE["optimise"]),
-                "valid, verified [%]": of("valid_pct", 2, due=DUE["optimise"]),
-                "bound": of("bound"),
-                "candidates": of("candidates"),
-                "points": of("points"),
-                "19 or fewer after [s]": of("seconds_to_19", 0, due=DUE["optimise"]),
-                "seconds": of("seconds", 0),
-            },
-        ),
-    ]
-    lines += [
+        *table(kinds["optimise"], OPTIMISED),
         "",
-        *table(
-            kinds.get("prediction", []),
-            {
-                "room": of("room"),
-                "images": of("size"),
-                "voxel": centimetres,
-                "scenes": of("scenes"),
-                "predicted [%]": lambda row: (
-                    f"{row['predicted_free_pct']:.2f} ± {row['predicted_error_pct']:.2f}"
-                ),
-                "found [%]": of("found_free_pct", 2),
-                "apart at most [points]": lambda row: of("difference_pct", 2, due=DUE["prediction"])(
-                    {"difference_pct": abs(row["difference_pct"])}
-                ),
-            },
-        ),
+        *table(kinds["prediction"], PREDICTED),
     ]
-    return lines
+
+
+def _what(row: Row) -> str:
+    if row["kind"] == "verify":
+        return f"{row['cameras']} cameras, {row['points']:,} points"
+    return f"{row['layouts']} layouts at {centimetres(row)}"
+
+
+def _seconds(row: Row) -> str:
+    key, digits = ("median_s", 2) if row["kind"] == "verify" else ("seconds", 1)
+    return of(key, digits, due=DUE[row["kind"]])(row)
+
+
+def _apart(row: Row) -> str:
+    """Without its sign."""
+    apart = {"difference_pct": abs(row["difference_pct"])}
+    return of("difference_pct", 2, due=DUE["prediction"])(apart)
+
+
+OPTIMISED: dict[str, Cell] = {
+    "optimised for": of("what"),
+    "cameras": of("cameras", due=DUE["optimise"]),
+    "valid, verified [%]": of("valid_pct", 2, due=DUE["optimise"]),
+    "bound": of("bound"),
+    "candidates": of("candidates"),
+    "points": of("points"),
+    "19 or fewer after [s]": of("seconds_to_19", 0, due=DUE["optimise"]),
+    "seconds": of("seconds", 0),
+}
+PREDICTED: dict[str, Cell] = {
+    "room": of("room"),
+    "images": of("size"),
+    "voxel": centimetres,
+    "scenes": of("scenes"),
+    "predicted [%]": lambda row: f"{row['predicted_free_pct']:.2f} ± {row['predicted_error_pct']:.2f}",
+    "found [%]": of("found_free_pct", 2),
+    "apart at most [points]": _apart,
+}
 
 
 def sweep_tables(rows: Sequence[Row]) -> list[str]:

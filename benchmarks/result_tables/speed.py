@@ -1,9 +1,10 @@
-"""Times and memory of the cycle, due figures beside them."""
+"""Times and memory of the cycle, and of the start, due figures beside them."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 from elbowroom.evaluate.due import due_of
+from elbowroom.evaluate.speed import start
 from elbowroom.evaluate.speed.bench import DUE
 from result_tables.cells import Cell, Row, centimetres, of, same, table
 
@@ -33,6 +34,22 @@ def bench_tables(rows: Sequence[Row]) -> list[str]:
     lines += _against_octomap(rows)
     stages = _stages(row for row in rows if str(row.get("case")).startswith(STAGE))
     return [*lines, "", "Stages of the cycle, medians:", "", *stages] if stages else lines
+
+
+def start_tables(rows: Sequence[Row]) -> list[str]:
+    """Times of new processes, beside those of an earlier commit."""
+    return table(
+        rows,
+        {
+            **same("case", "rounds"),
+            "median ms": of("median_ms", 0, due=start.DUE),
+            "99 % ms": of("p99_ms", 0),
+            "worst ms": of("max_ms", 0),
+            "processor time, median ms": of("cpu_median_ms", 0),
+            "before, median ms": of("before_ms", 0),
+            "before, processor time ms": of("before_cpu_ms", 0),
+        },
+    )
 
 
 def _against_octomap(rows: Sequence[Row]) -> list[str]:

@@ -9,6 +9,7 @@ from elbowroom.geometry import VoxelGrid
 from elbowroom.placement import (
     FixedRoom,
     Goal,
+    Search,
     candidates_of,
     capability,
     even_cameras,
@@ -44,7 +45,7 @@ def main() -> None:
         for side, walls in ((5, room), (4, at_edge))
     }
     keep("placement_sweep.png", curve(curves, 3))
-    done = optimise(grid, room, candidates_of(site, grid, room), goal=Goal(98.9), seconds=40.0)
+    done = optimise(grid, room, candidates_of(site, grid, room), goal=Goal(98.9), search=Search(40.0))
     keep("placement_optimised.png", plan(done.found, room, "Optimised"))
     small = [replace(camera, noise=NOISE_PRESETS["tof"]) for camera in done.cameras]
     small = [with_joined_pixels(camera, 160) for camera in small]

@@ -9,90 +9,25 @@ go, and whether to go, slow down or stop, and why.
 Elbowroom is a supervisory layer that may only ever reduce motion. It is no certified safety function.
 """
 
+import ast
 import sys
 from importlib import import_module
+from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from elbowroom._kernel_cache import forget_stale_kernels
 
-if TYPE_CHECKING:
-    from elbowroom.errors import ElbowroomError
-    from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
-    from elbowroom.machine import Machine
-    from elbowroom.machine.c_arm import ceiling_c_arm
-    from elbowroom.motion import (
-        Cause,
-        JointPath,
-        Level,
-        Motion,
-        Verdict,
-        braking_distance,
-        check_motion,
-        check_motions,
-        joint_motions,
-        most_cautious,
-    )
-    from elbowroom.reconstruct import Evidence, FreeSpace, carve, merge, reconstruct, resolve, warm_up
-    from elbowroom.sensing import NOISE_PRESETS, DepthFrame, JointRecord, Margin, NoiseModel
-    from elbowroom.site import Site
-
 forget_stale_kernels()
 
-_HOME = {
-    "elbowroom.errors": ("ElbowroomError",),
-    "elbowroom.geometry": ("DepthCamera", "Intrinsics", "VoxelGrid"),
-    "elbowroom.machine": ("Machine",),
-    "elbowroom.machine.c_arm": ("ceiling_c_arm",),
-    "elbowroom.motion": (
-        "Cause",
-        "JointPath",
-        "Level",
-        "Motion",
-        "Verdict",
-        "braking_distance",
-        "check_motion",
-        "check_motions",
-        "joint_motions",
-        "most_cautious",
-    ),
-    "elbowroom.reconstruct": ("Evidence", "FreeSpace", "carve", "merge", "reconstruct", "resolve", "warm_up"),
-    "elbowroom.sensing": ("NOISE_PRESETS", "DepthFrame", "JointRecord", "Margin", "NoiseModel"),
-    "elbowroom.site": ("Site",),
+_MODULE_OF = {
+    name.name: line.module
+    for line in ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")).body
+    if isinstance(line, ast.ImportFrom) and line.module is not None
+    for name in line.names
 }
-_MODULE_OF = {name: module for module, names in _HOME.items() for name in names}
-
-__all__ = [
-    "NOISE_PRESETS",
-    "Cause",
-    "DepthCamera",
-    "DepthFrame",
-    "ElbowroomError",
-    "Evidence",
-    "FreeSpace",
-    "Intrinsics",
-    "JointPath",
-    "JointRecord",
-    "Level",
-    "Machine",
-    "Margin",
-    "Motion",
-    "NoiseModel",
-    "Site",
-    "Verdict",
-    "VoxelGrid",
-    "braking_distance",
-    "carve",
-    "ceiling_c_arm",
-    "check_motion",
-    "check_motions",
-    "joint_motions",
-    "merge",
-    "most_cautious",
-    "reconstruct",
-    "resolve",
-    "warm_up",
-]
+"""By public name the module that it is at home in, as the stub beside this file says for type checkers."""
+__all__ = sorted(_MODULE_OF)
 
 
 def __getattr__(name: str) -> Any:
@@ -105,11 +40,11 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return list(__all__)
 
 
 class _Package(ModuleType):
-    """Keeps `elbowroom.reconstruct` the function, where importing the folder of that name would bind the folder."""
+    """Keeps `elbowroom.reconstruct` the function: Python binds a folder's name in its package once it is imported."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not (name in _MODULE_OF and isinstance(value, ModuleType)):

@@ -100,17 +100,30 @@ def test_monitor_plays_a_recording_once(recording, tmp_path):
     assert [row["time_s"] for row in rows_of(out) if row["kind"] == "cycle"] == [1.0, 1.5]
 
 
-@pytest.mark.parametrize("option", [["--cameras", "3"], ["--resolution", "64x48"]])
+@pytest.mark.parametrize(
+    "option", [["--cameras", "3"], ["--resolution", "64x48"], ["--knock", "cam00:1deg@5"]]
+)
 def test_a_recording_has_the_cameras_that_it_has(recording, capsys, option):
     assert run(["monitor", str(recording), *option]) == 2
-    assert "are for simulated rooms" in capsys.readouterr().err
+    assert f"elbowroom: {option[0]}: for simulated rooms" in capsys.readouterr().err
+
+
+def test_what_the_library_says_of_an_argument_names_the_option(recording, capsys):
+    (recording.parent / "recorded" / "joints.csv").unlink()
+    site = recording.read_text().replace("layout: folder", "layout: stampless")
+    recording.write_text(site)
+    assert run(["monitor", str(recording)]) == 2
+    assert f"elbowroom: --joints: {recording} records none of its machine" in capsys.readouterr().err
+    recording.write_text(site[: site.index("machine:")] + site[site.index("cameras:") :])
+    assert run(["check", str(recording), "--joint", "larm", "--direction", "+", "--joints", "larm=0"]) == 2
+    assert f"elbowroom: --joints: {recording} names no machine" in capsys.readouterr().err
 
 
 def test_ctrl_c_ends_the_monitor_with_its_summary(room, tmp_path, capsys, monkeypatch):
     from elbowroom.view.screen.terminal import TerminalView
 
-    def interrupted(self, result, source_ms):
-        self.log.add(result, source_ms)
+    def interrupted(self, done):
+        self.log.add(done.result, done.source_ms)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(TerminalView, "show", interrupted)
@@ -144,7 +157,8 @@ def test_a_moment_that_is_not_there_is_named_and_leaves_no_file(recording, tmp_p
     out = tmp_path / "out.json"
     argv = ["reconstruct", str(recording), "--out", str(tmp_path / "r"), "--moment", "2", "--json", str(out)]
     assert run(argv) == 2
-    assert "has 2 moments, from 0" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert "--moment: 2 is not there" in error and "has 2 moments, from 0" in error
     assert not out.exists() and list((tmp_path / "r").iterdir()) == []
 
 

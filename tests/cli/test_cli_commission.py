@@ -74,8 +74,8 @@ def test_a_knocked_camera_stops_the_monitor_and_is_named(commissioned, tmp_path,
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--knock", "cam09:1deg@5"], "nothing is called 'cam09'"),
-        (["--knock", "cam01"], "is no knock"),
+        (["--knock", "cam09:1deg@5"], "--knock: nothing is called 'cam09'"),
+        (["--knock", "cam01"], "--knock: 'cam01' is no knock"),
         (["--cameras", "2"], "which the site has not"),
         (["--resolution", "32x24"], "commission again"),
     ],

@@ -9,7 +9,10 @@ from elbowroom.cli import run
 from elbowroom.errors import InputError
 from elbowroom.evaluate.examples import example
 
-COMMANDS = ["room", "sevenscenes", "alone", "poses", "travel", "bits"]
+COMMANDS = [
+    *("room", "sevenscenes", "alone", "poses", "travel", "bits", "thin-solids", "lost-pixels", "placement"),
+    *("scale-cameras", "scale-budget"),
+]
 SMALL = ["--cameras", "5", "--size", "thesis", "--voxel-size", "0.1"]
 ROUNDED = 1.5e-6
 """What two numbers of a file may differ by, each rounded to six digits after the point."""

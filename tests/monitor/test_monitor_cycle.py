@@ -1,17 +1,21 @@
 """A pass gives a verdict for each motion, and stop for each that it has none for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from elbowroom.errors import FrameError, InputError
 from elbowroom.geometry import VoxelGrid
-from elbowroom.monitor import Cycle, Health, cycle
+from elbowroom.monitor import Cycle, Health, Known, cycle
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, Snapshot
 
 GRID = VoxelGrid(origin_m=(0, 0, 0), shape=(4, 4, 4), voxel_size_m=0.1)
 SPACE = FreeSpace.from_occupied(GRID, np.zeros(GRID.shape, dtype=bool))
+NOTHING = Snapshot((), {}, now_ns=0)
+NO_FRAMES_AT_ALL = Snapshot((None,), {}, now_ns=0)
 MOTIONS = (Motion("slide", +1, 0.1), Motion("slide", -1, 0.1))
 
 
@@ -32,60 +36,64 @@ def clear(motion: Motion, free_travel: float = 0.5) -> Verdict:
 def a_cycle(monkeypatch) -> Cycle:
     """A pass whose two stages answer that all is free and clear, unless a test lets them do otherwise."""
 
-    def reconstruct(*_, timer, **__):
+    def free_space_of(*_, timer, **__):
         with timer("carve"):
             return SPACE
 
-    monkeypatch.setattr(cycle, "reconstruct", reconstruct)
+    monkeypatch.setattr(cycle, "free_space_of", free_space_of)
     monkeypatch.setattr(
-        cycle, "check_motions", lambda space, machine, joints, motions, _: [*map(clear, motions)]
+        cycle, "check_motions", lambda space, machine, joints, motions: [*map(clear, motions)]
     )
     return Cycle(GRID, (), OneJoint(), MOTIONS, focused=False)
 
 
-def frames(*stamps_ns: int | None) -> list[DepthFrame]:
-    return [DepthFrame(f"c{i}", stamp, np.ones((2, 2), np.float32)) for i, stamp in enumerate(stamps_ns)]
+def taken(*stamps_ns: int | None, now_ns: int = 7_000_000) -> Snapshot:
+    image = np.ones((2, 2), np.float32)
+    frames = [DepthFrame(f"c{i}", stamp, image) for i, stamp in enumerate(stamps_ns)]
+    return Snapshot.taken(frames, {"slide": 0.0}, now_ns)
 
 
 def assert_all_stop(result, reason: str):
     assert [v.motion for v in result.verdicts] == list(MOTIONS)
     assert all(v.level is Level.STOP and v.free_travel == 0 and not v.overridable for v in result.verdicts)
+    assert {v.cause for v in result.verdicts} == {Cause.FAULT}
     assert result.level is Level.STOP
     assert reason in result.fault
 
 
 def test_a_whole_pass_has_verdicts_times_and_no_fault(a_cycle):
-    result = a_cycle.run(frames(2_000_000, 5_000_000), {"slide": 0.0}, 7_000_000)
-    assert result.level is Level.CLEAR and result.fault is None and result.space is SPACE
+    result = a_cycle.run(taken(2_000_000, 5_000_000))
+    assert result.level is Level.CLEAR and result.fault is None and result.space.free.all()
     assert list(result.stage_ms) == ["carve", "motion"]
     assert result.cycle_ms == pytest.approx(sum(result.stage_ms.values()))
     assert result.oldest_age_ms == 5.0
 
 
 def test_passes_are_numbered(a_cycle):
-    assert [a_cycle.run([], {}, 0).sequence for _ in range(3)] == [0, 1, 2]
+    assert [a_cycle.run(NOTHING).sequence for _ in range(3)] == [0, 1, 2]
 
 
 def test_frames_without_stamps_have_no_age(a_cycle):
-    assert a_cycle.run(frames(None), {}, 0).oldest_age_ms is None
+    assert a_cycle.run(taken(None)).oldest_age_ms is None
 
 
 @pytest.mark.parametrize(
     "error", [FrameError("two frames of cam00"), ValueError("NaN"), MemoryError("no room")]
 )
-@pytest.mark.parametrize("stage", ["reconstruct", "check_motions"])
+@pytest.mark.parametrize("stage", ["free_space_of", "check_motions"])
 def test_whatever_is_raised_is_a_stop_with_its_reason(a_cycle, monkeypatch, stage, error):
     def fails(*_, **__):
         raise error
 
     monkeypatch.setattr(cycle, stage, fails)
-    result = a_cycle.run([], {}, 0)
+    result = a_cycle.run(NOTHING)
     assert_all_stop(result, str(error))
     assert result.space is None
 
 
-def test_frames_that_are_none_at_all_are_a_stop(a_cycle):
-    assert_all_stop(a_cycle.run([None], {}, 0), "AttributeError")
+@pytest.mark.parametrize("snapshot", [NO_FRAMES_AT_ALL, None, "nonsense"])
+def test_what_is_no_snapshot_is_a_stop(a_cycle, snapshot):
+    assert_all_stop(a_cycle.run(snapshot), "AttributeError")
 
 
 @pytest.mark.parametrize(
@@ -100,16 +108,17 @@ def test_frames_that_are_none_at_all_are_a_stop(a_cycle):
 )
 def test_a_missing_or_meaningless_verdict_is_a_stop_for_its_motion(a_cycle, monkeypatch, unusable):
     monkeypatch.setattr(cycle, "check_motions", lambda *_: [clear(MOTIONS[0]), unusable])
-    result = a_cycle.run([], {}, 0)
+    result = a_cycle.run(NOTHING)
     assert [v.level for v in result.verdicts] == [Level.CLEAR, Level.STOP]
     assert result.verdicts[1].free_travel_unit == "m"
+    assert result.verdicts[1].cause is Cause.FAULT
     assert "slide -" in result.fault and "slide +" not in result.fault
 
 
 def test_verdicts_in_another_order_stay_with_their_motions(a_cycle, monkeypatch):
     backwards = [clear(MOTIONS[1], 0.2), clear(MOTIONS[0], 0.1)]
     monkeypatch.setattr(cycle, "check_motions", lambda *_: backwards)
-    assert [v.free_travel for v in a_cycle.run([], {}, 0).verdicts] == [0.1, 0.2]
+    assert [v.free_travel for v in a_cycle.run(NOTHING).verdicts] == [0.1, 0.2]
 
 
 def test_a_cycle_that_asks_nothing_is_refused():
@@ -117,44 +126,40 @@ def test_a_cycle_that_asks_nothing_is_refused():
         Cycle(GRID, (), OneJoint(), ())
 
 
-class AWatch:
-    """Says what it is told to say."""
+def test_a_result_keeps_images_only_where_somebody_asks_for_it(a_cycle, monkeypatch):
+    with_images = replace(SPACE, source=object())
+    monkeypatch.setattr(cycle, "free_space_of", lambda *_, **__: with_images)
+    assert a_cycle.run(NOTHING).space.source is None
+    a_cycle.keeps_images = True
+    assert a_cycle.run(NOTHING).space.source is with_images.source
 
-    def __init__(self, *reasons: str | Exception) -> None:
-        self.reasons = list(reasons)
-        self.heard: list[list[str]] = []
 
-    def hear(self, frames, joints, now_ns):
-        self.heard.append([frame.camera for frame in frames])
-        reason = self.reasons.pop(0)
-        if isinstance(reason, Exception):
-            raise reason
-        return Health((), (), {"c0": reason} if reason else {})
+def health(reason: str) -> Known:
+    return Known(Health((), (), {"c0": reason} if reason else {}), None, {"watch": 2.0})
 
 
 def test_what_the_watch_found_stops_every_motion_and_is_no_fault(a_cycle):
-    a_cycle.watch = AWatch("", "camera c0 has turned by 0.9 degrees")
-    assert a_cycle.run(frames(1), {"slide": 0.0}, 1).level is Level.CLEAR
-    result = a_cycle.run(frames(1), {"slide": 0.0}, 1)
+    assert a_cycle.run(taken(1)).knowing(health("")).level is Level.CLEAR
+    result = a_cycle.run(taken(1)).knowing(health("camera c0 has turned by 0.9 degrees"))
     assert [v.level for v in result.verdicts] == [Level.STOP] * 2
     assert all(v.free_travel == 0 and not v.overridable for v in result.verdicts)
+    assert {v.cause for v in result.verdicts} == {Cause.WATCH}
     assert result.fault is None and result.stopped_by == "camera c0 has turned by 0.9 degrees"
-    assert result.space is SPACE and list(result.stage_ms) == ["watch", "carve", "motion"]
+    assert result.space is not None and list(result.stage_ms) == ["watch", "carve", "motion"]
 
 
-def test_a_watch_that_fails_is_a_stop(a_cycle):
-    a_cycle.watch = AWatch(InputError("no such image"))
-    result = a_cycle.run(frames(1), {"slide": 0.0}, 1)
+def test_a_watch_that_failed_is_a_stop(a_cycle):
+    result = a_cycle.run(taken(1)).knowing(Known(None, "InputError: no such image"))
     assert_all_stop(result, "no such image")
     assert result.stopped_by == result.fault
 
 
-def test_the_watch_hears_no_frame_past_its_age(a_cycle):
-    a_cycle.watch, a_cycle.max_age_ns = AWatch(""), 5
-    a_cycle.run(frames(0, 8, None), {"slide": 0.0}, 10)
-    assert a_cycle.watch.heard == [["c1"]]
+def test_a_fault_stays_a_fault_whatever_the_watch_says(a_cycle):
+    result = a_cycle.run(NO_FRAMES_AT_ALL).knowing(health("camera c0 has turned"))
+    assert_all_stop(result, "AttributeError")
+    assert result.health.reason == "camera c0 has turned"
 
 
 def test_nobody_watches_and_it_says_so(a_cycle):
-    result = a_cycle.run(frames(1), {"slide": 0.0}, 1)
+    result = a_cycle.run(taken(1)).knowing(Known())
     assert result.health is None and result.stopped_by is None

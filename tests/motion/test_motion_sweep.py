@@ -135,7 +135,7 @@ def test_halving_finds_the_same_interval_as_looking_at_every_one(arm, motion, mo
         blocked = touched_by_ball(grid, rng.uniform((-0.2, -0.6, 0.3), (1.1, 0.6, 0.8)), 0.08)
         blocked |= touched_by_box(grid, (0.95, -0.2, -0.3), (1.0, 0.3, 0.7))
         space = FreeSpace.from_occupied(grid, blocked).without(arm, HOME)
-        block = swept.find_block(arm, skin, speeds, way, swept.volume_of(space), grid)
+        block = swept.find_block(arm, skin, speeds, way, swept.volume_of(space))
         found = way.length if block is None else block.travel
         assert found == pytest.approx(
             naive.free_travel(arm, skin, speeds, way, space.surface, grid, intervals), abs=1e-12

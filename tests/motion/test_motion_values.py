@@ -90,6 +90,15 @@ def test_only_unseen_space_may_be_overridden():
     assert [cause for cause in Cause if verdict_of(0.1, cause).overridable] == [Cause.UNSEEN]
 
 
+def test_a_fault_wins_over_all_and_what_the_watch_found_over_what_was_seen():
+    motion = Motion("larm", 1, 0.1)
+    at_once = verdict_of(0.0)
+    watch, fault = (Verdict.stop(motion, "rad", cause) for cause in (Cause.WATCH, Cause.FAULT))
+    assert most_cautious([at_once, watch, fault]) is fault
+    assert most_cautious([at_once, watch, verdict_of(0.0, Cause.BLIND)]) is watch
+    assert (fault.level, fault.free_travel, fault.overridable) == (Level.STOP, 0.0, False)
+
+
 def test_a_row_says_joint_and_direction_of_a_motion_and_the_name_of_a_path():
     verdict = verdict_of(0.15)
     row = verdict.row()

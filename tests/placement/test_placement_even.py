@@ -8,8 +8,8 @@ from elbowroom.geometry import VoxelGrid
 from elbowroom.placement.even import best_aim, even_cameras, sweep
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.requirement import Requirement
-from elbowroom.placement.sensor import across_deg, known_sensors
-from elbowroom.simulate import wall_cameras
+from elbowroom.placement.sensor import known_sensors
+from elbowroom.simulate import Walls, wall_cameras
 from reference.placement_rooms import room_of
 
 COARSE = VoxelGrid((-2.0, -2.0, 0.0), (16, 16, 10), 0.25)
@@ -17,7 +17,7 @@ COARSE = VoxelGrid((-2.0, -2.0, 0.0), (16, 16, 10), 0.25)
 
 def test_in_a_square_room_they_hang_where_the_simulators_cameras_hang():
     made = even_cameras(room_of().walls_m, known_sensors()["vga"], 21, heights_m=(2.4, 0.4), aim_m=1.1)
-    for one, other in zip(made, wall_cameras(21, (2.4, 0.4), half_side_m=2.49), strict=True):
+    for one, other in zip(made, wall_cameras(21, (2.4, 0.4), walls=Walls(half_side_m=2.49)), strict=True):
         assert one.name == other.name
         np.testing.assert_allclose(one.world_from_camera, other.world_from_camera, atol=1e-12)
 
@@ -32,7 +32,8 @@ def test_in_a_long_room_they_keep_equal_distances_along_the_walls():
 
 def test_known_sensors_are_90_degrees_wide_and_the_thesis_one_ends_at_7_m():
     for sensor in known_sensors().values():
-        assert across_deg(sensor.camera)[0] == pytest.approx(90.0)
+        half_px, focal_px = sensor.camera.width / 2, sensor.camera.intrinsics.fx
+        assert np.degrees(2 * np.arctan(half_px / focal_px)) == pytest.approx(90.0)
     thesis = known_sensors()["thesis"].camera
     assert (thesis.width, thesis.height, thesis.max_depth_m, thesis.depth_kind) == (64, 48, 7.0, "radial")
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from elbowroom.errors import InputError, PackageError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.placement.candidates import candidates_of
-from elbowroom.placement.optimisation import Goal, optimise, sample_points
+from elbowroom.placement.optimisation import Goal, Search, optimise, sample_points
 from elbowroom.placement.requirement import TIE_RAD, Requirement
 from elbowroom.placement.solver.bound import hard_points, price_bound, share_bound
 from elbowroom.placement.solver.kernels import search as kernels
@@ -191,7 +191,7 @@ def test_repair_reaches_the_share_and_prune_leaves_nothing_to_spare():
 
 def test_an_optimised_layout_is_verified_and_needs_fewer_cameras_than_evenly_spread_ones(site):
     grid, room = site.grid(), room_of()
-    done = optimise(grid, room, candidates_of(site, grid, room), goal=Goal(90.0), points=600, seconds=3.0)
+    done = optimise(grid, room, candidates_of(site, grid, room), goal=Goal(90.0), search=Search(3.0, 600))
     again = verify(grid, done.cameras, room)
     assert again.valid_pct == done.found.valid_pct >= 90.0
     assert 3 <= done.bound <= len(done.cameras) <= 12
@@ -205,7 +205,7 @@ def test_what_exists_is_kept_and_its_mount_is_taken(site):
     grid, room = site.grid(), room_of()
     candidates = candidates_of(site, grid, room)
     there = candidates[0].camera
-    done = optimise(grid, room, candidates, goal=Goal(85.0), existing=[there], points=400, seconds=2.0)
+    done = optimise(grid, room, candidates, goal=Goal(85.0), existing=[there], search=Search(2.0, 400))
     assert done.cameras[0] is there and len({c.name for c in done.cameras}) == len(done.cameras)
     assert all(np.linalg.norm(c.camera.centre_in_world - there.centre_in_world) > 0.1 for c in done.bought)
 
@@ -213,7 +213,7 @@ def test_what_exists_is_kept_and_its_mount_is_taken(site):
 def test_a_number_of_cameras_gets_the_best_share_it_can_within_its_bound(site):
     grid, room = site.grid(), room_of()
     done = optimise(
-        grid, room, candidates_of(site, grid, room), goal=Goal(cameras=7), points=400, seconds=3.0
+        grid, room, candidates_of(site, grid, room), goal=Goal(cameras=7), search=Search(3.0, 400)
     )
     assert len(done.cameras) <= 7
     assert 60 < done.model_pct <= done.bound <= 100
@@ -229,8 +229,8 @@ def test_the_cheapest_layout_costs_no_more_than_the_one_of_fewest_cameras(site, 
     grid, room = two.grid(), room_of()
     candidates = candidates_of(two, grid, room)
     assert {c.sensor.name for c in candidates} == {"wide", "narrow"}
-    few = optimise(grid, room, candidates, goal=Goal(80.0), points=300, seconds=2.0)
-    cheap = optimise(grid, room, candidates, goal=Goal(80.0, by_price=True), points=300, seconds=2.0)
+    few = optimise(grid, room, candidates, goal=Goal(80.0), search=Search(2.0, 300))
+    cheap = optimise(grid, room, candidates, goal=Goal(80.0, by_price=True), search=Search(2.0, 300))
     assert cheap.price <= few.price and cheap.bound <= cheap.price
     assert cheap.found.valid_pct >= 80.0
 
@@ -241,7 +241,7 @@ def test_a_requirement_out_of_reach_says_at_once_what_is_and_who_sees_nothing(si
     candidates = [c for c in candidates_of(site, grid, room) if c.mount.position_m[0] > -0.8]
     begun = time.perf_counter()
     with pytest.raises(InputError) as caught:
-        optimise(grid, room, candidates, points=500, seconds=600.0)
+        optimise(grid, room, candidates, search=Search(600.0, 500))
     assert time.perf_counter() - begun < 10
     text = str(caught.value)
     assert (
@@ -255,7 +255,7 @@ def test_no_candidates_is_one_line(site):
     grid, room = site.grid(), room_of()
     candidates = candidates_of(site, grid, room)
     with pytest.raises(InputError, match="no candidates; every mount is taken by a camera"):
-        optimise(grid, room, candidates, existing=[c.camera for c in candidates], seconds=1.0)
+        optimise(grid, room, candidates, existing=[c.camera for c in candidates], search=Search(1.0))
 
 
 @pytest.mark.parametrize(
@@ -277,7 +277,7 @@ def test_without_cp_sat_the_error_says_what_to_install(site, monkeypatch):
     monkeypatch.setitem(sys.modules, "ortools.sat.python.cp_model", None)
     grid, room = site.grid(), room_of()
     with pytest.raises(PackageError, match=r"pip install 'elbowroom\[placement\]'"):
-        optimise(grid, room, candidates_of(site, grid, room), seconds=1.0)
+        optimise(grid, room, candidates_of(site, grid, room), search=Search(1.0))
 
 
 def test_ties_are_the_same_in_both():

@@ -6,9 +6,8 @@ import numpy as np
 
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.geometry.twist import between, exp, sizes
-from elbowroom.sensing import NOISE_PRESETS
+from elbowroom.sensing import NOISE_PRESETS, Snapshot
 from elbowroom.simulate import InterventionRoom, render
-from elbowroom.sources import RecordedMoment
 
 PLACES = {
     "north": ((0.3, 1.9, 2.3), (0.0, 0.0, 1.3)),
@@ -46,11 +45,10 @@ def poses_of(room, count, seed=0):
 def record(true_cameras, moments, *, noise=True, seed=0):
     """What the cameras deliver, with joints, as a recording gives it."""
     return [
-        RecordedMoment(
-            moment.stamp_ns,
+        Snapshot(
             tuple(render(true_cameras, moment, noise=noise, seed=seed)),
             dict(moment.joints),
-            {one.name: dict(moment.joints) for one in true_cameras},
+            now_ns=moment.stamp_ns,
         )
         for moment in moments
     ]

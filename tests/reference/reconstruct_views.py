@@ -3,8 +3,8 @@
 import numpy as np
 
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.kernels import box as box
-from elbowroom.reconstruct.views import fill, layout_of
+from elbowroom.reconstruct.layout import layout_of
+from elbowroom.reconstruct.views import fill
 from reference.reconstruct_pixel import Image
 from reference.reconstruct_pyramid import bounds_of
 
@@ -15,24 +15,23 @@ def images_of(grid, cameras, frames, margin, model_depth=None):
     views, _ = fill(layout, room_images(cameras, frames), model_depth or {})
     images = []
     for c, camera in enumerate(cameras):
-        own = slice(views.texel_first[c], views.texel_first[c + 1])
         shape = (camera.height, camera.width)
         trust, doubt = (
-            bounds_of(texels[own].reshape(shape).copy())
-            for texels in (views.trust_texels, views.doubt_texels)
+            bounds_of(texels[layout.texels[c]].reshape(shape).copy())
+            for texels in (views.texels.trust_texels, views.texels.doubt_texels)
         )
-        row = views.numbers[c]
+        record = views.cameras[c]
         images.append(
             Image(
                 camera,
-                row[box.MARGIN : box.MARGIN + 5].copy(),
-                row[box.LATERAL],
-                row[box.QUANTUM],
+                np.array(record["margin"].item()),
+                record["lateral_px"],
+                record["quantum"],
                 trust,
                 doubt,
-                lowest=int(row[box.LOWEST]),
-                split=bool(row[box.SPLIT]),
-                blank=bool(row[box.BLANK]),
+                lowest=int(record["lowest"]),
+                split=bool(record["explained"]),
+                blank=bool(record["blank"]),
             )
         )
     return images

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.kernels import watch as kernels
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, Snapshot
 
 LOWER, UPPER = np.array((-2.0, -2.2, 0.0)), np.array((2.3, 2.0, 2.8))
 
@@ -109,5 +109,5 @@ def commissioned(cameras, noise_m=NOISE_M):
     """References of cameras in the empty room of six walls."""
     room = Commissioning(cameras, None, 10)
     for number in range(10):
-        room.add([frame(camera, number, noise_m) for camera in cameras], None)
+        room.add(Snapshot.taken([frame(camera, number, noise_m) for camera in cameras]))
     return room.references()

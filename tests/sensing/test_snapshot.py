@@ -52,3 +52,20 @@ def test_an_age_limit_needs_the_time_and_is_not_below_zero():
 def test_the_oldest_frame_says_the_age():
     assert Snapshot((frame("a", 0), frame("b", 10**6)), now_ns=3 * 10**6).oldest_age_ms == 3.0
     assert Snapshot((frame("a", None),), now_ns=5).oldest_age_ms is None
+
+
+def test_a_record_is_not_asked_of_a_frame_past_its_age():
+    frames = [frame("a", -(10**9)), frame("b", 60), frame("c", None)]
+    taken = Snapshot.taken(frames, RECORD, now_ns=90, max_age_ns=50)
+    assert taken.frames == tuple(frames)
+    assert set(taken.joints_of) == {"b"} and taken.joints == {"lift": pytest.approx(0.6)}
+
+
+def test_where_the_machine_was_at_the_newest_frame():
+    positions = {"a": {"lift": 0.1}, "b": {"lift": 0.2}}
+    now = {"lift": 0.3}
+    assert Snapshot((frame("b", 7), frame("a", 9), frame("c", None)), now, positions).joints_at_newest == {
+        "lift": 0.1
+    }
+    assert Snapshot((frame("c", 9), frame("a", 7)), now, positions).joints_at_newest == now
+    assert Snapshot((), now, positions).joints_at_newest == now

@@ -3,7 +3,7 @@ import pytest
 
 from elbowroom.errors import CameraError
 from elbowroom.geometry import VoxelGrid
-from elbowroom.simulate import InterventionRoom, render, wall_cameras
+from elbowroom.simulate import InterventionRoom, Optics, render, wall_cameras
 
 
 def views(cameras, points):
@@ -53,15 +53,20 @@ def test_sizes_and_field_of_view():
     assert wall_cameras()[0].intrinsics.fx == pytest.approx(320)
     thesis = wall_cameras(size="thesis")[0]
     assert (thesis.width, thesis.height, thesis.depth_kind) == (64, 48, "radial")
-    assert wall_cameras(hfov_deg=40, width=64, height=48)[0].intrinsics.fx == pytest.approx(
+    assert wall_cameras(optics=Optics(hfov_deg=40), width=64, height=48)[0].intrinsics.fx == pytest.approx(
         32 / np.tan(np.radians(20))
     )
 
 
-@pytest.mark.parametrize("wrong", [{"count": 0}, {"hfov_deg": 180}, {"size": "huge"}, {"width": -3}])
+@pytest.mark.parametrize("wrong", [{"count": 0}, {"size": "huge"}, {"width": -3}])
 def test_impossible_cameras_are_refused(wrong):
     with pytest.raises(CameraError, match=str(next(iter(wrong.values())))):
         wall_cameras(**wrong)
+
+
+def test_a_field_of_view_that_no_pinhole_has_is_refused():
+    with pytest.raises(CameraError, match="hfov_deg is 180, must be between"):
+        Optics(hfov_deg=180)
 
 
 def test_no_camera_is_inside_a_solid():

@@ -8,7 +8,7 @@ from elbowroom.errors import CameraError, InputError
 from elbowroom.geometry import DepthCamera, Intrinsics, parallel
 from elbowroom.sensing import NOISE_PRESETS, NoiseModel
 from elbowroom.sensing.rays import pixel_rays
-from elbowroom.simulate import Moment, Solid, render, wall_cameras
+from elbowroom.simulate import Moment, Optics, Solid, render, wall_cameras
 from elbowroom.simulate.kernels import sensor as kernels
 from elbowroom.simulate.shapes import box, ellipsoid, join
 from reference import simulate_sensor as naive_sensor
@@ -33,7 +33,7 @@ def exact(camera, moment):
 @pytest.mark.parametrize("kind", ["planar", "radial"])
 @pytest.mark.parametrize("distortion", [(), BARREL, RATIONAL], ids=["pinhole", "barrel", "rational"])
 def test_depth_is_what_rays_through_triangles_one_by_one_give(room, kind, distortion):
-    eye = wall_cameras(5, width=12, height=9, depth_kind=kind)[3]
+    eye = wall_cameras(5, width=12, height=9, optics=Optics(depth_kind=kind))[3]
     eye = replace(eye, intrinsics=replace(eye.intrinsics, distortion=distortion))
     moment = room.at(4.0)
     triangles = np.concatenate([solid.vertices_in_world[solid.mesh.faces] for solid in moment.solids])

@@ -10,6 +10,7 @@ from elbowroom.errors import SiteError
 from elbowroom.geometry import looking_at
 from elbowroom.sensing import Margin, NoiseModel
 from elbowroom.site import Site
+from elbowroom.site.notes import notes_of
 from elbowroom.site.paths import expand
 from elbowroom.site.site import NEW_SITE
 
@@ -23,7 +24,7 @@ def test_a_plain_site_is_its_values(folder, plain):
     assert site.margin() == Margin()
     assert (site.rule, site.detail) == ("three", "pixel")
     assert site.depth_scale_m("north") == 0.001
-    assert site.notes == ("max_frame_age_ms is not given: frames of any age count",)
+    assert notes_of(site) == ("max_frame_age_ms is not given: frames of any age count",)
 
 
 def test_a_cameras_own_keys_go_before_the_shared_ones(folder, plain):
@@ -127,7 +128,7 @@ def test_a_machine_with_braking_distances_of_its_joints(folder, plain, arm_urdf)
     assert list(motions) == [("turn", 1), ("turn", -1), ("slide", 1), ("slide", -1)]
     assert motions["slide", 1] == pytest.approx(0.05)
     assert motions["turn", -1] == pytest.approx(math.radians(4.5))
-    assert "links that are not checked: base" in site.notes
+    assert "links that are not checked: base" in notes_of(site)
 
 
 def test_joints_without_a_speed_are_named(folder, plain, arm_urdf):
@@ -136,7 +137,7 @@ def test_joints_without_a_speed_are_named(folder, plain, arm_urdf):
     plain["max_frame_age_ms"] = 100
     site = Site.load(folder.write(plain))
     assert len(site.motions(site.machine())) == 2
-    assert site.notes == ("joints without a speed, whose motions are not checked: turn",)
+    assert notes_of(site) == ("joints without a speed, whose motions are not checked: turn",)
 
 
 def test_a_pose_a_little_off_is_mended_and_noted(folder, plain):
@@ -146,20 +147,27 @@ def test_a_pose_a_little_off_is_mended_and_noted(folder, plain):
     assert site.max_age_ns == 100_000_000
     rotation = site.cameras()[0].world_from_camera[:3, :3]
     np.testing.assert_allclose(rotation, np.eye(3), atol=1e-12)
-    assert len(site.notes) == 1 and "north: world_from_camera: off a rotation by 5.0e-04" in site.notes[0]
+    assert (
+        len(notes_of(site)) == 1
+        and "north: world_from_camera: off a rotation by 5.0e-04" in notes_of(site)[0]
+    )
 
 
 def test_rules_that_break_the_law_are_noted(folder, plain):
     for rule, said in (("three", False), ("majority", False), ("veto", True), ("any", True)):
         plain["rule"] = rule
-        notes = Site.load(folder.write(plain)).notes
+        notes = notes_of(Site.load(folder.write(plain)))
         assert any("less evidence may add free space" in note for note in notes) == said
 
 
 def test_the_simulated_room_says_how_its_cameras_are_made():
     site = Site.simulated_room()
     settings = site.simulated_cameras()
-    assert (settings["count"], set(settings["height_m"]), settings["hfov_deg"]) == (21, {2.4, 0.4}, 90.0)
+    assert (settings["count"], set(settings["height_m"]), settings["optics"].hfov_deg) == (
+        21,
+        {2.4, 0.4},
+        90.0,
+    )
     assert site.max_age_ns == 200_000_000
     assert {motion.joint for motion in site.motions(site.machine())} == {"long", "larm", "propeller", "carc"}
     motions = {motion.name: motion.braking_distance for motion in site.motions(site.machine())}

@@ -8,6 +8,7 @@ import pytest
 from elbowroom.errors import SiteError
 from elbowroom.reconstruct import reconstruct
 from elbowroom.site import SIMULATED_ROOM, Site
+from elbowroom.site.notes import notes_of
 from elbowroom.sources import check_images, excluded_frames, moments
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -50,7 +51,7 @@ def test_the_recording_is_read_as_the_site_says(name, example_site):
     assert [frame.camera for frame in first.frames] == [camera.name for camera in site.cameras()]
     returned = np.mean([(frame.depth_m > 0).mean() for frame in first.frames])
     assert lowest < returned < highest
-    assert site.max_age_ns is None and "frames have no times: no limit on their age" in site.notes
+    assert site.max_age_ns is None and "frames have no times: no limit on their age" in notes_of(site)
 
 
 @pytest.mark.parametrize("name", RECORDINGS)
@@ -72,7 +73,7 @@ def test_sevenscenes_keeps_eight_views_for_checking(example_site):
     kept = [camera.name for camera, _ in excluded_frames(site)]
     assert kept == [f"frame-{n:06d}" for n in (100, 225, 350, 475, 600, 725, 850, 950)]
     assert not {camera.name for camera in site.cameras()} & set(kept)
-    assert any("32 poses were off a rotation" in note for note in site.notes)
+    assert any("32 poses were off a rotation" in note for note in notes_of(site))
 
 
 def test_where_most_pixels_are_invalid_nothing_is_free(example_site):

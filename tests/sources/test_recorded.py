@@ -5,6 +5,7 @@ import pytest
 from elbowroom.errors import InputError
 from elbowroom.sensing import JointRecord
 from elbowroom.site import Site
+from elbowroom.site.notes import notes_of
 from elbowroom.sources import check_images, excluded_frames, moments, silent_cameras
 
 MS = 1_000_000
@@ -31,7 +32,7 @@ def stamped(folder, plain):
 def test_frames_near_in_time_make_a_moment(folder, stamped):
     site = Site.load(folder.write(stamped))
     found = list(moments(site))
-    assert [moment.stamp_ns for moment in found] == [1 * MS, 10 * MS, 21 * MS, 30 * MS]
+    assert [moment.now_ns for moment in found] == [1 * MS, 10 * MS, 21 * MS, 30 * MS]
     assert [[frame.camera for frame in moment.frames] for moment in found] == [
         ["north", "south"], ["north"], ["north", "south"], ["north"],
     ]  # fmt: skip
@@ -43,7 +44,7 @@ def test_frames_near_in_time_make_a_moment(folder, stamped):
 
 def test_a_moment_is_as_late_as_its_latest_frame(folder, stamped):
     for moment in moments(Site.load(folder.write(stamped))):
-        assert moment.stamp_ns == max(frame.stamp_ns for frame in moment.frames)
+        assert moment.now_ns == max(frame.stamp_ns for frame in moment.frames)
 
 
 def test_a_camera_without_a_folder_gave_nothing(folder, stamped):
@@ -56,14 +57,14 @@ def test_a_camera_without_a_folder_gave_nothing(folder, stamped):
 
 def test_age_limits_hold_only_where_there_are_times(folder, stamped):
     site = Site.load(folder.write(stamped))
-    assert site.max_age_ns is None and "frames of any age count" in " ".join(site.notes)
+    assert site.max_age_ns is None and "frames of any age count" in " ".join(notes_of(site))
     stamped["max_frame_age_ms"] = 50
     assert Site.load(folder.write(stamped)).max_age_ns == 50 * MS
     stamped["recording"] = {"layout": "stampless", "folder": "rec"}
     site = Site.load(folder.write(stamped))
     assert site.max_age_ns is None
-    assert "frames have no times: no limit on their age" in site.notes
-    assert "max_frame_age_ms has no effect on frames without times" in site.notes
+    assert "frames have no times: no limit on their age" in notes_of(site)
+    assert "max_frame_age_ms has no effect on frames without times" in notes_of(site)
 
 
 def test_joints_are_those_of_each_frames_time(folder, stamped, arm_urdf):
@@ -88,9 +89,9 @@ def test_a_machine_needs_its_joints(folder, stamped, arm_urdf):
     assert "gap of 40 ms" in refusal(Site.load(folder.write(stamped)))
     stamped["recording"] = {"layout": "stampless", "folder": "rec", "files": {"south": "north/*.png"}}
     site = Site.load(folder.write(stamped))
-    assert "give them with --joints" in refusal(site)
+    assert "records none of its machine; give positions" in refusal(site)
     record = JointRecord(np.array([0]), {"turn": np.zeros(1), "slide": np.zeros(1)})
-    assert "frames have no times" in refusal(site, joints=record)
+    assert "has no time, so a joint record" in refusal(site, joints=record)
     assert len(list(moments(site, joints))) == 4
 
 
@@ -110,7 +111,7 @@ def test_stampless_images_meet_in_order_of_names(folder, plain):
     assert [[round(frame.depth_m[0, 0] * 1000) for frame in moment.frames] for moment in found] == [
         [1, 1], [2, 2], [10, 10],
     ]  # fmt: skip
-    assert all(moment.stamp_ns is None for moment in found)
+    assert all(moment.now_ns is None for moment in found)
     assert check_images(site) == (3, 6)
 
 
@@ -206,8 +207,8 @@ def test_each_frame_of_seven_scenes_is_a_camera_of_its_own_at_one_moment(folder,
     assert [frame.camera for frame in moment.frames] == [camera.name for camera in site.cameras()]
     assert [camera.centre_in_world[0] for camera in site.cameras()] == [0, 25, 50]
     assert site.cameras()[0].intrinsics.cx == 3.5 and site.cameras()[0].min_depth_m == 0.4
-    assert moment.stamp_ns is None and moment.frames[1].depth_m[0, 0] == pytest.approx(1.025)
-    assert any("frame-000025" in note and "brought to the nearest" in note for note in site.notes)
+    assert moment.now_ns is None and moment.frames[1].depth_m[0, 0] == pytest.approx(1.025)
+    assert any("frame-000025" in note and "brought to the nearest" in note for note in notes_of(site))
     assert excluded_frames(site) == ()
 
 
@@ -217,7 +218,7 @@ def test_frames_left_out_can_be_asked_for(folder, scenes):
     assert [camera.name for camera in site.cameras()] == ["frame-000000", "frame-000050"]
     ((camera, frame),) = excluded_frames(site)
     assert camera.name == frame.camera == "frame-000025"
-    assert "frames left out: 25" in site.notes
+    assert "frames left out: 25" in notes_of(site)
 
 
 @pytest.mark.parametrize(

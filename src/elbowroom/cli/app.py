@@ -51,7 +51,9 @@ app.command(
 )(simulate)
 app.command(
     epilog=_example(
-        "elbowroom bench --json bench.json", "elbowroom bench calibration --json calibration.json"
+        "elbowroom bench --json bench.json",
+        "elbowroom bench start --json start.json",
+        "elbowroom bench calibration --json calibration.json",
     )
 )(bench)
 app.add_typer(calibrate_app, name="calibrate")

@@ -11,6 +11,7 @@ from elbowroom.cli.options import (
     Rule,
     SitePath,
     VoxelSize,
+    options_named,
     parse_direction,
     parse_joints,
 )
@@ -31,8 +32,9 @@ def check(
     way, positions = parse_direction(direction), parse_joints(joints)
 
     from elbowroom.cli.check_run import ask
-    from elbowroom.cli.room import open_room
     from elbowroom.site import Site
+    from elbowroom.sources import open_room
 
-    room = open_room(Site.load(site), voxel_size_m=voxel_size, rule=rule, detail=detail, joints=positions)
-    ask(room, joint, way, moment, json)
+    with options_named(joints="--joints", moment="--moment"):
+        room = open_room(Site.load(site), voxel_size_m=voxel_size, rule=rule, detail=detail, joints=positions)
+        ask(room, joint, way, moment, json)

@@ -5,18 +5,23 @@ from pathlib import Path
 from rich.console import Console
 
 from elbowroom.cli.progress import Steps
-from elbowroom.cli.reconstruct_run import scene_at, space_of
-from elbowroom.cli.room import Room
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.motion import Motion, Verdict, check_motion
 from elbowroom.reconstruct import FreeSpace, warm_up
+from elbowroom.sources import Room
 from elbowroom.view.screen.words import NOT_CERTIFIED, travel_text
 
 
 def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | None) -> None:
     """Checks one motion and prints the verdict.
+
+    Args:
+        room: with a machine.
+        joint, direction: of the motion; +1 or -1.
+        moment: number of the moment, from 0.
+        json_file: where the row goes; None: nowhere.
 
     Raises:
         InputError: no machine, no such joint, no speed for it, or no such moment.
@@ -32,22 +37,22 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
         compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
         with Steps(console, 4) as steps:
             steps.begin("compiling kernels")
-            warm_up(machine, [room.detail])
+            warm_up(machine, [room.terms.detail])
             steps.begin("reading images")
-            scene = scene_at(room, moment)
+            snapshot = room.snapshot(moment)
             steps.begin("reconstructing")
-            space = space_of(room, scene)
+            space = room.space_of(snapshot)
             steps.begin("checking the motion")
-            verdict = check_motion(space, machine, scene.joints or {}, motion)
+            verdict = check_motion(space, machine, snapshot.joints or {}, motion)
         reasons = _reasons(space, verdict)
         add(
             {
                 "site": room.site.name,
                 "moment": moment,
                 "voxel_size_m": room.grid.voxel_size_m,
-                "rule": room.rule,
-                "detail": room.detail,
-                "joints": scene.joints,
+                "rule": room.terms.rule,
+                "detail": room.terms.detail,
+                "joints": snapshot.joints,
                 **verdict.row(),
                 "explanation": reasons,
                 "unchecked_links": machine.unchecked_links,

@@ -1,20 +1,25 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from elbowroom.cli.interrupt import ended_by_interrupt
 from elbowroom.cli.options import (
     Detail,
     JointsText,
     JsonFile,
     Rule,
     VoxelSize,
+    options_named,
     parse_joints,
     parse_resolution,
     use_threads,
 )
+
+if TYPE_CHECKING:
+    from elbowroom.sources import Room
 
 
 def monitor(
@@ -65,19 +70,49 @@ def monitor(
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
 
-    from elbowroom.cli.monitor_run import watch
-    from elbowroom.cli.room import open_room
     from elbowroom.site import Site
+    from elbowroom.sources import open_room
 
-    room = open_room(
-        Site.simulated_room() if site is None else Site.load(site),
-        voxel_size_m=voxel_size,
-        rule=rule,
-        detail=detail,
-        joints=positions,
-        cameras=cameras,
-        resolution=size_px,
-        in_real_time=True,
-        knocks=knock or (),
-    )
-    watch(room, seconds=seconds, json_file=json, out_dir=out)
+    with options_named(joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock"):
+        room = open_room(
+            Site.simulated_room() if site is None else Site.load(site),
+            voxel_size_m=voxel_size,
+            rule=rule,
+            detail=detail,
+            joints=positions,
+            cameras=cameras,
+            resolution=size_px,
+            knocks=knock or (),
+        )
+        _watch(room, seconds, json, out)
+
+
+def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None) -> None:
+    """Runs the loop over a room, with the faces that were asked for."""
+    from rich.console import Console
+
+    from elbowroom.cli.progress import Steps
+    from elbowroom.files.json_rows import json_rows
+    from elbowroom.monitor import Face
+    from elbowroom.monitor.rows import Rows
+    from elbowroom.monitor.start.compiling import compile_kernels
+    from elbowroom.monitor.start.start import started
+    from elbowroom.site.notes import notes_of
+    from elbowroom.view.draw.last_pictures import LastPictures
+    from elbowroom.view.screen.terminal import TerminalView
+
+    room.machine_and_motions()  # said before anything is compiled
+    console = Console()
+    pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
+    with json_rows(json_file) as add, TerminalView(console) as view:
+        for note in notes_of(room.site):
+            view.note(note)
+        compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
+        with Steps(console, 4) as steps:
+            loop = started(room, steps.begin)
+        if loop.checks.unwatched is not None:
+            view.note(loop.checks.unwatched)
+        faces: list[Face] = [view, Rows(add), *pictures]
+        with ended_by_interrupt():
+            loop.run(faces, seconds)
+        add(view.log.row())

@@ -3,6 +3,8 @@
 import math
 import os
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -87,6 +89,22 @@ def parse_direction(text: str) -> int:
     if text not in directions:
         raise InputError(f"--direction: {text!r} is no direction; allowed are + and -")
     return directions[text]
+
+
+@contextmanager
+def options_named(**options: str) -> Iterator[None]:
+    """What the library says of an argument is said of the option that gave it.
+
+    Args:
+        options: by argument, such as knocks="--knock": an error "knocks: ..." becomes "--knock: ...".
+    """
+    try:
+        yield
+    except InputError as error:
+        argument, colon, rest = str(error).partition(":")
+        if colon and argument in options:
+            raise type(error)(f"{options[argument]}:{rest}") from None
+        raise
 
 
 def use_threads(count: int | None) -> None:

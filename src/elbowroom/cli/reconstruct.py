@@ -5,7 +5,16 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.options import Detail, JointsText, JsonFile, Rule, SitePath, VoxelSize, parse_joints
+from elbowroom.cli.options import (
+    Detail,
+    JointsText,
+    JsonFile,
+    Rule,
+    SitePath,
+    VoxelSize,
+    options_named,
+    parse_joints,
+)
 
 
 def reconstruct(
@@ -28,8 +37,9 @@ def reconstruct(
     positions = parse_joints(joints)
 
     from elbowroom.cli.reconstruct_run import export
-    from elbowroom.cli.room import open_room
     from elbowroom.site import Site
+    from elbowroom.sources import open_room
 
-    room = open_room(Site.load(site), voxel_size_m=voxel_size, rule=rule, detail=detail, joints=positions)
-    export(room, moment, out, json)
+    with options_named(joints="--joints", moment="--moment"):
+        room = open_room(Site.load(site), voxel_size_m=voxel_size, rule=rule, detail=detail, joints=positions)
+        export(room, moment, out, json)

@@ -1,6 +1,5 @@
 """The run of `elbowroom reconstruct`: images in, files and a table out."""
 
-import itertools
 from pathlib import Path
 from typing import Any
 
@@ -8,49 +7,26 @@ from rich.console import Console
 from rich.table import Table
 
 from elbowroom.cli.progress import Steps
-from elbowroom.cli.room import Room, Scene
-from elbowroom.errors import InputError
 from elbowroom.files.atomic import folder
 from elbowroom.files.json_rows import json_rows
 from elbowroom.monitor.rows import shares_pct
 from elbowroom.monitor.start.compiling import compile_kernels
-from elbowroom.reconstruct import FreeSpace, reconstruct, warm_up
+from elbowroom.reconstruct import FreeSpace, warm_up
+from elbowroom.sensing import Snapshot
+from elbowroom.site.notes import notes_of
+from elbowroom.sources import Room
 from elbowroom.view import save_npz, save_ply, save_sections
 from elbowroom.view.screen.words import NOT_CERTIFIED
 
 
-def scene_at(room: Room, number: int) -> Scene:
-    """A moment of a room by its number.
-
-    Raises:
-        InputError: the recording has fewer moments.
-    """
-    last = -1
-    for last, scene in enumerate(itertools.islice(room.scenes(), number + 1)):
-        if last == number:
-            return scene
-    raise InputError(f"--moment: {number} is not there; {room.site.path} has {last + 1} moments, from 0")
-
-
-def space_of(room: Room, scene: Scene) -> FreeSpace:
-    """The free space of a moment."""
-    return reconstruct(
-        room.grid,
-        room.cameras,
-        scene.frames,
-        machine=room.machine,
-        joints=scene.joints if scene.joints_at_frames is None else scene.joints_at_frames,
-        rule=room.rule,
-        detail=room.detail,
-        margin=room.margin,
-        now_ns=scene.now_ns if room.site.has_stamps else None,
-        max_age_ns=room.site.max_age_ns,
-        explain_tolerance_m=room.site.explain_tolerance_m,
-    )
-
-
 def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> None:
     """Reconstructs a moment and writes what came of it.
+
+    Args:
+        room: of the moment.
+        moment: its number, from 0.
+        out_dir: where files go; made if it is not there.
+        json_file: where the row goes; None: nowhere.
 
     Raises:
         InputError: the moment is not there, or a file cannot be written.
@@ -66,41 +42,46 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
         )
         with Steps(console, 6) as steps:
             steps.begin("compiling kernels")
-            warm_up(room.machine, [room.detail])
+            warm_up(room.machine, [room.terms.detail])
             steps.begin("reading images")
-            scene = scene_at(room, moment)
+            snapshot = room.snapshot(moment)
             steps.begin("reconstructing")
-            space = space_of(room, scene)
+            space = room.space_of(snapshot)
             steps.begin("writing arrays")
             files = [save_npz(out_dir / "free_space.npz", space)]
             steps.begin("writing points")
             files.append(save_ply(out_dir / "blocked.ply", space))
             steps.begin("drawing sections")
-            files += save_sections(space, out_dir, room.machine, scene.joints, room.cameras)
-        row = _row(room, moment, scene, space, steps.seconds, files)
+            files += save_sections(space, out_dir, room.machine, snapshot.joints, room.cameras)
+        row = _row(room, moment, snapshot, space, steps.seconds, files)
         add(row)
     _say(row, out_dir)
 
 
 def _row(
-    room: Room, moment: int, scene: Scene, space: FreeSpace, seconds: dict[str, float], files: list[Path]
+    room: Room,
+    moment: int,
+    snapshot: Snapshot,
+    space: FreeSpace,
+    seconds: dict[str, float],
+    files: list[Path],
 ) -> dict[str, Any]:
     return {
         "site": room.site.name,
         "moment": moment,
-        "time_s": scene.now_ns / 1e9 if room.site.has_stamps else None,
+        "time_s": None if snapshot.now_ns is None else snapshot.now_ns / 1e9,
         "voxel_size_m": space.grid.voxel_size_m,
         "shape": space.grid.shape,
         "cameras": len(room.cameras),
-        "frames": len(scene.frames),
-        "rule": room.rule,
-        "detail": room.detail,
+        "frames": len(snapshot.frames),
+        "rule": room.terms.rule,
+        "detail": room.terms.detail,
         **shares_pct(space),
-        "joints": scene.joints,
+        "joints": snapshot.joints,
         "read_ms": seconds["reading images"] * 1e3,
         "reconstruct_ms": seconds["reconstructing"] * 1e3,
         "files": [str(path) for path in files],
-        "notes": list(room.site.notes),
+        "notes": list(notes_of(room.site)),
     }
 
 

@@ -1,11 +1,12 @@
 """`elbowroom simulate`: depth images of a modelled room, as a recording that the other commands read."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
 from elbowroom.cli.options import JointsText, JsonFile, parse_joints
+from elbowroom.cli.simulate_options import ImageSize, Noise
 
 
 def simulate(
@@ -15,12 +16,12 @@ def simulate(
     ],
     out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for images and site.yaml.")],
     cameras: Annotated[int, typer.Option(min=1, max=200, help="How many, along the walls of the box.")] = 21,
-    size: Annotated[Literal["vga", "qqvga", "thesis"], typer.Option(help="Of their images.")] = "vga",
+    size: ImageSize = "vga",
     height: Annotated[
         list[float] | None,
         typer.Option(metavar="METRES", help="Of the cameras; several: in turn. Default: 2.4 and 0.4."),
     ] = None,
-    noise: Annotated[str, typer.Option(help="exact, or a sensor such as tof, kinect_v1.")] = "exact",
+    noise: Noise = "exact",
     box: Annotated[
         str,
         typer.Option(metavar="X,Y,Z,X,Y,Z", help="The watched box: its least and greatest corner [m]."),
@@ -40,9 +41,18 @@ def simulate(
     """
     positions = parse_joints(joints)
 
-    from elbowroom.cli.simulate_run import Wanted, simulate_room
+    from elbowroom.cli.simulate_run import RoomOptions, simulate_room
 
-    wanted = Wanted(
-        room, out, cameras, size, tuple(height or (2.4, 0.4)), noise, box, voxel_size, machine, positions
+    options = RoomOptions(
+        room=room,
+        out=out,
+        cameras=cameras,
+        size=size,
+        heights_m=tuple(height or (2.4, 0.4)),
+        noise=noise,
+        box=box,
+        voxel_size_m=voxel_size,
+        machine=machine,
+        joints=positions,
     )
-    simulate_room(wanted, json)
+    simulate_room(options, json)

@@ -8,15 +8,17 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
+from elbowroom.cli.noise import noise_named
 from elbowroom.cli.progress import Steps
+from elbowroom.cli.simulate_options import Size
 from elbowroom.errors import InputError
 from elbowroom.files.atomic import folder
 from elbowroom.files.json_rows import json_rows
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
-from elbowroom.sensing import NOISE_PRESETS, DepthFrame
-from elbowroom.simulate import Moment, render, setup, solids_of_glb, wall_cameras
+from elbowroom.sensing import DepthFrame
+from elbowroom.simulate import Moment, Walls, render, setup, solids_of_glb, wall_cameras
 from elbowroom.simulate.inside import check_outside
 from elbowroom.simulate.machine_solids import link_solids
 from elbowroom.sources.recorder import Recording, write_recording
@@ -28,13 +30,13 @@ INSIDE_WALLS_M = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class RoomOptions:
     """What the command line says; see its help."""
 
     room: str
     out: Path
     cameras: int
-    size: str
+    size: Size
     heights_m: tuple[float, ...]
     noise: str
     box: str
@@ -43,52 +45,58 @@ class Wanted:
     joints: Mapping[str, float] | None
 
 
-def simulate_room(wanted: Wanted, json: Path | None) -> None:
+def simulate_room(options: RoomOptions, json: Path | None) -> None:
     """Renders a room and writes the recording.
 
     Raises:
         InputError: a room that cannot be used, a box or a noise that is none, a folder that cannot be written to.
         MachineError: joints that the C-arm does not have.
     """
-    grid = _box(wanted.box, wanted.voxel_size_m)
-    folder(wanted.out)
+    grid = _box(options.box, options.voxel_size_m)
+    folder(options.out)
     with json_rows(json) as add, Steps(Console(stderr=True), 4) as steps:
         steps.begin("reading the room")
-        machine = ceiling_c_arm() if wanted.machine else None
-        moment = _moment(wanted, machine, grid)
-        cameras = _cameras(wanted, grid)
-        check_outside(cameras, moment.solids)
+        machine = ceiling_c_arm() if options.machine else None
+        moment = _moment(options, machine, grid)
+        cameras = _cameras(options, grid)
+        _check_outside(cameras, moment)
         steps.begin("rendering")
         frames = render(cameras, moment)
         steps.begin("writing images")
         what = Recording(
-            Path(wanted.room).stem, grid, dict(moment.joints) if machine is not None else None, wanted.noise
+            Path(options.room).stem, grid, dict(moment.joints) if machine is not None else None, options.noise
         )
-        site = write_recording(wanted.out, what, cameras, frames)
+        site = write_recording(options.out, what, cameras, frames)
         steps.begin("drawing")
-        _draw(wanted.out, grid, moment, frames[0])
-        add(_row(wanted, moment, frames, site))
-    Console(highlight=False).print(
-        f"{len(frames)} images of {len(moment.solids)} solids; now: elbowroom reconstruct {site} --out result",
-        soft_wrap=True,
+        _draw(options.out, grid, moment, frames[0])
+        add(_row(options, moment, frames, site))
+    print(
+        f"{len(frames)} images of {len(moment.solids)} solids; now: elbowroom reconstruct {site} --out result"
     )
 
 
-def _moment(wanted: Wanted, machine: Machine | None, grid: VoxelGrid) -> Moment:
-    if wanted.room in {f"setup{n}" for n in range(1, 7)}:
-        shipped = setup(wanted.room)
+def _check_outside(cameras: tuple[DepthCamera, ...], moment: Moment) -> None:
+    try:
+        check_outside(cameras, moment.solids)
+    except InputError as error:
+        raise InputError(f"{error} (--height, --cameras, --box)") from None
+
+
+def _moment(options: RoomOptions, machine: Machine | None, grid: VoxelGrid) -> Moment:
+    if options.room in {f"setup{n}" for n in range(1, 7)}:
+        shipped = setup(options.room)
         solids, usual = shipped.solids(), dict(shipped.joints)
     else:
-        solids = solids_of_glb(wanted.room)
+        solids = solids_of_glb(options.room)
         usual = dict.fromkeys(machine.joint_names, 0.0) if machine is not None else {}
     inside = [s for s in solids if _meets(s.vertices_in_world, grid)]
     if not inside:
-        raise InputError(f"{wanted.room}: no object reaches into the box {wanted.box}; give another --box")
+        raise InputError(f"{options.room}: no object reaches into the box {options.box}; give another --box")
     if machine is None:
-        if wanted.joints:
+        if options.joints:
             raise InputError("--joints: without a machine there are none; leave out --joints or --no-machine")
         return Moment(1.0, solids, {})
-    joints = {**usual, **(wanted.joints or {})}
+    joints = {**usual, **(options.joints or {})}
     machine.checked(joints)
     return Moment(1.0, solids + link_solids(machine, joints), joints)
 
@@ -97,22 +105,21 @@ def _meets(vertices: np.ndarray, grid: VoxelGrid) -> bool:
     return bool(((vertices.max(axis=0) > grid.lower_m) & (vertices.min(axis=0) < grid.upper_m)).all())
 
 
-def _cameras(wanted: Wanted, grid: VoxelGrid) -> tuple[DepthCamera, ...]:
-    if wanted.noise != "exact" and wanted.noise not in NOISE_PRESETS:
-        raise InputError(
-            f"--noise: {wanted.noise!r} is unknown, allowed are exact, {', '.join(NOISE_PRESETS)}"
-        )
+def _cameras(options: RoomOptions, grid: VoxelGrid) -> tuple[DepthCamera, ...]:
+    noise = noise_named(options.noise)
     middle, half = (grid.lower_m + grid.upper_m) / 2, (grid.upper_m - grid.lower_m) / 2 - INSIDE_WALLS_M
     if min(half[:2]) <= 0:
-        raise InputError(f"--box: {wanted.box} is too small for cameras in it")
+        raise InputError(f"--box: {options.box} is too small for cameras in it")
     return wall_cameras(
-        wanted.cameras,
-        wanted.heights_m,
-        size=wanted.size,
-        half_side_m=(float(half[0]), float(half[1])),
-        centre_m=(float(middle[0]), float(middle[1])),
-        aim_m=float(grid.lower_m[2] + 0.44 * (grid.upper_m - grid.lower_m)[2]),
-        noise=None if wanted.noise == "exact" else NOISE_PRESETS[wanted.noise],
+        options.cameras,
+        options.heights_m,
+        size=options.size,
+        walls=Walls(
+            half_side_m=(float(half[0]), float(half[1])),
+            centre_m=(float(middle[0]), float(middle[1])),
+            aim_m=float(grid.lower_m[2] + 0.44 * (grid.upper_m - grid.lower_m)[2]),
+        ),
+        noise=noise,
     )
 
 
@@ -148,14 +155,14 @@ def _is_inside(vertices: np.ndarray, grid: VoxelGrid) -> bool:
     )
 
 
-def _row(wanted: Wanted, moment: Moment, frames: list[DepthFrame], site: Path) -> dict[str, Any]:
+def _row(options: RoomOptions, moment: Moment, frames: list[DepthFrame], site: Path) -> dict[str, Any]:
     return {
         "kind": "simulate",
-        "room": wanted.room,
+        "room": options.room,
         "objects": len([s for s in moment.solids if not s.is_machine]),
         "triangles": sum(len(s.mesh.faces) for s in moment.solids),
         "cameras": len(frames),
-        "noise": wanted.noise,
+        "noise": options.noise,
         "joints": moment.joints,
         "without_return_pct": 100 * float(np.mean([np.mean(frame.depth_m <= 0) for frame in frames])),
         "site": str(site),

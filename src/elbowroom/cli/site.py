@@ -10,7 +10,9 @@ from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
 if TYPE_CHECKING:
-    from elbowroom.geometry import DepthCamera
+    from collections.abc import Sequence
+
+    from elbowroom.geometry import DepthCamera, VoxelGrid
     from elbowroom.site import Site
 
 site_app = typer.Typer(help="Write a site file, or check one.", no_args_is_help=True)
@@ -60,38 +62,22 @@ def check(
         print(f"picture   {out}")
 
 
-def cameras_of(site: "Site") -> "tuple[DepthCamera, ...]":
-    """The cameras of a site, those of a simulated room made by the simulator.
-
-    Raises:
-        SiteError: a camera that none can be.
-    """
-    if site.simulated is None or site.lists_cameras:
-        return site.cameras()
-    from elbowroom.simulate.cameras import wall_cameras
-
-    return wall_cameras(**site.simulated_cameras())
-
-
 def _findings(site: "Site") -> dict[str, Any]:
     """All that can be said of a site without carving; raises on whatever is wrong with it."""
-    import numpy as np
-
+    from elbowroom.placement.cameras import cameras_of
     from elbowroom.site import memory_of
-    from elbowroom.site.coverage import views_per_voxel
+    from elbowroom.site.notes import notes_of
     from elbowroom.sources import check_images, silent_cameras
 
     grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
     motions = site.motions(machine) if machine is not None else ()
     moments = images = None
-    notes = list(site.notes)
+    notes = list(notes_of(site))
     if site.entry.recording is not None:
         moments, images = check_images(site)
         notes += [
             f"camera {name} has no image: it disputes all that it looks at" for name in silent_cameras(site)
         ]
-    views = views_per_voxel(grid, cameras)
-    memory = memory_of(grid, cameras)
     return {
         "site": str(site.path),
         "name": site.name,
@@ -100,21 +86,26 @@ def _findings(site: "Site") -> dict[str, Any]:
         "origin_m": grid.origin_m,
         "cameras": len(cameras),
         "sizes_px": sorted({f"{camera.width}x{camera.height}" for camera in cameras}),
-        "seen_by_one_pct": 100.0 * float(np.mean(views >= 1)),
-        "seen_by_three_pct": 100.0 * float(np.mean(views >= 3)),
+        **_coverage(grid, cameras),
         "machine": machine.name if machine is not None else None,
         "motions": len(motions),
         "rule": site.rule,
         "detail": site.detail,
         "moments": moments,
         "images": images,
-        "plane_bytes": memory.plane_bytes,
-        "planes_bytes": memory.planes_bytes,
-        "frames_bytes": memory.frames_bytes,
-        "pyramids_bytes": memory.pyramids_bytes,
-        "maps_bytes": memory.maps_bytes,
-        "memory_bytes": memory.total_bytes,
+        **memory_of(grid, cameras).row(),
         "notes": notes,
+    }
+
+
+def _coverage(grid: "VoxelGrid", cameras: "Sequence[DepthCamera]") -> dict[str, float]:
+    import numpy as np
+
+    from elbowroom.site.coverage import views_per_voxel
+
+    views = views_per_voxel(grid, cameras)
+    return {
+        f"seen_by_{words}_pct": 100.0 * float(np.mean(views >= n)) for words, n in (("one", 1), ("three", 3))
     }
 
 
@@ -144,6 +135,7 @@ def _say(row: dict[str, Any]) -> None:
 
 def _draw(site: "Site", out: Path) -> None:
     from elbowroom.files.atomic import whole_file
+    from elbowroom.placement.cameras import cameras_of
     from elbowroom.view.draw.outline import triangles_of
     from elbowroom.view.draw.site import draw_site
 

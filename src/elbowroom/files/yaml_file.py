@@ -1,12 +1,14 @@
-"""YAML from outside, read with care: bounded in size, no aliases, no key twice."""
+"""YAML files: read with care, bounded in size, no aliases, no key twice; written so that they read so."""
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import yaml
 
 from elbowroom.errors import SiteError
+from elbowroom.files.atomic import whole_file
 
 MAX_YAML_BYTES = 1_000_000
 
@@ -77,3 +79,32 @@ def read_yaml(path: Path) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise SiteError(f"{path}: holds {type(content).__name__}, expected keys such as grid and cameras")
     return content
+
+
+class _Dumper(yaml.SafeDumper):
+    """SafeDumper that writes a list out wherever it stands: aliases are refused when the file is read."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        return True
+
+
+def write_yaml(path: Path, content: Mapping[str, Any], head: str) -> Path:
+    """Writes a mapping, its keys in their order, whole or not at all.
+
+    Args:
+        path: the file.
+        content: plain values.
+        head: what the first line says, as a comment.
+
+    Returns:
+        The path.
+
+    Raises:
+        InputError: the folder cannot be written to.
+    """
+    text = yaml.dump(
+        dict(content), Dumper=_Dumper, sort_keys=False, allow_unicode=True, default_flow_style=None, width=110
+    )
+    with whole_file(path) as unfinished:
+        unfinished.write_text(f"# {head}\n{text}", encoding="utf-8")
+    return path

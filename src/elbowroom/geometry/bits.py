@@ -7,11 +7,14 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import GridError
 from elbowroom.geometry.grid import VoxelGrid
-from elbowroom.geometry.kernels.bits import Lattice, bit_of, word_of
+from elbowroom.geometry.kernels.bits import Lattice, bit_of, plain, word_of
 
 __all__ = ["Words", "empty", "inside", "lattice", "pack", "place_of", "unpack", "word_count"]
 
 Words = NDArray[np.uint64]
+
+_CUBES_FIRST = (0, 3, 6, 1, 4, 7, 2, 5, 8)
+"""Per axis cube, block, voxel -> cubes, blocks, voxels; the same order undoes itself."""
 
 
 def lattice(grid: VoxelGrid) -> Lattice:
@@ -35,7 +38,7 @@ def place_of(index: tuple[int, int, int], grid: VoxelGrid) -> tuple[int, np.uint
     """Where a voxel's bit lies: index of its word, and the bit within it."""
     cells = lattice(grid)
     # not the compiled ones: these would be compiled when first called, perhaps while the machine moves
-    return word_of.py_func(*index, cells.cubes_y, cells.cubes_z), bit_of.py_func(*index)
+    return plain(word_of)(*index, cells.cubes_y, cells.cubes_z), plain(bit_of)(*index)
 
 
 def pack(mask: NDArray[np.bool_], grid: VoxelGrid) -> Words:
@@ -49,8 +52,8 @@ def pack(mask: NDArray[np.bool_], grid: VoxelGrid) -> Words:
     cells = lattice(grid)
     padded = np.zeros((cells.cubes_x * 16, cells.cubes_y * 16, cells.cubes_z * 16), dtype=np.bool_)
     padded[: grid.shape[0], : grid.shape[1], : grid.shape[2]] = mask
-    blocks = padded.reshape(cells.cubes_x, 4, 4, cells.cubes_y, 4, 4, cells.cubes_z, 4, 4)
-    ordered = blocks.transpose(0, 3, 6, 1, 4, 7, 2, 5, 8).reshape(-1)
+    blocks = padded.reshape((cells.cubes_x, 4, 4, cells.cubes_y, 4, 4, cells.cubes_z, 4, 4))
+    ordered = blocks.transpose(_CUBES_FIRST).reshape(-1)
     return np.packbits(ordered, bitorder="little").view(np.uint64)
 
 
@@ -58,8 +61,8 @@ def unpack(words: Words, grid: VoxelGrid) -> NDArray[np.bool_]:
     """The bool array of the grid's shape that a plane stands for."""
     cells = lattice(grid)
     flat = np.unpackbits(words.view(np.uint8), bitorder="little").view(np.bool_)
-    blocks = flat.reshape(cells.cubes_x, cells.cubes_y, cells.cubes_z, 4, 4, 4, 4, 4, 4)
-    padded = blocks.transpose(0, 3, 6, 1, 4, 7, 2, 5, 8).reshape(
+    blocks = flat.reshape((cells.cubes_x, cells.cubes_y, cells.cubes_z, 4, 4, 4, 4, 4, 4))
+    padded = blocks.transpose(_CUBES_FIRST).reshape(
         cells.cubes_x * 16, cells.cubes_y * 16, cells.cubes_z * 16
     )
     return np.ascontiguousarray(padded[: grid.shape[0], : grid.shape[1], : grid.shape[2]])

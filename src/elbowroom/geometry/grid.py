@@ -50,7 +50,15 @@ class VoxelGrid:
 
     @classmethod
     def covering(cls, lower_m: ArrayLike, upper_m: ArrayLike, voxel_size_m: float) -> "VoxelGrid":
-        """The smallest grid of this voxel size that starts at `lower_m` and reaches at least `upper_m` [m]."""
+        """The smallest grid of a voxel size that starts at one corner and reaches at least the other.
+
+        Args:
+            lower_m, upper_m: least and greatest corner, shape (3,), world frame [m].
+            voxel_size_m: edge of a voxel [m].
+
+        Raises:
+            GridError: corners or an edge that are no such, an empty box, or too many voxels.
+        """
         lower, upper = np.asarray(lower_m, dtype=float), np.asarray(upper_m, dtype=float)
         if lower.shape != (3,) or upper.shape != (3,) or not np.isfinite([lower, upper]).all():
             raise GridError(

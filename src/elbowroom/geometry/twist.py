@@ -9,6 +9,15 @@ from scipy.spatial.transform import Rotation
 from elbowroom.geometry.transforms import invert_rigid
 
 Array = NDArray[Any]
+CAMERA_MOTIONS = (
+    "tilting up and down",
+    "turning left and right",
+    "rolling about its line of sight",
+    "moving sideways",
+    "moving up and down",
+    "moving along its line of sight",
+)
+"""Of the six numbers in a camera's frame, x right, y down, z forward: what the camera does."""
 
 
 def cross_matrix(vectors: Array) -> Array:

@@ -67,17 +67,17 @@ def _mark(
     shares: int,
 ) -> Words:
     """One share of the samples, on a plane of its own."""
-    words, cells = bits.empty(grid), bits.lattice(grid)
+    words, lattice = bits.empty(grid), bits.lattice(grid)
     inner = len(samples.interior)
     reach = growth_m - ROUNDING_M / 2
-    mark_balls(samples.clusters, share, shares, world_from_link, cells, reach, words)
+    mark_balls(samples.clusters, share, shares, world_from_link, reach, lattice, words)
     mark_points(
         samples.interior,
         samples.interior_link,
         inner * share // shares,
         inner * (share + 1) // shares,
         world_from_link,
-        cells,
+        lattice,
         words,
     )
     return words

@@ -14,7 +14,7 @@ from elbowroom.geometry.kernels.bits import Lattice
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.body import default_growth
 from elbowroom.machine.buffers import zero_image
-from elbowroom.machine.kernels.draw import Drawn, View, draw, to_kind
+from elbowroom.machine.kernels.draw import Canvas, View, draw, to_kind
 from elbowroom.machine.kernels.explain import Tolerance, explain
 from elbowroom.machine.kernels.returns import TILE, Around, mark_tiles
 from elbowroom.machine.machine import Joints, Machine
@@ -27,7 +27,7 @@ REACH_M = 0.1
 """Returns this much farther from the body are kept as well: it moves between frame and decision [m]."""
 RETURN_SIGMAS = 3.0
 """A return may lie this many sigmas nearer or farther than measured."""
-NO_CELLS = Lattice(nx=0, ny=0, nz=0, cubes_x=0, cubes_y=0, cubes_z=0, x0=0.0, y0=0.0, z0=0.0, edge=1.0)
+NO_LATTICE = Lattice(nx=0, ny=0, nz=0, cubes_x=0, cubes_y=0, cubes_z=0, x0=0.0, y0=0.0, z0=0.0, edge=1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,15 +97,15 @@ def explain_frames(
     images = [_image(camera, depth) for camera, depth in zip(cameras, depths, strict=True)]
     placed = _camera_from_links(machine, cameras, joints_per_camera)
     near_body = _Near(machine, grid, growth_m)
-    mesh = mesh_of(machine)
+    mesh, tolerance = mesh_of(machine), Tolerance(float(tolerance_m), float(tolerance_sigmas))
     canvases: deque[NDArray[np.float32]] = deque()
     tolerance = Tolerance(float(tolerance_m), float(tolerance_sigmas))
 
     def explain_one(n: int) -> NDArray[np.float32]:
         view = views[n]
         drawn = _spare_canvas(canvases, view)
-        draw(mesh, placed[n], view, *drawn)
-        to_kind(view, *drawn)
+        draw(mesh, placed[n], view, drawn)
+        to_kind(view, drawn)
         model = zero_image(view.height, view.width)
         around = near_body.around(view, placed[n], cameras[n].world_from_camera)
         explain(view, images[n], drawn, tolerance, model, around)
@@ -129,9 +129,9 @@ class _Near:
         self._spare: deque[Words] = deque()
         if grid is not None:
             growth = default_growth(grid) if growth_m is None else growth_m
-            self._balls = balls = body_samples(machine, BALL_VOXEL_M, unchecked=True)
+            balls = body_samples(machine, BALL_VOXEL_M, unchecked=True)
             beyond = balls.cover_m + growth + np.sqrt(3) * grid.voxel_size_m + REACH_M
-            self._radius = balls.cluster_radius + beyond
+            self._balls = balls.clusters._replace(radius=balls.cluster_radius + beyond)
 
     def around(
         self, view: View, camera_from_link: NDArray[np.float64], world_from_camera: NDArray[np.float64]
@@ -139,11 +139,10 @@ class _Near:
         """For one image: its tiles, and a plane that no other thread uses; without a grid no tiles."""
         if self._grid is None:
             nothing = np.zeros((0, 0))
-            return Around(nothing, nothing, 0.0, world_from_camera, NO_CELLS, np.zeros(0, dtype=np.uint64))
+            return Around(nothing, nothing, 0.0, world_from_camera, NO_LATTICE, np.zeros(0, dtype=np.uint64))
         tiles = (-(-view.height // TILE), -(-view.width // TILE))
         near, far = np.full(tiles, np.inf), np.zeros(tiles)
-        middle, link = self._balls.cluster_centre, self._balls.cluster_link
-        mark_tiles(middle, link, self._radius, camera_from_link, view, near, far)
+        mark_tiles(self._balls, camera_from_link, view, near, far)
         try:
             words = self._spare.pop()
         except IndexError:
@@ -190,10 +189,12 @@ def _camera_from_links(
     return invert_rigid(np.stack([camera.world_from_camera for camera in cameras]))[:, None] @ placed
 
 
-def _spare_canvas(canvases: deque[NDArray[np.float32]], view: View) -> Drawn:
-    """An empty canvas, on the memory of one that was wiped if there is one of this size."""
+def _spare_canvas(wiped: deque[NDArray[np.float32]], view: View) -> Canvas:
+    """An empty canvas, on the memory of an image that was wiped if there is one of this size."""
     try:
-        inverse = canvases.pop()
+        inverse = wiped.pop()
     except IndexError:
         return canvas(view.height, view.width)
-    return canvas(view.height, view.width, inverse if inverse.shape == (view.height, view.width) else None)
+    if inverse.shape != (view.height, view.width):
+        return canvas(view.height, view.width)
+    return canvas(view.height, view.width, inverse)

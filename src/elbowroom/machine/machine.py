@@ -13,7 +13,6 @@ from elbowroom.geometry import nearest_rigid
 from elbowroom.machine.joint import Joint
 from elbowroom.machine.kernels.body import Tree, place_links
 from elbowroom.machine.link import Link
-from elbowroom.machine.urdf import read_urdf
 
 LIMIT_TOLERANCE = 1e-6
 """Joint positions beyond a limit by this much are rounding, not a fault [m or rad]."""
@@ -82,6 +81,9 @@ class Machine:
             MachineError: the file, one of its meshes or its tree of links cannot be used; the message says
                 which.
         """
+        # what reads meshes is slow to load, and a bare room needs none of it
+        from elbowroom.machine.urdf import read_urdf
+
         parts = read_urdf(Path(path), [Path(folder) for folder in package_dirs])
         base = np.eye(4) if world_from_base is None else np.asarray(world_from_base, dtype=np.float64)
         return cls(*parts, world_from_base=base, unchecked_links=tuple(unchecked_links))

@@ -1,7 +1,6 @@
 """The machine as a depth camera would see it if nothing else were there."""
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError
@@ -9,7 +8,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.kept import kept
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.machine.buffers import zero_image
-from elbowroom.machine.kernels.draw import Drawn, Mesh, View, draw, to_kind
+from elbowroom.machine.kernels.draw import Canvas, Mesh, View, draw, to_kind
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Joints, Machine
 
@@ -32,8 +31,8 @@ def rasterise(machine: Machine, camera: DepthCamera, joints: Joints) -> NDArray[
     view = view_of(camera)
     world_from_link = machine.world_from_link_array(np.atleast_2d(machine.positions(joints)))[0]
     drawn = canvas(camera.height, camera.width)
-    draw(mesh_of(machine), camera.camera_from_world @ world_from_link, view, *drawn)
-    to_kind(view, *drawn)
+    draw(mesh_of(machine), camera.camera_from_world @ world_from_link, view, drawn)
+    to_kind(view, drawn)
     inverse: NDArray[np.float32] = drawn.inverse
     with np.errstate(divide="ignore"):
         return np.float32(1.0) / inverse
@@ -66,15 +65,18 @@ def view_of(camera: DepthCamera) -> View:
     )
 
 
-def canvas(height: int, width: int, inverse: NDArray[np.float32] | None = None) -> Drawn:
-    """An empty image of inverse depth, nothing drawn in any of its rows.
+def canvas(height: int, width: int, inverse: NDArray[np.float32] | None = None) -> Canvas:
+    """An empty image of inverse depth, in which no column of any row is drawn.
 
     Args:
         height, width: of the image [px].
-        inverse: zeros of this shape to draw on; None: new ones.
+        inverse: its memory, all zeros; None: new.
     """
-    empty = zero_image(height, width) if inverse is None else inverse
-    return Drawn(empty, np.full(height, width, dtype=np.int64), np.full(height, -1, dtype=np.int64))
+    return Canvas(
+        zero_image(height, width) if inverse is None else inverse,
+        np.full(height, width, dtype=np.int64),
+        np.full(height, -1, dtype=np.int64),
+    )
 
 
 @kept
@@ -104,6 +106,8 @@ def _is_closed(link: Link) -> bool:
     """Whether the link's surface is made of closed shells whose faces turn outwards."""
     if not link.has_geometry:
         return False
+    import trimesh  # slow to load, and there where the links were read
+
     mesh = trimesh.Trimesh(link.vertices, link.faces, process=True)
     if not (mesh.is_watertight and mesh.is_winding_consistent):
         return False

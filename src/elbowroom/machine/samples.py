@@ -1,13 +1,19 @@
 """Points that stand for the body of a machine: on its surface, and inside it."""
 
+import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 from typing import NamedTuple
 
+import llvmlite.binding
+import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from elbowroom.errors import MachineError
+from elbowroom.files.kept_arrays import Arrays, kept_arrays
 from elbowroom.geometry.kept import kept
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.kernels import samples as kernels
@@ -86,7 +92,7 @@ class _LinkSamples(NamedTuple):
 
 
 def body_samples(machine: Machine, voxel_size_m: float, *, unchecked: bool = False) -> BodySamples:
-    """The samples of a machine's checked links for a size of voxels; made once, then kept.
+    """The samples of a machine's checked links for a size of voxels; made once, then kept, on disk as well.
 
     Args:
         machine: whose links.
@@ -110,13 +116,45 @@ def _samples(machine: Machine, voxel_size_m: float, unchecked: bool) -> BodySamp
         if link.has_geometry and (unchecked or link.name in names)
     ]
     cover_m = COVER_IN_VOXELS * voxel_size_m
+    name = _name_of([machine.links[row] for row in rows], rows, voxel_size_m)
+    arrays = kept_arrays(name, lambda: _arrays(machine, rows, voxel_size_m, cover_m))
+    for array in arrays.values():
+        array.setflags(write=False)
+    return BodySamples(voxel_size_m, cover_m, **arrays)  # type: ignore[arg-type]
+
+
+def _name_of(links: Sequence[Link], rows: Sequence[int], voxel_size_m: float) -> str:
+    """Of the arrays of some links, in these rows: all that they depend on, their making included."""
+    parts = [f"{voxel_size_m!r} {rows}".encode(), *(link.triangles.tobytes() for link in links), _making()]
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(len(part).to_bytes(8, "little") + part)
+    return f"body-{digest.hexdigest()}"
+
+
+@cache
+def _making() -> bytes:
+    """What samples are made by: this file, its kernels, and what compiles and runs them."""
+    cpu, plain = llvmlite.binding.get_host_cpu_name(), numba.config.DISABLE_JIT  # type: ignore[attr-defined]
+    made_by = f"{numba.__version__} {np.__version__} {cpu} {plain}"
+    return b"".join([made_by.encode(), *(Path(file).read_bytes() for file in (__file__, kernels.__file__))])
+
+
+def _arrays(machine: Machine, rows: Sequence[int], voxel_size_m: float, cover_m: float) -> Arrays:
+    """The arrays of `BodySamples`.
+
+    Args:
+        machine, voxel_size_m: as of `body_samples`.
+        rows: of the links.
+        cover_m: covering radius [m].
+    """
     parts = spread(lambda row: _sample_link(machine.links[row], voxel_size_m, cover_m), rows)
     firsts = np.cumsum([0] + [len(part.points) for part in parts])
     starts = np.concatenate([first + part.stops[:-1] for first, part in zip(firsts[:-1], parts, strict=True)])
     stops = np.concatenate([first + part.stops[1:] for first, part in zip(firsts[:-1], parts, strict=True)])
     points = np.concatenate([part.points for part in parts])
     centre, radius = _spheres(points, starts, stops)
-    arrays = {
+    return {
         "points": points,
         "point_link": np.repeat(np.asarray(rows, dtype=np.int32), [len(part.points) for part in parts]),
         "cluster_link": np.repeat(np.asarray(rows, dtype=np.int32), [len(part.stops) - 1 for part in parts]),
@@ -127,9 +165,6 @@ def _samples(machine: Machine, voxel_size_m: float, unchecked: bool) -> BodySamp
         "interior": np.concatenate([part.interior for part in parts]),
         "interior_link": np.repeat(np.asarray(rows, dtype=np.int32), [len(part.interior) for part in parts]),
     }
-    for array in arrays.values():
-        array.setflags(write=False)
-    return BodySamples(voxel_size_m, cover_m, **arrays)
 
 
 def _sample_link(link: Link, voxel_size_m: float, cover_m: float) -> _LinkSamples:
@@ -192,6 +227,8 @@ def interior_points(link: Link, voxel_size_m: float) -> NDArray[np.float64]:
     Raises:
         MachineError: the link's bounding box has more than `MAX_CELLS` such cells.
     """
+    from scipy import ndimage  # slow to load, and a bare room needs none of it
+
     edge = 0.9999 * voxel_size_m / (2 * np.sqrt(3))
     lower = link.triangles.min(axis=(0, 1)) - 1.5 * edge
     counts = np.floor((link.triangles.max(axis=(0, 1)) - lower) / edge).astype(np.int64) + 2

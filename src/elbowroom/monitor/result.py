@@ -1,10 +1,12 @@
 """What one pass from frames to verdicts came to."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 from elbowroom.monitor.health.health import Health
-from elbowroom.motion import Level, Verdict
+from elbowroom.monitor.health.known import Known
+from elbowroom.motion import Cause, Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
 
 
@@ -14,13 +16,13 @@ class CycleResult:
 
     Args:
         sequence: number of the pass, from 0.
-        stamp_ns: time at which it began [ns, the clock of the frames].
+        stamp_ns: time at which it began [ns, the clock of the frames]; 0: nothing had a time.
         space: the free space that was judged; None: there is none, since the pass failed.
         verdicts: one for each motion that was asked, in their order; where something failed: stop.
         stage_ms: time that each stage took [ms], in the order of the stages.
         oldest_age_ms: age of the oldest frame that was used [ms]; None: no frame, or none with a stamp.
         fault: why verdicts are missing, one sentence; None: the pass is whole.
-        health: whether cameras and machine are where they are said to be; None: nobody watches, or the pass failed.
+        health: whether cameras and machine are where they are said to be; None: nobody watches, or the watch failed.
             While it names a reason, every verdict is stop.
     """
 
@@ -32,6 +34,18 @@ class CycleResult:
     oldest_age_ms: float | None
     fault: str | None = None
     health: Health | None = None
+
+    def knowing(self, known: Known) -> Self:
+        """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""
+        cause = known.stop_cause
+        return replace(
+            self,
+            # free space that comes from a camera that is elsewhere is no free space
+            verdicts=tuple(v if cause is None else _stopped(v, cause) for v in self.verdicts),
+            stage_ms={**known.stage_ms, **self.stage_ms},
+            fault=self.fault or known.fault,
+            health=known.health,
+        )
 
     @property
     def stopped_by(self) -> str | None:
@@ -49,3 +63,10 @@ class CycleResult:
         return min(
             (verdict.level for verdict in self.verdicts), key=lambda level: level.rank, default=Level.STOP
         )
+
+
+def _stopped(verdict: Verdict, cause: Cause) -> Verdict:
+    """Stop for the same motion; a fault stays one."""
+    if verdict.cause is Cause.FAULT:
+        return verdict
+    return Verdict.stop(verdict.motion, verdict.free_travel_unit, cause)

@@ -1,12 +1,60 @@
-"""Results as rows of the files that `--json` writes."""
+"""What a run comes to as rows of a file; `Rows` is the face that writes them."""
 
 from typing import Any
 
 import numpy as np
 
-from elbowroom.monitor import CycleResult
+from elbowroom.files.json_rows import AddRow
+from elbowroom.geometry.parallel import thread_count
+from elbowroom.monitor.face import Pass
 from elbowroom.monitor.health.drift.watch import BODY
+from elbowroom.monitor.health.health import CameraHealth, LinkHealth
+from elbowroom.monitor.result import CycleResult
 from elbowroom.reconstruct.free_space import FreeSpace
+from elbowroom.sources import Room
+
+
+class Rows:
+    """The face that adds to a file: the room, of each pass what was judged, and what is news of cameras and machine.
+
+    Args:
+        add: takes a row.
+    """
+
+    def __init__(self, add: AddRow) -> None:
+        self._add = add
+        self._told: dict[str, str] = {}
+
+    def begin(self, room: Room) -> None:
+        """Adds the row of the room."""
+        self._add(room_row(room))
+
+    def show(self, done: Pass) -> None:
+        """Adds the rows of a pass."""
+        for row in cycle_rows(done.result, done.source_ms):
+            self._add(row)
+        for row in health_rows(done.result, self._told):
+            self._add(row)
+
+    def end(self) -> None:
+        """Whoever made the file closes it."""
+
+
+def room_row(room: Room) -> dict[str, Any]:
+    """What is watched: the row of kind "room", before all others."""
+    return {
+        "kind": "room",
+        "site": room.site.name,
+        "voxel_size_m": room.grid.voxel_size_m,
+        "shape": room.grid.shape,
+        "cameras": len(room.cameras),
+        "width": max(camera.width for camera in room.cameras),
+        "height": max(camera.height for camera in room.cameras),
+        "rule": room.terms.rule,
+        "detail": room.terms.detail,
+        "threads": thread_count(),
+        "unchecked_links": room.machine.unchecked_links if room.machine else (),
+    }
 
 
 def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
@@ -26,12 +74,12 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
     return [cycle, *({"kind": "verdict", **shared, **verdict.row()} for verdict in result.verdicts)]
 
 
-def health_rows(result: CycleResult, said: dict[str, str]) -> list[dict[str, Any]]:
+def health_rows(result: CycleResult, told: dict[str, str]) -> list[dict[str, Any]]:
     """A row of kind "health" per camera and link whose condition is another than it was, or that newly stops.
 
     Args:
         result: of a pass.
-        said: what the last rows said, by camera and link; changed.
+        told: what the last rows said, by camera and link; changed.
     """
     if result.health is None:
         return []
@@ -40,38 +88,42 @@ def health_rows(result: CycleResult, said: dict[str, str]) -> list[dict[str, Any
     stops = result.health.stops
     for camera in result.health.cameras:
         stop = stops.get(camera.camera)
-        if said.get(camera.camera) != f"{camera.condition.name} {stop}":
-            said[camera.camera] = f"{camera.condition.name} {stop}"
-            shift = camera.shift
-            rows.append(
-                {
-                    **shared,
-                    "camera": camera.camera,
-                    "condition": camera.condition.name.lower(),
-                    "stop": stop,
-                    "seen_pct": 100 * camera.share_seen,
-                    "hidden_pct": 100 * camera.share_hidden,
-                    "turn_deg": None if shift is None else shift.turn_deg,
-                    "turn_sigma_deg": None if shift is None else shift.turn_sigma_deg,
-                    "move_mm": None if shift is None else shift.move_mm,
-                    "move_sigma_mm": None if shift is None else shift.move_sigma_mm,
-                }
-            )
+        if _is_news(told, camera.camera, f"{camera.condition.name} {stop}"):
+            rows.append({**shared, **_camera_row(camera), "stop": stop})
     for link in result.health.links:
         stop = stops.get(BODY)
-        if said.get(f"link {link.link}") != f"{link.is_off} {stop}":
-            said[f"link {link.link}"] = f"{link.is_off} {stop}"
-            rows.append(
-                {
-                    **shared,
-                    "link": link.link,
-                    "is_off": link.is_off,
-                    "off_mm": 1e3 * link.off_m,
-                    "cameras": list(link.cameras),
-                    "stop": stop,
-                }
-            )
+        if _is_news(told, f"link {link.link}", f"{link.is_off} {stop}"):
+            rows.append({**shared, **_link_row(link), "stop": stop})
     return rows
+
+
+def _is_news(told: dict[str, str], of: str, words: str) -> bool:
+    """Whether something else was told last; notes that it is told now."""
+    before, told[of] = told.get(of), words
+    return before != words
+
+
+def _camera_row(camera: CameraHealth) -> dict[str, Any]:
+    shift = camera.shift
+    return {
+        "camera": camera.camera,
+        "condition": camera.condition.name.lower(),
+        "seen_pct": 100 * camera.share_seen,
+        "hidden_pct": 100 * camera.share_hidden,
+        "turn_deg": None if shift is None else shift.turn_deg,
+        "turn_sigma_deg": None if shift is None else shift.turn_sigma_deg,
+        "move_mm": None if shift is None else shift.move_mm,
+        "move_sigma_mm": None if shift is None else shift.move_sigma_mm,
+    }
+
+
+def _link_row(link: LinkHealth) -> dict[str, Any]:
+    return {
+        "link": link.link,
+        "is_off": link.is_off,
+        "off_mm": 1e3 * link.off_m,
+        "cameras": list(link.cameras),
+    }
 
 
 def shares_pct(space: FreeSpace) -> dict[str, float]:

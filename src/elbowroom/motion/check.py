@@ -150,7 +150,7 @@ class _Scene:
         """The first block on a way that is not free in parts, or the last of those that are looked at."""
         space, volume = self.space, self.volume
         for looks in range(MOST_LOOKS + 1):
-            block = find_block(self.machine, self.skin, speeds, way, volume, space.grid)
+            block = find_block(self.machine, self.skin, speeds, way, volume)
             if block is None or looks == MOST_LOOKS or not self._is_free_in_parts(block):
                 break
             space = _with_free(space, block)

@@ -50,19 +50,18 @@ def blocks_in_reach(
     before = np.arange(-1, len(stops) * len(shares))
     before[0], before[1 :: len(shares)] = 0, 0
     samples = body_samples(machine, SAMPLES_VOXEL_M)
-    cells = bits.lattice(grid)
-    near = np.zeros((4 * cells.cubes_x, 4 * cells.cubes_y, 4 * cells.cubes_z), dtype=np.bool_)
+    balls = samples.clusters._replace(radius=samples.cluster_radius + SPARE_VOXELS * grid.voxel_size_m)
+    lattice = bits.lattice(grid)
+    near = np.zeros((4 * lattice.cubes_x, 4 * lattice.cubes_y, 4 * lattice.cubes_z), dtype=np.bool_)
     mark_ways(
         machine.world_from_link_array(np.vstack([start[None], *stops])),
-        samples.cluster_link,
-        samples.cluster_centre,
-        samples.cluster_radius + SPARE_VOXELS * grid.voxel_size_m,
+        balls,
         before,
         grid.lower_m,
         BLOCK * grid.voxel_size_m,
         near,
     )
-    by_cube = near.reshape(cells.cubes_x, 4, cells.cubes_y, 4, cells.cubes_z, 4)
+    by_cube = near.reshape(lattice.cubes_x, 4, lattice.cubes_y, 4, lattice.cubes_z, 4)
     return by_cube.transpose(0, 2, 4, 1, 3, 5).reshape(-1)
 
 

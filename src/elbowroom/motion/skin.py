@@ -53,7 +53,13 @@ def _list(
     written = 0
     for link in np.unique(samples.cluster_link):
         first, last = np.searchsorted(samples.cluster_link, [link, link + 1])
-        place, reach = near[written:] if fill else near, samples.cover_m + ROUNDING_M
         written += list_patches(
-            samples.clusters, reach, first, last, triangles, stops[link : link + 2], place, fill
+            samples.clusters,
+            samples.cover_m + ROUNDING_M,
+            first,
+            last,
+            triangles,
+            stops[link : link + 2],
+            near[written:] if fill else near,
+            fill,
         )

@@ -5,12 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.geometry import VoxelGrid, bits
+from elbowroom.geometry import bits
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED, SLIDES
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels import sweep as kernels
-from elbowroom.motion.kernels.sweep import Skin, bound_speeds
+from elbowroom.motion.kernels.sweep import Halvings, Mover, Skin, bound_speeds, first_block
 from elbowroom.motion.kernels.volume import Volume, block, gather_corners
 from elbowroom.reconstruct.free_space import FreeSpace
 
@@ -36,11 +35,13 @@ def volume_of(space: FreeSpace) -> Volume:
     """The blocked voxels of a space as the kernels take them."""
     words = np.empty_like(space.free_words)
     cubes = np.empty(words.size // 64, dtype=np.bool_)
-    cells = bits.lattice(space.grid)
-    block(space.free_words, cells, words, cubes)
+    lattice = bits.lattice(space.grid)
+    block(space.free_words, lattice, words, cubes)
     corners = np.empty_like(words)
-    gather_corners(words, cells, np.empty_like(words), corners)
-    return Volume(words, corners, cubes, space.surface_words, space.blind_words, space.disputed_words)
+    gather_corners(words, lattice, np.empty_like(words), corners)
+    return Volume(
+        lattice, words, corners, cubes, space.surface_words, space.blind_words, space.disputed_words
+    )
 
 
 def cluster_speeds(
@@ -74,7 +75,6 @@ def find_block(
     speeds: NDArray[np.float64],
     way: Way,
     volume: Volume,
-    grid: VoxelGrid,
 ) -> Block | None:
     """The first block that the swept body meets, or None on the whole way.
 
@@ -82,17 +82,18 @@ def find_block(
         machine, skin, way: what moves, and where to.
         speeds: of `cluster_speeds`.
         volume: of `volume_of`.
-        grid: the volume's grid.
     """
     moving = np.flatnonzero(speeds > 0).astype(np.int32)
     if way.length == 0 or moving.size == 0:
         return None
-    finest = grid.voxel_size_m * FINEST_STEP_IN_VOXELS
+    finest = volume.lattice.edge * FINEST_STEP_IN_VOXELS
     halvings = int(np.clip(np.ceil(np.log2(way.length * speeds.max() / finest)), 0, MOST_HALVINGS))
-    moved = kernels.Way(machine.tree, machine.world_from_base, way.course, way.length)
-    cells, of_clusters = bits.lattice(grid), max(0, halvings - SAMPLE_HALVINGS)
-    index, kind, cluster, place = kernels.first_block(
-        moved, skin, speeds, moving, volume, cells, (of_clusters, halvings)
+    index, kind, cluster, place = first_block(
+        Mover(machine.tree, machine.world_from_base, skin, way.course, speeds),
+        way.length,
+        moving,
+        volume,
+        Halvings(of_clusters=max(0, halvings - SAMPLE_HALVINGS), most=halvings),
     )
     if index < 0:
         return None

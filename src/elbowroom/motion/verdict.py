@@ -8,12 +8,15 @@ Levels by the first blocked voxel that the swept body meets, S being the braking
     up to and at 5 S      INFORM       L
     beyond, or nothing    CLEAR        0
 
-How verdicts combine (`most_cautious`): the lowest level of this table's order wins; within a level a verdict
-that cannot be overridden goes before one that can; then the one with the least free travel in braking
-distances; then the first. No verdict at all is an error, since nothing seen means stop.
+How verdicts combine (`most_cautious`): the lowest level of this table's order wins; within a level a fault goes
+before all else, then what the watch found, then a verdict that cannot be overridden before one that can; then the one
+with the least free travel in braking distances; then the first. No verdict at all is an error, since nothing seen
+means stop.
 
-| cause of the block | may be overridden at low speed, while an operator holds on |
+| cause              | may be overridden at low speed, while an operator holds on |
 |--------------------|------------------------------------------------------------|
+| FAULT              | no: nothing is known                                       |
+| WATCH              | no: what is known comes from a camera that is elsewhere    |
 | SURFACE            | no                                                         |
 | BLIND              | no: losing evidence never makes a block overridable        |
 | OUTSIDE_GRID       | no                                                         |
@@ -23,7 +26,7 @@ distances; then the first. No verdict at all is an error, since nothing seen mea
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import Any, Self
 
 from elbowroom.errors import InputError
 from elbowroom.motion.motion import JointPath, Motion
@@ -64,6 +67,13 @@ class Cause(Enum):
     OUTSIDE_GRID = "the machine would leave the watched space"
     UNSEEN = "nobody sees that space"
     NONE = "nothing"
+    FAULT = "this program failed, so nothing is known"
+    WATCH = "a camera or the machine is not where it should be"
+
+    @property
+    def rank(self) -> int:
+        """0 for a fault, 1 for what the watch found, 2 for what was seen: the lower, the more cautious."""
+        return {Cause.FAULT: 0, Cause.WATCH: 1}.get(self, 2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +89,8 @@ class Verdict:
         link: the link that meets the block; None: none does.
         place_in_world: centre of the blocked voxel, or the link's point that leaves the grid [m]; None: no
             block.
-        cause: what the block is. NONE also where a joint limit, not a block, ends the travel.
+        cause: what the block is. NONE also where a joint limit, not a block, ends the travel. FAULT and WATCH are no
+            blocks: whatever the space is, nothing may move.
     """
 
     motion: Motion | JointPath
@@ -89,6 +100,17 @@ class Verdict:
     link: str | None
     place_in_world: tuple[float, float, float] | None
     cause: Cause
+
+    @classmethod
+    def stop(cls, motion: Motion | JointPath, free_travel_unit: str, cause: Cause) -> Self:
+        """Stop where it stands, for a reason that lies nowhere in the space.
+
+        Args:
+            motion: what was asked.
+            free_travel_unit: "m", "rad", or "m or rad".
+            cause: why.
+        """
+        return cls(motion, Level.STOP, 0.0, free_travel_unit, None, None, cause)
 
     @property
     def band(self) -> str:
@@ -134,5 +156,5 @@ def most_cautious(verdicts: Iterable[Verdict]) -> Verdict:
         raise InputError("most_cautious: no verdicts; without a verdict the machine must stop")
     return min(
         every,
-        key=lambda v: (v.level.rank, v.overridable, v.free_travel / v.motion.braking_distance),
+        key=lambda v: (v.level.rank, v.cause.rank, v.overridable, v.free_travel / v.motion.braking_distance),
     )

@@ -8,7 +8,7 @@ from elbowroom.placement.candidates import Candidate, Mount, candidates_of
 from elbowroom.placement.detection import Capability, capability
 from elbowroom.placement.even import Sweep, even_cameras, sweep
 from elbowroom.placement.fixed_room import FixedRoom
-from elbowroom.placement.optimisation import Goal, Optimised, optimise
+from elbowroom.placement.optimisation import Goal, Optimised, Search, optimise
 from elbowroom.placement.rehearsal import Rehearsal, Settings, rehearse
 from elbowroom.placement.requirement import Requirement
 from elbowroom.placement.scenes import random_scenes
@@ -27,6 +27,7 @@ __all__ = [
     "Place",
     "Rehearsal",
     "Requirement",
+    "Search",
     "Sensor",
     "Settings",
     "Sweep",

@@ -8,6 +8,7 @@ thickest object decides. No object thinner than a voxel's diagonal is told apart
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,8 @@ SIGMAS = 3.0
 """Its depth must differ from what is behind by so many sigmas on each side; a camera's own margin goes before."""
 FINE_MM, COARSE_MM = 40.0, 70.0
 """Limits of ISO 13855: up to the first C = 8 (d - 14), up to the second C = 850 mm."""
+PERCENTS, SIZES_MM = (50.0, 90.0, 99.0), (14.0, 40.0, 70.0, 150.0)
+"""Of the places at which a size is told, and sizes of which the share of places is told."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,6 +62,22 @@ class Capability:
         """The thickness at which objects are seen at so many percent of the places [mm]; infinite: at fewer."""
         sizes = np.sort(self.smallest_mm[self.asked])
         return float(sizes[min(len(sizes) - 1, max(0, math.ceil(percent / 100 * len(sizes)) - 1))])
+
+    def row(self) -> dict[str, Any]:
+        """A row of kind "capability"; sizes in mm, infinite where objects of no size are seen by so many cameras."""
+        worst = np.argwhere((self.smallest_mm == self.smallest_mm[self.asked].max()) & self.asked)[0]
+        intrusions = np.sort(self.intrusion_mm[self.asked])
+        at = {f"{p:g}_pct": int(p / 100 * (len(intrusions) - 1)) for p in PERCENTS}
+        return {
+            "kind": "capability",
+            "views": self.views,
+            "voxel_size_m": self.grid.voxel_size_m,
+            "smallest_mm": {f"{p:g}_pct": self.percentile_mm(p) for p in PERCENTS},
+            "intrusion_mm": {name: float(intrusions[place]) for name, place in at.items()},
+            "share_pct": {f"{size:g}_mm": self.share_pct(size) for size in SIZES_MM},
+            "worst_m": self.grid.centre_of(worst),
+            "worst_mm": float(self.smallest_mm[tuple(worst)]),
+        }
 
 
 def intrusion_mm(detection_mm: NDArray[np.floating]) -> NDArray[np.float32]:

@@ -1,13 +1,15 @@
 """Cameras spread evenly along the walls, as the thesis places them, and the curve of its Fig. 4."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid, looking_at
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.requirement import Requirement
@@ -99,6 +101,29 @@ class Sweep:
             (n for n, valid in zip(self.counts, self.valid_pct, strict=True) if valid >= share_pct), None
         )
 
+    def rows(self) -> list[dict[str, Any]]:
+        """A row of kind "layout" for each number of cameras: shares [%], and where they look."""
+        return [
+            {
+                "kind": "layout",
+                "cameras": count,
+                "valid_pct": valid,
+                "seen_by_views_pct": seen,
+                "aim_m": self.aim_m,
+            }
+            for count, valid, seen in zip(self.counts, self.valid_pct, self.seen_pct, strict=True)
+        ]
+
+    def row(self, share_pct: float) -> dict[str, Any]:
+        """A row of kind "sweep": the least number of cameras with a share of valid points, and the best share [%]."""
+        return {
+            "kind": "sweep",
+            "share_pct": share_pct,
+            "least_cameras": self.least(share_pct),
+            "layouts": len(self.counts),
+            "best_valid_pct": max(self.valid_pct),
+        }
+
 
 def even_verification(
     grid: VoxelGrid,
@@ -109,7 +134,14 @@ def even_verification(
     heights_m: Sequence[float],
     aim_m: float,
 ) -> Verification:
-    """The verification of evenly spread cameras; arguments as of `even_cameras` and `verify`.
+    """The verification of evenly spread cameras.
+
+    Args:
+        grid: the watched box.
+        room: with walls.
+        sensor, count: kind and number of the cameras.
+        requirement: what a point must have to be valid.
+        heights_m, aim_m: of the cameras, and where they look; as of `even_cameras` [m].
 
     Raises:
         InputError: the room has no walls along which cameras could be spread.
@@ -130,7 +162,19 @@ def best_aim(
     count: int = AIMED_WITH,
     aims_m: Sequence[float] = AIMS_M,
 ) -> float:
-    """Of some aims the one with which evenly spread cameras leave most points valid; the lowest of equals [m]."""
+    """Of some aims the one with which evenly spread cameras leave most points valid; the lowest of equals [m].
+
+    Args:
+        grid: the watched box.
+        room: with walls.
+        sensor, count: kind and number of the cameras.
+        requirement: what a point must have to be valid.
+        heights_m: of the cameras; neighbours take them in turn [m].
+        aims_m: heights of the middle axis to choose from, ascending [m].
+
+    Raises:
+        InputError: a room without walls.
+    """
     shares = [
         even_verification(grid, room, sensor, count, requirement, heights_m, aim).valid_pct for aim in aims_m
     ]
@@ -146,7 +190,7 @@ def sweep(
     *,
     heights_m: Sequence[float] = (2.4,),
     aim_m: float | None = None,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Sweep:
     """The share of valid points over the number of evenly spread cameras.
 
@@ -182,7 +226,7 @@ def _rows(
     requirement: Requirement,
     heights_m: Sequence[float],
     aim_m: float,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> Iterator[tuple[float, float, float]]:
     for count in counts:
         progress(f"{count} cameras")

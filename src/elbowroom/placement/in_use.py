@@ -2,16 +2,18 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from elbowroom.errors import InputError
+from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.placement.candidates import Candidate
 from elbowroom.placement.coarse import with_joined_pixels
-from elbowroom.placement.optimisation import Goal, free_candidates, named, places_of
+from elbowroom.placement.optimisation import Goal, free_candidates, named, places_of, step_rows
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera
 from elbowroom.placement.solver.run import Course, in_scenes
 from elbowroom.placement.solver.scene_layout import SceneModel
@@ -41,6 +43,19 @@ class FoundInUse:
     steps: tuple[tuple[float, int, float, float], ...]
     seconds: float
 
+    def row(self) -> dict[str, Any]:
+        """How good the layout is in its own scenes, how much better one could be, and what it took."""
+        return {
+            "cameras": len(self.cameras),
+            "free_in_own_scenes_pct": self.free_pct,
+            "bound": self.bound,
+            "seconds": self.seconds,
+        }
+
+    def step_rows(self) -> list[dict[str, Any]]:
+        """A row of kind "step" for every better layout on the way."""
+        return step_rows(self.steps, "free_pct")
+
 
 def optimise_in_use(
     candidates: Sequence[Candidate],
@@ -51,7 +66,7 @@ def optimise_in_use(
     existing: Sequence[DepthCamera] = (),
     seconds: float = 60.0,
     seed: int = 1,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> FoundInUse:
     """Chooses the candidates that find most of the free space of scenes, each carved with the code that runs.
 
@@ -107,7 +122,7 @@ def _model(
     settings: Settings,
     goal: Goal,
     seed: int,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> SceneModel:
     grid = VoxelGrid.covering(
         settings.grid.lower_m, settings.grid.upper_m, max(COARSE_VOXEL_M, settings.grid.voxel_size_m)

@@ -1,14 +1,16 @@
 """Where to put cameras so that few or cheap ones see an empty room well enough, or a given number as well as can be."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.extras import package
+from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.placement.candidates import Candidate
 from elbowroom.placement.fixed_room import FixedRoom
@@ -20,7 +22,6 @@ from elbowroom.placement.solver.run import Course, cheapest, fullest
 from elbowroom.placement.solver.sectors import CP_SAT
 from elbowroom.placement.verification import Verification, verify
 
-POINTS = 20_000
 TAKEN_M = 0.1
 """A mount so near to a camera that hangs there already is taken [m]."""
 BOUND_SHARE = 0.2
@@ -56,6 +57,28 @@ class Goal:
         if self.cameras is not None and self.by_price:
             raise InputError("placement: either a number of cameras or the least price, not both")
 
+    @property
+    def bound_of(self) -> str:
+        """What a bound is of: "valid_pct", "price" or "cameras"."""
+        if self.cameras is not None:
+            return "valid_pct"
+        return "price" if self.by_price else "cameras"
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """How long and how closely the solver looks.
+
+    Args:
+        seconds: time for search and bound; the first layout and the last verification may take a little longer.
+        points: number of voxel centres, drawn at random, that the solver looks at.
+        seed: of all random choices.
+    """
+
+    seconds: float = 60.0
+    points: int = 20_000
+    seed: int = 1
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Optimised:
@@ -90,6 +113,35 @@ class Optimised:
         """Of all new cameras with their mounts and cables."""
         return sum(candidate.price for candidate in self.bought)
 
+    def row(self) -> dict[str, Any]:
+        """How good the layout is, how much better one could be, and what it took."""
+        return {
+            "bound": self.bound,
+            "sector_bound": self.sector_bound,
+            "price": self.price,
+            "model_valid_pct": self.model_pct,
+            "solver_points": self.points,
+            "candidates": self.candidates,
+            "seconds": self.seconds,
+        }
+
+    def step_rows(self) -> list[dict[str, Any]]:
+        """A row of kind "step" for every better layout on the way."""
+        return step_rows(self.steps, "valid_pct")
+
+
+def step_rows(steps: Sequence[tuple[float, int, float, float]], share: str) -> list[dict[str, Any]]:
+    """Rows of kind "step".
+
+    Args:
+        steps: seconds, cameras, price and share (0 to 1) of each.
+        share: what the share is of, such as "valid_pct".
+    """
+    return [
+        {"kind": "step", "seconds": at, "cameras": count, "price": price, share: 100 * part}
+        for at, count, price, part in steps
+    ]
+
 
 def optimise(
     grid: VoxelGrid,
@@ -99,10 +151,8 @@ def optimise(
     goal: Goal | None = None,
     *,
     existing: Sequence[DepthCamera] = (),
-    points: int = POINTS,
-    seconds: float = 60.0,
-    seed: int = 1,
-    progress: Callable[[str], None] = lambda _: None,
+    search: Search = Search(),
+    progress: Progress = silent,
 ) -> Optimised:
     """Chooses among candidates, keeps what exists, and verifies the choice.
 
@@ -113,9 +163,7 @@ def optimise(
         requirement: None: three views, 100 degrees apart.
         goal: None: 98.9 % of the points with the fewest cameras.
         existing: cameras that stay where they are; mounts within 10 cm of one are taken.
-        points: number of voxel centres, drawn at random, that the solver looks at.
-        seconds: time for search and bound; the first layout and the last verification may take a little longer.
-        seed: of all random choices.
+        search: time, points and seed of the solver.
         progress: called with what is being done.
 
     Raises:
@@ -129,12 +177,12 @@ def optimise(
     free = free_candidates(candidates, existing)
     if aim.cameras is not None and aim.cameras < len(existing):
         raise InputError(f"placement: {aim.cameras} cameras wanted, {len(existing)} hang there already")
-    sample = sample_points(grid, room, points, seed)
+    sample = sample_points(grid, room, search.points, search.seed)
     model = _model(sample, room, free, existing, wanted, aim, progress)
     reach = Layout.of(model, range(model.candidates))
     if aim.cameras is None and reach.share < aim.share_pct / 100 - 1e-12:
         raise InputError(_out_of_reach(aim.share_pct, reach, sample, wanted))
-    until = begun + seconds
+    until = begun + search.seconds
     course = Course(begun)
     progress("bounding what can be reached")
     bound = _bound(
@@ -144,13 +192,13 @@ def optimise(
     for attempt in range(VERIFY_TRIES):
         if aim.cameras is None:
             # what is left of the time is for raising the share where the whole grid has less of it than the points
-            end = until - LATER_SHARE * seconds / 2**attempt
-            layout = cheapest(model, share, end, course, first=first, seed=seed + attempt, progress=progress)
+            end, seed = until - LATER_SHARE * search.seconds / 2**attempt, search.seed + attempt
+            layout = cheapest(model, share, end, course, first=first, seed=seed, progress=progress)
         else:
-            layout = fullest(model, aim.cameras - len(existing), until, course, seed=seed, progress=progress)
+            budget = aim.cameras - len(existing)
+            layout = fullest(model, budget, until, course, seed=search.seed, progress=progress)
         progress("verifying")
-        bought = [free[c - len(existing)] for c in layout.chosen if c >= len(existing)]
-        bought = named(bought, existing)
+        bought = named([free[c - len(existing)] for c in layout.chosen if c >= len(existing)], existing)
         cameras = (*existing, *(candidate.camera for candidate in bought))
         found = verify(grid, cameras, room, wanted)
         if aim.cameras is not None or found.valid_pct >= aim.share_pct:
@@ -158,21 +206,27 @@ def optimise(
         share = min(max(share, layout.share) + (aim.share_pct - found.valid_pct) / 100 + SPARE, reach.share)
         first = layout.chosen
     return Optimised(
-        cameras,
-        tuple(bought),
-        found,
-        100 * layout.share,
-        bound,
-        _in_unit_of(aim, course.sector_bound, len(existing)),
-        tuple(course.steps),
-        model.points,
-        len(free),
-        time.perf_counter() - begun,
+        cameras=cameras,
+        bought=tuple(bought),
+        found=found,
+        model_pct=100 * layout.share,
+        bound=bound,
+        sector_bound=_in_unit_of(aim, course.sector_bound, len(existing)),
+        steps=tuple(course.steps),
+        points=model.points,
+        candidates=len(free),
+        seconds=time.perf_counter() - begun,
     )
 
 
 def sample_points(grid: VoxelGrid, room: FixedRoom | None, count: int, seed: int) -> NDArray[np.float64]:
     """Centres of voxels that nothing fixed touches, drawn at random without repetition, shape (n, 3) [m].
+
+    Args:
+        grid: the watched box.
+        room: walls and furniture; None: not known.
+        count: how many; fewer if there are fewer.
+        seed: of the draw.
 
     Raises:
         InputError: there is none, or fewer than one is asked for.
@@ -196,7 +250,7 @@ def _model(
     existing: Sequence[DepthCamera],
     requirement: Requirement,
     goal: Goal,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> Model:
     """Existing cameras first, each at a place of its own, then the candidates by mount."""
     return build_model(

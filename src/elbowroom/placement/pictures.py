@@ -80,6 +80,11 @@ def plan(found: Verification, room: FixedRoom | None, name: str) -> Image.Image:
     """The room from above: cameras with the edges of their fields of view, walls, the watched box (thesis Fig. 5).
 
     The floor of the watched box is coloured by the share of valid points above it.
+
+    Args:
+        found: what was verified.
+        room: walls and furniture; None: not known.
+        name: of the room, in the title.
     """
     grid = found.grid
     eyes = np.array([camera.centre_in_world for camera in found.cameras])
@@ -212,14 +217,24 @@ def _mix(low: NDArray[np.int64], high: NDArray[np.int64], share: NDArray[np.floa
 
 
 def title(plot: Plot, words: str, below: str) -> None:
-    """Two lines above the area."""
+    """Two lines above the area.
+
+    Args:
+        plot: where they are drawn.
+        words, below: the first line, and the second in smaller letters.
+    """
     pen = ImageDraw.Draw(plot.picture)
     pen.text((LEFT_PX, 14), words, fill=INK, font=font(28))
     pen.text((LEFT_PX, 52), below, fill=SOFT_INK, font=font(17))
 
 
 def legend(plot: Plot, swatches: Mapping[str, Colour], lines: Mapping[str, Colour]) -> None:
-    """Filled squares, and below them lines, each with its words."""
+    """Filled squares, and below them lines, each with its words.
+
+    Args:
+        plot: where they are drawn.
+        swatches, lines: colours by what they stand for.
+    """
     pen = ImageDraw.Draw(plot.picture)
     text = font(18)
     y = plot.picture.height - 84

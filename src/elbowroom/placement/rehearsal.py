@@ -1,12 +1,14 @@
 """What a placement means in use: random scenes carved with the code that will run, beside their exact truth."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
+from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.machine import Machine
@@ -18,6 +20,7 @@ from elbowroom.reconstruct.images import room_images
 from elbowroom.reconstruct.resolve import decide
 from elbowroom.sensing import Snapshot
 from elbowroom.simulate import Moment, render, true_occupancy
+from elbowroom.site import Site
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,6 +38,21 @@ class Settings:
     terms: Terms = field(default_factory=Terms)
     machine: Machine | None = None
     motions: tuple[Motion, ...] = ()
+
+    @classmethod
+    def of_site(cls, site: Site, voxel_size_m: float | None = None) -> "Settings":
+        """As a site declares space free, with its machine and motions.
+
+        Args:
+            site: the file.
+            voxel_size_m: edge of a voxel instead of the site's [m].
+
+        Raises:
+            SiteError: a machine that none can be.
+        """
+        machine = site.machine()
+        motions = site.motions(machine) if machine is not None else ()
+        return cls(site.grid(voxel_size_m), site.terms(), machine, motions)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,6 +120,32 @@ class Rehearsal:
             counts[name] = (sum(found is Level.STOP for found in going), len(going))
         return counts
 
+    def row(self) -> dict[str, Any]:
+        """A row of kind "simulate": means of all scenes [%]."""
+        stops = self.false_stops().values()
+        going = sum(of for _, of in stops)
+        return {
+            "kind": "simulate",
+            "scenes": len(self.scenes),
+            "free_pct": self.free_pct,
+            "free_error_pct": self.free_error_pct,
+            "occupied_pct": self.occupied_pct,
+            "false_stop_pct": 100.0 * sum(stopped for stopped, _ in stops) / going if going else None,
+            "judged_motions": going,
+        }
+
+    def part_rows(self) -> list[dict[str, Any]]:
+        """A row of kind "camera" for each camera that was left out in turn, and of kind "motion" for each motion."""
+        cameras = [
+            {"kind": "camera", "camera": name, "contributes_pct": contributes, "loss_pct": loss}
+            for name, (contributes, loss) in self.by_camera().items()
+        ]
+        motions = [
+            {"kind": "motion", "motion": name, "false_stops": stops, "scenes_without_stop": of}
+            for name, (stops, of) in self.false_stops().items()
+        ]
+        return [*cameras, *motions]
+
 
 def rehearse(
     cameras: Sequence[DepthCamera],
@@ -110,7 +154,7 @@ def rehearse(
     *,
     seed: int = 1,
     by_camera: bool = True,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Rehearsal:
     """Carves every scene with the real code and compares with its truth.
 
@@ -173,7 +217,14 @@ def _scene(
 def evidence_by_camera(
     cameras: Sequence[DepthCamera], moment: Moment, settings: Settings, seed: int
 ) -> list[Evidence]:
-    """What each camera knows of a scene as `reconstruct` carves it; merged, it is what `reconstruct` decides by."""
+    """What each camera knows of a scene as `reconstruct` carves it; merged, it is what `reconstruct` decides by.
+
+    Args:
+        cameras: all of the room.
+        moment: the scene.
+        settings: how space is declared free.
+        seed: of the sensors' noise.
+    """
     frames = render(cameras, moment, seed=seed)
     grid, terms, images = settings.grid, settings.terms, room_images(cameras, frames)
     explained = explain(grid, settings.machine, images, Snapshot(tuple(frames), moment.joints), terms)

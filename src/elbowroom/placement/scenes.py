@@ -82,11 +82,12 @@ def _scene(
         joints, links = _machine_pose(coarse, machine, taken, rng)
         solids += links
     if table:
-        solids += _placed(coarse, taken, lambda: (_table(grid, rng),), "the table")
+        solids += _placed(coarse, taken, lambda: (_table(grid, rng),), "table: no place for the table")
     for n in range(people):
         height = float(rng.uniform(*HEIGHTS_M))
         person = Person(f"person {n + 1}", NOWHERE, round(height, 2), float(rng.choice([0.3, 1.2])))
-        solids += _placed(coarse, taken, lambda who=person: who.solids(_stance(grid, rng)), person.name)
+        who = f"people: no place for {person.name}"
+        solids += _placed(coarse, taken, lambda one=person: one.solids(_stance(grid, rng)), who)
     return Moment(float(number), (*fixed, *solids), joints)
 
 
@@ -105,14 +106,14 @@ def _machine_pose(
     )
 
 
-def _placed(coarse: VoxelGrid, taken: NDArray[np.bool_], make, what: str) -> tuple[Solid, ...]:  # type: ignore[no-untyped-def]
-    """Solids drawn until they fit."""
+def _placed(coarse: VoxelGrid, taken: NDArray[np.bool_], make, trouble: str) -> tuple[Solid, ...]:  # type: ignore[no-untyped-def]
+    """Solids drawn until they fit; else the trouble is said."""
     for _ in range(TRIES):
         solids: tuple[Solid, ...] = make()
         if _fits(coarse, taken, solids):
             _take(coarse, taken, solids)
             return solids
-    raise InputError(f"placement: no place for {what} in {TRIES} tries; fewer people (--people), or no table")
+    raise InputError(f"{trouble} in {TRIES} tries; fewer people, or no table")
 
 
 def _fits(coarse: VoxelGrid, taken: NDArray[np.bool_], solids: tuple[Solid, ...]) -> bool:

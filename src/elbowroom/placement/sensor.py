@@ -1,6 +1,5 @@
 """A kind of depth sensor that may be mounted anywhere: a camera but for its name and its place."""
 
-import math
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -9,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import SiteError
 from elbowroom.geometry import DepthCamera
-from elbowroom.simulate import wall_cameras
+from elbowroom.simulate import Optics, wall_cameras
 from elbowroom.site import Site
 from elbowroom.site.camera_entry import CameraSettings, build_camera
 
@@ -43,7 +42,9 @@ def known_sensors() -> dict[str, Sensor]:
     `thesis` (64x48, distance from the camera's centre, up to 7 m), `vga` (640x480), `square` (480x480).
     """
     return {
-        "thesis": Sensor("thesis", wall_cameras(1, size="thesis", max_depth_m=THESIS_RANGE_M)[0]),
+        "thesis": Sensor(
+            "thesis", wall_cameras(1, size="thesis", optics=Optics(max_depth_m=THESIS_RANGE_M))[0]
+        ),
         "vga": Sensor("vga", wall_cameras(1, size="vga")[0]),
         "square": Sensor("square", wall_cameras(1, width=480, height=480)[0]),
     }
@@ -81,12 +82,3 @@ def sensors_of(site: Site) -> tuple[Sensor, ...]:
     except SiteError as error:
         raise SiteError(f"{site.path}: no sensor: {error}, or in placement.sensors") from None
     return (Sensor("camera", camera),)
-
-
-def across_deg(camera: DepthCamera) -> tuple[float, float]:
-    """Field of view from edge to edge of the image, across and up [deg]; distortion is left out."""
-    k = camera.intrinsics
-    return (
-        math.degrees(math.atan((k.cx + 0.5) / k.fx) + math.atan((camera.width - 0.5 - k.cx) / k.fx)),
-        math.degrees(math.atan((k.cy + 0.5) / k.fy) + math.atan((camera.height - 0.5 - k.cy) / k.fy)),
-    )

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,21 @@ class Verification:
         """Share of the voxels asked that at least so many cameras see, however far apart [%]."""
         return 100.0 * float(((self.counts >= views) & self.asked).sum()) / float(self.asked.sum())
 
+    def row(self) -> dict[str, Any]:
+        """A row of kind "verify": what was asked, and shares of the points [%]."""
+        return {
+            "kind": "verify",
+            "cameras": len(self.cameras),
+            "voxel_size_m": self.grid.voxel_size_m,
+            "points": int(self.asked.sum()),
+            "views": self.requirement.views,
+            "angle_deg": self.requirement.angle_deg,
+            "valid_pct": self.valid_pct,
+            "seen_by_one_pct": self.seen_pct(1),
+            "seen_by_views_pct": self.seen_pct(self.requirement.views),
+            "mean_views": float(self.counts[self.asked].mean()),
+        }
+
 
 def verify(
     grid: VoxelGrid,
@@ -85,7 +101,14 @@ def judge(
     asked: NDArray[np.bool_],
     requirement: Requirement,
 ) -> Verification:
-    """The verification of sights that are known already; arguments as of `Verification`.
+    """The verification of sights that are known already.
+
+    Args:
+        grid: the watched box.
+        cameras: 1 to 255.
+        seen: bool, shape (cameras, *grid.shape): the camera sees the voxel's centre; read-only from here on.
+        asked: bool, shape of the grid: the requirement is asked of the voxel; read-only from here on.
+        requirement: what a point must have to be valid.
 
     Raises:
         InputError: no camera, or more than 255.

@@ -1,6 +1,7 @@
 """The places of an empty room that the cameras see worst, in words."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,17 @@ class Place:
     apart: int
     cameras: tuple[str, ...]
     words: str
+
+    def row(self) -> dict[str, Any]:
+        """Where it is, in words and numbers."""
+        return {
+            "words": self.words,
+            "lower_m": self.lower_m,
+            "upper_m": self.upper_m,
+            "voxels": self.voxels,
+            "apart": self.apart,
+            "cameras": self.cameras,
+        }
 
 
 def worst_places(found: Verification, most: int = 5) -> list[Place]:

@@ -14,10 +14,11 @@ from elbowroom.machine import Explained
 from elbowroom.reconstruct.evidence import Counts, Evidence
 from elbowroom.reconstruct.images import RoomImages, room_images
 from elbowroom.reconstruct.kernels.carve import carve_cubes
-from elbowroom.reconstruct.kernels.planes import PLANES
+from elbowroom.reconstruct.kernels.planes import PLANES, Answers
 from elbowroom.reconstruct.kernels.points import carve_points
+from elbowroom.reconstruct.layout import layout_of
 from elbowroom.reconstruct.terms import Terms
-from elbowroom.reconstruct.views import fill, layout_of
+from elbowroom.reconstruct.views import fill
 from elbowroom.sensing import DepthFrame
 
 SHARES = 16
@@ -82,28 +83,14 @@ def carve_images(
         CameraError: more than 255 cameras.
     """
     layout = layout_of(grid, images.cameras, terms.margin)
-    cells = bits.lattice(grid)
-    cubes = cells.cubes_x * cells.cubes_y * cells.cubes_z
-    planes = np.zeros((PLANES, cubes * 64), dtype=np.uint64)
-    through, disputes = (np.zeros((cubes * 64 if complete else 0, 64), dtype=np.uint8) for _ in range(2))
-    kernel = carve_points if terms.detail == "point" else carve_cubes
-    fine = np.full(cubes * 64, terms.detail == "pixel")
     asked = layout.inside.copy() if focus is None else np.where(focus, layout.inside, np.uint64(0))
-    worth = np.flatnonzero(asked.reshape(cubes, 64).any(axis=1))
+    answers = _no_answers(asked, terms.detail, complete)
+    lattice, worth = bits.lattice(grid), np.flatnonzero(asked.reshape(-1, 64).any(axis=1))
+    kernel = carve_points if terms.detail == "point" else carve_cubes
     views, buffers = fill(layout, images, explained.model_depth)
     try:
         spread(
-            lambda share: kernel(
-                np.ascontiguousarray(worth[share::SHARES]),
-                cells,
-                asked,
-                views,
-                fine,
-                complete,
-                planes,
-                through,
-                disputes,
-            ),
+            lambda share: kernel(np.ascontiguousarray(worth[share::SHARES]), lattice, views, answers),
             range(min(SHARES, len(worth))),
         )
     finally:
@@ -111,7 +98,15 @@ def carve_images(
     return Evidence(
         grid,
         tuple(camera.name for camera in images.cameras),
-        planes,
+        answers.planes,
         bits.empty(grid) if explained.unexplained_words is None else explained.unexplained_words,
-        Counts(through, disputes) if complete else None,
+        Counts(answers.through_count, answers.dispute_count) if complete else None,
     )
+
+
+def _no_answers(asked: Words, detail: Detail, complete: bool) -> Answers:
+    """What is asked, and planes and counts that say nothing yet."""
+    words = len(asked)
+    counts = (np.zeros((words if complete else 0, 64), dtype=np.uint8) for _ in range(2))
+    planes = np.zeros((PLANES, words), dtype=np.uint64)
+    return Answers(asked, np.full(words, detail == "pixel"), complete, planes, *counts)

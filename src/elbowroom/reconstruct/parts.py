@@ -10,10 +10,14 @@ from numpy.typing import NDArray
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.images import Image, RoomImages
-from elbowroom.reconstruct.kernels import box as box
 from elbowroom.reconstruct.kernels import pyramid as pyramid
-from elbowroom.reconstruct.kernels.pixel import PIXEL_FLOATS, settle_word
-from elbowroom.reconstruct.views import layout_of, texels_of
+from elbowroom.reconstruct.kernels.box import ALL
+from elbowroom.reconstruct.kernels.camera import Texels
+from elbowroom.reconstruct.kernels.pixel import VOXEL, settle_word
+from elbowroom.reconstruct.kernels.place import Boxes
+from elbowroom.reconstruct.layout import layout_of
+from elbowroom.reconstruct.records import counting_of, cut_out
+from elbowroom.reconstruct.views import NO_TEXELS, texels_of
 
 PARTS = 4
 """Along each axis a voxel is cut into so many parts: 64 in all, the bits of one word."""
@@ -53,8 +57,10 @@ def is_seen_in_parts(
     for position, row in enumerate(rows):
         if not (seen | maybe[rows[position:]].any(axis=0)).all():
             return False
-        numbers = layout_of(grid, images.cameras, margin).numbers[row]
-        seen |= _parts_seen(numbers, images, model_depth, row, margin, _Parts(first, edge, in_cameras[row]))
+        camera, record = images.cameras[row], layout_of(grid, images.cameras, margin).records[row]
+        bounds_m = images.least_m[camera.name], images.greatest_m[camera.name]
+        model_m, parts = model_depth.get(camera.name), _Parts(first, edge, in_cameras[row])
+        seen |= _parts_seen(camera, record, bounds_m, model_m, parts)
         if seen.all():
             return True
     return False
@@ -130,66 +136,33 @@ def _may_be_seen(
 
 
 def _parts_seen(
-    numbers: NDArray[np.float64],
-    images: RoomImages,
-    model_depth: Mapping[str, Image],
-    row: int,
-    margin: Margin,
+    camera: DepthCamera,
+    record: np.record,
+    bounds_m: tuple[Image, Image],
+    model_m: Image | None,
     parts: _Parts,
 ) -> NDArray[np.bool_]:
     """Which parts one camera sees through, shape (parts,).
 
     Args:
-        numbers: of the camera in the grid's layout, its row of `Views.numbers`.
-        images, model_depth, margin: as of `is_seen_in_parts`.
-        row: of the camera.
+        camera, record: the camera, and what kernels know of it in the grid.
+        bounds_m: its images of least and greatest depth [m].
+        model_m: what the machine explains of them [m]; None: nothing.
         parts: before it.
     """
     corners = parts.corners
     if corners[2].min() <= NEAREST_M:
         return np.zeros(len(STEPS), dtype=np.bool_)
-    camera = images.cameras[row]
-    window = _window(camera, (camera.margin or margin).lateral_px + SPARE_PX, corners)
-    model = model_depth.get(camera.name)
-    cut = _numbers_in(numbers, window)
-    trust = np.empty([side.stop - side.start for side in window], dtype=np.uint32)
-    doubt = np.empty_like(trust)
-    texels_of(
-        camera,
-        cut,
-        np.ascontiguousarray(images.least_m[camera.name][window]),
-        np.ascontiguousarray(images.greatest_m[camera.name][window]),
-        None if model is None else np.ascontiguousarray(model[window]),
-        trust,
-        doubt,
-    )
-    words = settle_word(
-        cut[None],
-        0,
-        trust.reshape(-1),
-        doubt.reshape(-1),
-        0,
-        _tiles(trust),
-        _tiles(doubt),
-        0,
-        box.ALL,
-        *parts.first,
-        parts.edge,
-        np.empty(PIXEL_FLOATS),
-    )
+    window = _window(camera, float(record["lateral_px"]) + SPARE_PX, corners)
+    part = cut_out(record, *window)
+    least_m, greatest_m = (np.ascontiguousarray(image[window]) for image in bounds_m)
+    model = None if model_m is None else np.ascontiguousarray(model_m[window])
+    trust, doubt = (np.empty(least_m.shape, dtype=np.uint32) for _ in range(2))
+    texels_of(camera, counting_of(camera, part), (least_m, greatest_m), model, (trust, doubt))
+    texels = Texels(trust.reshape(-1), doubt.reshape(-1), _tiles(trust), _tiles(doubt), NO_TEXELS)
+    x, y, z = parts.first.tolist()
+    words = settle_word(part, texels, ALL, Boxes(x, y, z, parts.edge, 0), np.empty(1, VOXEL)[0])
     return np.unpackbits(np.array(words[:1]).view(np.uint8), bitorder="little").view(np.bool_)
-
-
-def _numbers_in(numbers: NDArray[np.float64], window: tuple[slice, slice]) -> NDArray[np.float64]:
-    """The numbers of a camera that has but a window of its image, rows and columns."""
-    rows, columns = window
-    cut = numbers.copy()
-    cut[box.LENS + 2] -= columns.start
-    cut[box.LENS + 3] -= rows.start
-    cut[box.SIZE : box.SIZE + 2] = columns.stop - columns.start, rows.stop - rows.start
-    turn = cut[box.TURN : box.TURN + 12].reshape(4, 3)
-    turn[0] += turn[1] * columns.start + turn[2] * rows.start
-    return cut
 
 
 def _window(
@@ -214,5 +187,5 @@ def _tiles(texels: NDArray[np.uint32]) -> NDArray[np.uint32]:
     """The least of 4 x 4 texels each, in one row."""
     rows, columns = texels.shape
     tiles = np.empty((-(-rows // 4), -(-columns // 4)), dtype=np.uint32)
-    pyramid.fill_tiles(texels, 0, rows, 0, columns, tiles)
+    pyramid.fill_tiles(texels, (0, rows, 0, columns), tiles)
     return tiles.reshape(-1)

@@ -9,9 +9,11 @@ from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.kernels.pixel import PIXEL_FLOATS, settle_word
+from elbowroom.reconstruct.kernels.pixel import VOXEL, settle_word
+from elbowroom.reconstruct.kernels.place import Boxes
+from elbowroom.reconstruct.layout import layout_of
 from elbowroom.reconstruct.reconstruct import reconstruct
-from elbowroom.reconstruct.views import fill, layout_of
+from elbowroom.reconstruct.views import fill
 from elbowroom.sensing import DepthFrame, NoiseModel
 
 
@@ -42,22 +44,8 @@ def warm_up_pixel_test() -> None:
     explained = {camera.name: np.full((24, 32), 1.1, dtype=np.float32) for camera in cameras}
     views, buffers = fill(layout, images, explained)
     try:
-        settle_word(
-            views.numbers,
-            0,
-            views.trust_texels,
-            views.doubt_texels,
-            0,
-            views.trust_tiles,
-            views.doubt_tiles,
-            0,
-            np.uint64(1),
-            0.0,
-            0.0,
-            1.0,
-            grid.voxel_size_m,
-            np.empty(PIXEL_FLOATS),
-        )
+        boxes = Boxes(0.0, 0.0, 1.0, grid.voxel_size_m, 0)
+        settle_word(views.cameras[0], views.texels, np.uint64(1), boxes, np.zeros(1, VOXEL)[0])
     finally:
         layout.give_back(buffers)
 

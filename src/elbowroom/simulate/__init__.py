@@ -1,6 +1,6 @@
 """A room to try everything in: solids that move, depth cameras that see them, and what is really there."""
 
-from elbowroom.simulate.cameras import wall_cameras
+from elbowroom.simulate.cameras import Optics, Walls, wall_cameras
 from elbowroom.simulate.glb import solids_of_glb
 from elbowroom.simulate.room import InterventionRoom
 from elbowroom.simulate.sensor import render
@@ -13,9 +13,11 @@ __all__ = [
     "InterventionRoom",
     "Moment",
     "Movement",
+    "Optics",
     "Setup",
     "Solid",
     "Truth",
+    "Walls",
     "render",
     "setup",
     "solids_of_glb",

@@ -35,7 +35,7 @@ def check_outside(cameras: Sequence[DepthCamera], solids: Iterable[Solid]) -> No
                 place = ", ".join(f"{x:.2f}" for x in centre)
                 raise InputError(
                     f"camera {camera.name} at ({place}) m is inside {solid.name!r}; move that object, or hang the "
-                    "cameras elsewhere (--height, --cameras, --box)"
+                    "cameras elsewhere"
                 )
 
 

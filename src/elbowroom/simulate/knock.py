@@ -51,7 +51,7 @@ class Knock:
             size = at_s = math.nan
         if match is None or not (math.isfinite(size) and math.isfinite(at_s)):
             raise InputError(
-                f"--knock: {text!r} is no knock; write camera:size[axis]@seconds, as cam03:1deg@5 or cam03:20mmz@5, "
+                f"knocks: {text!r} is no knock; write camera:size[axis]@seconds, as cam03:1deg@5 or cam03:20mmz@5, "
                 "or joint:size@seconds, as larm:2deg@5"
             )
         axis = "xyz".index(match["axis"] or USUAL_AXIS[match["unit"]])
@@ -82,6 +82,10 @@ class Knock:
 def require_known(knocks: Sequence[Knock], cameras: Sequence[DepthCamera], joints: Sequence[str]) -> None:
     """Checks that every knock meets something.
 
+    Args:
+        knocks: what happens.
+        cameras, joints: what there is, joints by name.
+
     Raises:
         InputError: a name that is neither a camera nor a joint.
     """
@@ -89,7 +93,7 @@ def require_known(knocks: Sequence[Knock], cameras: Sequence[DepthCamera], joint
     for knock in knocks:
         if knock.what not in names and knock.what not in joints:
             raise InputError(
-                f"--knock: nothing is called {knock.what!r}; cameras are {', '.join(names)}, joints "
+                f"knocks: nothing is called {knock.what!r}; cameras are {', '.join(names)}, joints "
                 f"{', '.join(joints) or 'none'}"
             )
 
@@ -115,6 +119,12 @@ class PlacedKnocks:
 
 
 def reported_joints(knocks: Sequence[Knock], joints: Mapping[str, float], time_s: float) -> dict[str, float]:
-    """What the joints say at a time, given where they truly are [m or rad]."""
+    """What the joints say at a time, given where they truly are.
+
+    Args:
+        knocks: those of cameras do nothing here.
+        joints: where they truly are [m or rad].
+        time_s: since the start [s].
+    """
     happened = {knock.what: knock.along_joint for knock in knocks if time_s >= knock.at_s}
     return {name: value - happened.get(name, 0.0) for name, value in joints.items()}

@@ -20,14 +20,26 @@ def box(lower_m: ArrayLike, upper_m: ArrayLike) -> Shape:
 
 
 def ellipsoid(centre_m: ArrayLike, radii_m: ArrayLike, rows: int = 6, columns: int = 10) -> Shape:
-    """An ellipsoid along the axes, its surface cut into `rows` times `columns` patches."""
+    """An ellipsoid along the axes.
+
+    Args:
+        centre_m, radii_m: shape (3,) [m].
+        rows, columns: patches of its surface from pole to pole, and around.
+    """
     return _sphere_like(rows, columns, np.asarray(centre_m, dtype=float), np.asarray(radii_m, dtype=float))
 
 
 def capsule(
     start_m: ArrayLike, end_m: ArrayLike, radius_m: float, *, squeeze: float = 1.0, columns: int = 8
 ) -> Shape:
-    """A capsule between two points [m], its cross-section squeezed along x by a factor."""
+    """A capsule between two points.
+
+    Args:
+        start_m, end_m: middles of its two half balls, shape (3,) [m].
+        radius_m: of both [m].
+        squeeze: factor by which its cross-section is narrower along x.
+        columns: patches around.
+    """
     start, end = np.asarray(start_m, dtype=float), np.asarray(end_m, dtype=float)
     length = float(np.linalg.norm(end - start))
     vertices, faces = _sphere_like(6, columns, np.zeros(3), np.full(3, radius_m))
@@ -39,7 +51,13 @@ def capsule(
 
 
 def cylinder(start_m: ArrayLike, end_m: ArrayLike, radius_m: float, sections: int = 16) -> Shape:
-    """A round bar between two points [m]."""
+    """A round bar between two points.
+
+    Args:
+        start_m, end_m: middles of its ends, shape (3,) [m].
+        radius_m: of the bar [m].
+        sections: flat faces around.
+    """
     bar = trimesh.creation.cylinder(
         radius=radius_m, segment=np.array([start_m, end_m], dtype=float), sections=sections
     )

@@ -83,7 +83,12 @@ def _touch_all(grid: VoxelGrid, solids: tuple[Solid, ...]) -> list[Touched]:
 def touched_by(grid: VoxelGrid, solid: Solid, *, surface: bool = True) -> Touched:
     """The part of the grid about one solid: its first index, shape (3,), and which of its voxels are touched.
 
-    The part is empty where the solid lies outside the grid. With `surface` False only voxels whose centre is inside.
+    The part is empty where the solid lies outside the grid.
+
+    Args:
+        grid: the voxels.
+        solid: closed.
+        surface: also voxels that its surface meets; False: only those whose centre is inside.
     """
     vertices = solid.vertices_in_world
     edge, origin, shape = grid.voxel_size_m, grid.lower_m, np.array(grid.shape)

@@ -1,6 +1,7 @@
 """Cameras as a site file describes them."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -200,4 +201,15 @@ def build_camera(
         min_depth_m=settings.get("min_depth_m", 0.0),
         max_depth_m=float("inf") if deepest is None else deepest,
         flying_pixels=settings.get("flying_pixels"),
+    )
+
+
+def mended_poses(warnings: Sequence[str]) -> tuple[str, ...]:
+    """Many warnings of poses that were a little off as one note, few as they are."""
+    if len(warnings) <= 2:
+        return tuple(warnings)
+    deviations = [float(found[1]) for text in warnings if (found := re.search(r"by ([0-9.e+-]+),", text))]
+    return (
+        f"{len(warnings)} poses were off a rotation by up to {max(deviations):.1e}, "
+        "each was brought to the nearest one",
     )

@@ -38,6 +38,17 @@ class Memory:
         """All of it, with the interpreter and its libraries."""
         return SHARED_BYTES + self.planes_bytes + self.frames_bytes + self.pyramids_bytes + self.maps_bytes
 
+    def row(self) -> dict[str, int]:
+        """Part by part, and all of it."""
+        return {
+            "plane_bytes": self.plane_bytes,
+            "planes_bytes": self.planes_bytes,
+            "frames_bytes": self.frames_bytes,
+            "pyramids_bytes": self.pyramids_bytes,
+            "maps_bytes": self.maps_bytes,
+            "memory_bytes": self.total_bytes,
+        }
+
 
 def memory_of(grid: VoxelGrid, cameras: Sequence[DepthCamera]) -> Memory:
     """What a grid and these cameras take."""

@@ -14,7 +14,13 @@ LONGEST_VALUE = 60
 
 
 def one_line(path: Path, model: type[BaseModel], error: ValidationError) -> SiteError:
-    """The first thing that is wrong, and how many more there are."""
+    """The first thing that is wrong, and how many more there are.
+
+    Args:
+        path: of the site file.
+        model: what the file was read as; its keys are those that are allowed.
+        error: what pydantic found.
+    """
     details = error.errors(include_url=False)
     first = details[0]
     more = f" ({len(details) - 1} more)" if len(details) > 1 else ""

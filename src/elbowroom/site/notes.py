@@ -1,17 +1,15 @@
 """What a user should know of a site that is valid."""
 
-import re
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
 from elbowroom.site.recording_entry import SevenScenes
-
-if TYPE_CHECKING:
-    from elbowroom.site.site import Site
+from elbowroom.site.site import Site
 
 
-def notes_of(site: "Site") -> tuple[str, ...]:
-    """Notes that follow from the file and its machine."""
+def notes_of(site: Site) -> tuple[str, ...]:
+    """Frames without times, rules that less evidence may loosen, links and motions not checked, poses that were mended.
+
+    Raises:
+        SiteError, MachineError: cameras or a machine that are not usable.
+    """
     entry, notes = site.entry, []
     if not site.has_stamps:
         notes.append("frames have no times: no limit on their age")
@@ -36,15 +34,4 @@ def notes_of(site: "Site") -> tuple[str, ...]:
         notes.append("each frame is a camera of its own, all at one moment: the room must not have changed")
         if entry.recording.exclude:
             notes.append(f"frames left out: {', '.join(map(str, sorted(entry.recording.exclude)))}")
-    return tuple(notes)
-
-
-def mended_poses(warnings: Sequence[str]) -> tuple[str, ...]:
-    """Many warnings of poses that were a little off as one note, few as they are."""
-    if len(warnings) <= 2:
-        return tuple(warnings)
-    deviations = [float(found[1]) for text in warnings if (found := re.search(r"by ([0-9.e+-]+),", text))]
-    return (
-        f"{len(warnings)} poses were off a rotation by up to {max(deviations):.1e}, "
-        "each was brought to the nearest one",
-    )
+    return (*notes, *site.mended_poses)

@@ -72,17 +72,23 @@ class SimulatedEntry(Entry):
         Args:
             shared: the site's `camera_defaults`.
         """
+        from elbowroom.simulate.cameras import (
+            Optics,  # the simulator is slow to load, and most sites need none
+        )
+
         width, height = (int(side) for side in self.resolution.split("x"))
         return {
             "count": self.cameras,
             "height_m": self.camera_height_m,
             "width": width,
             "height": height,
-            "hfov_deg": self.field_of_view_deg,
-            "depth_kind": shared.depth_kind,
+            "optics": Optics(
+                self.field_of_view_deg,
+                shared.depth_kind,
+                shared.min_depth_m,
+                math.inf if shared.max_depth_m is None else shared.max_depth_m,
+            ),
             "noise": None if shared.noise is None else shared.noise.build(),
-            "min_depth_m": shared.min_depth_m,
-            "max_depth_m": math.inf if shared.max_depth_m is None else shared.max_depth_m,
         }
 
 

@@ -24,11 +24,6 @@ def name_of(frame: int) -> str:
     return f"frame-{frame:06d}"
 
 
-def depth_path(folder: Path, frame: int) -> Path:
-    """The frame's depth image."""
-    return folder / f"{name_of(frame)}.depth.png"
-
-
 def pose(folder: Path, frame: int) -> NDArray[np.float64]:
     """world_from_camera as the file says it, shape (4, 4).
 

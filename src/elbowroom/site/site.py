@@ -20,10 +20,9 @@ from elbowroom.motion import Motion
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.sensing import Margin
 from elbowroom.site import seven_scenes
-from elbowroom.site.camera_entry import CameraSettings, build_camera
+from elbowroom.site.camera_entry import CameraSettings, build_camera, mended_poses
 from elbowroom.site.machine_entry import motions_of
 from elbowroom.site.messages import one_line
-from elbowroom.site.notes import mended_poses, notes_of
 from elbowroom.site.paths import existing_folder
 from elbowroom.site.recording_entry import SevenScenes, StamplessFolder
 from elbowroom.site.schema import SimulatedEntry, SiteEntry
@@ -153,10 +152,10 @@ class Site:
         return self._cameras_and_notes[0]
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """What a user should know: poses that were mended, frames without times, links not checked."""
+    def mended_poses(self) -> tuple[str, ...]:
+        """Which poses were a little off a rotation and were mended; none where the simulator makes the cameras."""
         listed = self.simulated is None or self.lists_cameras
-        return (*notes_of(self), *(self._cameras_and_notes[1] if listed else ()))
+        return self._cameras_and_notes[1] if listed else ()
 
     @property
     def lists_cameras(self) -> bool:

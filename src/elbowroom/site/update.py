@@ -5,17 +5,23 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
 from elbowroom.errors import SiteError
-from elbowroom.files.atomic import whole_file
 from elbowroom.geometry import DepthCamera, Intrinsics
 from elbowroom.site import Site
 from elbowroom.site.camera_entry import PINHOLE
 from elbowroom.site.recording_entry import SevenScenes
-from elbowroom.site.schema import EVEN_SETTINGS, SIMULATED_SETTINGS
-from elbowroom.site.written import camera_entry, margin_entry, matrix_entry, moved, plain
+from elbowroom.site.schema import SIMULATED_SETTINGS
+from elbowroom.site.written import (
+    camera_entry,
+    margin_entry,
+    matrix_entry,
+    plain,
+    refuse_own_file,
+    said_again,
+    written,
+)
 
 POSE_KEYS = ("world_from_camera", "pose_file", "position_m", "look_at_m", "up", "pose_covariance")
 LENS_KEYS = ("intrinsics_file", *PINHOLE, "distortion")
@@ -55,10 +61,7 @@ def update_site(
     refuse_other_files(site, path)
     if isinstance(site.entry.recording, SevenScenes):
         raise SiteError(f"{site.path}: poses come with the recording (layout seven_scenes); nothing to write")
-    content = site.entry.model_dump(mode="json", exclude_unset=True)
-    if site.simulated is not None:
-        content["simulated"] = {k: v for k, v in content["simulated"].items() if k not in EVEN_SETTINGS}
-    content = moved(content, site.path.parent, path.absolute().parent)
+    content = said_again(site, path)
     if site.lists_cameras:
         content["cameras"] = _replaced(site, content["cameras"], cameras, covariances)
     else:
@@ -70,12 +73,7 @@ def update_site(
         ]
     if world_from_base is not None:
         content["machine"]["world_from_base"] = matrix_entry(world_from_base)
-    text = f"# {site.name}: {SIGNATURE} {command}`\n"
-    text += yaml.safe_dump(content, sort_keys=False, allow_unicode=True, default_flow_style=None, width=110)
-    with whole_file(path) as unfinished:
-        unfinished.write_text(text, encoding="utf-8")
-    Site.load(path).cameras()
-    return path
+    return written(content, path, f"{site.name}: {SIGNATURE} {command}`")
 
 
 def update_lenses(site: Site, lenses: Mapping[str, Mapping[str, Any]], path: Path, command: str) -> Path:
@@ -94,20 +92,14 @@ def update_lenses(site: Site, lenses: Mapping[str, Mapping[str, Any]], path: Pat
     refuse_other_files(site, path)
     if not site.lists_cameras:
         raise SiteError(f"{site.path}: cameras: the site lists none, so there is nothing to write")
-    content = site.entry.model_dump(mode="json", exclude_unset=True)
-    content = moved(content, site.path.parent, path.absolute().parent)
+    content = said_again(site, path)
     for entry in content["cameras"]:
         found = lenses.get(entry["name"])
         if found is not None:
             for key in LENS_KEYS:
                 entry.pop(key, None)
             entry.update(plain(dict(found)))
-    text = f"# {site.name}: {SIGNATURE} {command}`\n"
-    text += yaml.safe_dump(content, sort_keys=False, allow_unicode=True, default_flow_style=None, width=110)
-    with whole_file(path) as unfinished:
-        unfinished.write_text(text, encoding="utf-8")
-    Site.load(path).cameras()
-    return path
+    return written(content, path, f"{site.name}: {SIGNATURE} {command}`")
 
 
 def refuse_other_files(site: Site, path: Path) -> None:
@@ -118,8 +110,7 @@ def refuse_other_files(site: Site, path: Path) -> None:
     """
     if not path.exists():
         return
-    if path.samefile(site.path):
-        raise SiteError(f"{path}: is the site file itself; write beside it, under another name")
+    refuse_own_file(site, path)
     with path.open(encoding="utf-8", errors="replace") as file:
         if SIGNATURE not in file.readline(1000):
             raise SiteError(

@@ -1,17 +1,18 @@
-"""A site file with the cameras of a layout, which `elbowroom monitor` runs."""
+"""Site files that the program writes: the one place where they are put on disk, and how values stand in them."""
 
 import math
 import os
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
 from elbowroom.errors import SiteError
 from elbowroom.files.atomic import whole_file
+from elbowroom.files.yaml_file import write_yaml
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import Margin
 from elbowroom.site import Site
@@ -21,6 +22,82 @@ from elbowroom.site.schema import EVEN_SETTINGS
 PATH_KEYS = ("intrinsics_file", "pose_file", "urdf", "mesh", "folder")
 """Keys whose values are paths beside the site file."""
 DIGITS = 9
+
+
+def written(content: Mapping[str, Any], out: Path, by: str) -> Path:
+    """Writes a site file and loads it again: what cannot be read is not called written.
+
+    Args:
+        content: what it says, key by key.
+        out: the file.
+        by: what wrote it, for the first line.
+
+    Returns:
+        The path.
+
+    Raises:
+        SiteError: the content is no site.
+        InputError: the folder cannot be written to.
+    """
+    write_yaml(out, content, by)
+    return _checked(out)
+
+
+def written_with_key(site: Site, key: str, value: Mapping[str, Any], out: Path, by: str) -> Path:
+    """Writes a site's own text, comments and all, with one key said otherwise; it goes to the end.
+
+    Paths stay as they are written, so the new file belongs into the old one's folder.
+
+    Args:
+        site: the old one.
+        key: of the outermost mapping.
+        value: its new mapping, of plain values.
+        out: the new file.
+        by: what wrote it, in a comment beside the key.
+
+    Returns:
+        The path.
+
+    Raises:
+        SiteError: the new file would be the site's own, or the result is no site.
+        InputError: the folder cannot be written to.
+    """
+    refuse_own_file(site, out)
+    old_key = re.compile(rf"^{re.escape(key)}:.*\n(?:[ \t]+.*\n|[ \t]*\n)*", re.MULTILINE)
+    kept = old_key.sub("", site.path.read_text(encoding="utf-8")).rstrip()
+    lines = "".join(f"  {name}: {said}\n" for name, said in value.items())
+    with whole_file(out) as unfinished:
+        unfinished.write_text(f"{kept}\n\n{f'{key}:':26}  # written by {by}\n{lines}", encoding="utf-8")
+    return _checked(out)
+
+
+def said_again(site: Site, out: Path) -> dict[str, Any]:
+    """What a site says, for a file in another place that says what its cameras are; comments are lost.
+
+    Paths lead from the new place to the same files. How a simulated room's cameras are made is left out.
+
+    Args:
+        site: the old one.
+        out: the new file.
+
+    Raises:
+        SiteError: the new file would be the site's own.
+    """
+    refuse_own_file(site, out)
+    content = site.entry.model_dump(mode="json", exclude_unset=True)
+    if site.simulated is not None:
+        content["simulated"] = {k: v for k, v in content["simulated"].items() if k not in EVEN_SETTINGS}
+    return dict(moved(content, site.path.parent, out.absolute().parent))
+
+
+def refuse_own_file(site: Site, out: Path) -> None:
+    """Never over the file that a site was loaded from.
+
+    Raises:
+        SiteError: it is that file.
+    """
+    if out.exists() and out.samefile(site.path):
+        raise SiteError(f"{out}: is the site file itself; write beside it, under another name")
 
 
 def write_site(site: Site, cameras: Sequence[DepthCamera], path: Path) -> Path:
@@ -41,21 +118,20 @@ def write_site(site: Site, cameras: Sequence[DepthCamera], path: Path) -> Path:
         SiteError: the new file would be the site's own.
         InputError: the folder cannot be written to.
     """
-    if path.exists() and path.samefile(site.path):
-        raise SiteError(f"{path}: is the site file itself; write the layout beside it, under another name")
-    content = site.entry.model_dump(mode="json", exclude_unset=True, exclude={"cameras"})
-    if site.simulated is not None:
-        content["simulated"] = {k: v for k, v in content["simulated"].items() if k not in EVEN_SETTINGS}
-    content = moved(content, site.path.parent, path.absolute().parent)
+    content = {key: value for key, value in said_again(site, path).items() if key != "cameras"}
     content["cameras"] = [camera_entry(camera) for camera in cameras]
     if site.simulated is not None:
         content.pop("camera_defaults", None)
-    text = f"# {site.name}: {len(cameras)} cameras, placed by `elbowroom placement optimise`\n"
-    text += yaml.safe_dump(content, sort_keys=False, allow_unicode=True, default_flow_style=None, width=110)
-    with whole_file(path) as unfinished:
-        unfinished.write_text(text, encoding="utf-8")
-    Site.load(path).cameras()
-    return path
+    return written(
+        content, path, f"{site.name}: {len(cameras)} cameras, placed by `elbowroom placement optimise`"
+    )
+
+
+def _checked(out: Path) -> Path:
+    site = Site.load(out)
+    if site.lists_cameras:
+        site.cameras()
+    return out
 
 
 def camera_entry(camera: DepthCamera) -> dict[str, Any]:
@@ -111,7 +187,12 @@ def plain(value: Any) -> Any:
 
 
 def moved(value: Any, old: Path, new: Path) -> Any:
-    """The same content with paths that lead from another folder to the same files."""
+    """The same content with paths that lead from another folder to the same files.
+
+    Args:
+        value: a mapping, a list, or what stands in them.
+        old, new: the folder that paths are relative to, and the one that they shall be relative to.
+    """
     if isinstance(value, dict):
         return {
             key: os.path.relpath(expand(item, old.absolute()), new)

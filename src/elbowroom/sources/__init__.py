@@ -1,13 +1,18 @@
-"""Where frames come from: recordings on disk, the simulated room; and what a simulated moment is written as."""
+"""Where frames come from, as snapshots: recordings on disk, the simulated room; a source a file."""
 
 from elbowroom.sources.depth_png import read_depth_png
-from elbowroom.sources.recorded import RecordedMoment, check_images, excluded_frames, moments, silent_cameras
+from elbowroom.sources.recorded import Recorded, check_images, excluded_frames, moments, silent_cameras
+from elbowroom.sources.room import Room, open_room
+from elbowroom.sources.source import Source
 
 __all__ = [
-    "RecordedMoment",
+    "Recorded",
+    "Room",
+    "Source",
     "check_images",
     "excluded_frames",
     "moments",
+    "open_room",
     "read_depth_png",
     "silent_cameras",
 ]

@@ -1,42 +1,50 @@
 """Recorded frames of all cameras, moment by moment."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from elbowroom.errors import SiteError
 from elbowroom.geometry import DepthCamera
-from elbowroom.sensing import DepthFrame, JointRecord
-from elbowroom.site.paths import inside
-from elbowroom.site.recording_entry import StampedFolder
+from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 from elbowroom.site.site import Site
-from elbowroom.sources.images import Image, image_groups, views
+from elbowroom.sources.layouts.image import Image
+from elbowroom.sources.layouts.layout import layout_of
+from elbowroom.sources.layouts.seven_scenes import SevenScenesFrames
 
-Positions = Mapping[str, float]
-"""Joint positions by name [m or rad]."""
+Joints = Mapping[str, float] | JointRecord
+"""Positions by name that hold throughout [m or rad], or a record of them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RecordedMoment:
-    """Frames of one moment, at most one per camera, and where the machine was.
+class Recorded:
+    """The recording of a site as a source, played once.
 
     Args:
-        stamp_ns: the latest time of exposure among the frames [ns]; None: they have no times.
-        frames: in the order of the site's cameras; a camera without a frame near this moment is left out.
-        joints: joint positions at the moment, by name [m or rad]; None: not known.
-        joints_of: joint positions at each frame's own time, by camera.
+        site: with a recording.
+        joints: as of `moments`.
     """
 
-    stamp_ns: int | None
-    frames: tuple[DepthFrame, ...]
-    joints: Positions | None = None
-    joints_of: Mapping[str, Positions] = field(default_factory=dict)
+    site: Site
+    joints: Joints | None = None
+
+    @property
+    def name(self) -> str:
+        """What its time is spent on."""
+        return "reading"
+
+    def __iter__(self) -> Iterator[Snapshot]:
+        """The moments, from the first one; raises as `moments`."""
+        return moments(self.site, self.joints)
+
+    def close(self) -> None:
+        """Nothing is held between two moments."""
 
 
-def moments(site: Site, joints: Positions | JointRecord | None = None) -> Iterator[RecordedMoment]:
+def moments(site: Site, joints: Joints | None = None) -> Iterator[Snapshot]:
     """The moments of a site's recording, in order; images are read one moment at a time.
 
-    Frames of layout `folder` gather around those of the camera that has most: per other camera the nearest in
-    time, within `max_skew_ms`.
+    The time of a moment is that of its latest frame. Frames are in the order of the site's cameras; a camera without
+    one near the moment is left out.
 
     Args:
         site: with a recording.
@@ -46,14 +54,16 @@ def moments(site: Site, joints: Positions | JointRecord | None = None) -> Iterat
         SiteError: no recording, its folder is absent or not laid out as the site says, or the machine's
             joints are not known.
         FrameError: an image is not what its camera delivers.
+        InputError: a record of joints, and frames without times.
     """
-    groups = image_groups(site)
-    known = joints if joints is not None else _own_joints(site)
+    layout = layout_of(site)
+    groups = layout.moments()
+    known = joints if joints is not None else layout.joints()
     if site.entry.machine is not None and known is None:
         raise SiteError(
-            f"{site.path}: joints of the machine are not recorded; give them with --joints name=value,..."
+            f"joints: {site.path} records none of its machine; give positions that hold throughout"
         )
-    return (_moment(group, known) for group in groups)
+    return (_snapshot(group, known) for group in groups)
 
 
 def check_images(site: Site) -> tuple[int, int]:
@@ -65,7 +75,7 @@ def check_images(site: Site) -> tuple[int, int]:
     Raises:
         SiteError, FrameError: as `moments`.
     """
-    groups = image_groups(site)
+    groups = layout_of(site).moments()
     for group in groups:
         for image in group:
             image.check()
@@ -78,7 +88,7 @@ def silent_cameras(site: Site) -> tuple[str, ...]:
     Raises:
         SiteError: as `moments`.
     """
-    heard = {image.camera.name for group in image_groups(site) for image in group}
+    heard = {image.camera.name for group in layout_of(site).moments() for image in group}
     return tuple(camera.name for camera in site.cameras() if camera.name not in heard)
 
 
@@ -91,36 +101,11 @@ def excluded_frames(site: Site) -> tuple[tuple[DepthCamera, DepthFrame], ...]:
     cameras = site.excluded_cameras()
     if not cameras:
         return ()
-    return tuple((image.camera, image.read()) for image in views(site, cameras))
+    images = SevenScenesFrames(site, site.recording_folder()).images_of(cameras)
+    return tuple((image.camera, image.read()) for image in images)
 
 
-def _moment(group: list[Image], joints: Positions | JointRecord | None) -> RecordedMoment:
-    frames = tuple(image.read() for image in group)
+def _snapshot(group: list[Image], joints: Joints | None) -> Snapshot:
+    frames = [image.read() for image in group]
     stamps = [frame.stamp_ns for frame in frames if frame.stamp_ns is not None]
-    stamp = max(stamps) if stamps else None
-    if joints is None:
-        return RecordedMoment(stamp, frames)
-    return RecordedMoment(
-        stamp, frames, _at(joints, stamp), {frame.camera: _at(joints, frame.stamp_ns) for frame in frames}
-    )
-
-
-def _at(joints: Positions | JointRecord, stamp_ns: int | None) -> Positions:
-    if not isinstance(joints, JointRecord):
-        return joints
-    if stamp_ns is None:
-        raise SiteError(
-            "frames have no times, so a record of joints cannot be asked; give positions that hold throughout"
-        )
-    return joints.at(stamp_ns)
-
-
-def _own_joints(site: Site) -> JointRecord | None:
-    recording = site.entry.recording
-    if not isinstance(recording, StampedFolder):
-        return None
-    folder = site.recording_folder()
-    path = folder / inside(folder, recording.joints_file)
-    if not path.exists() and site.entry.machine is None:
-        return None
-    return JointRecord.from_csv(path, max_gap_ns=round(recording.max_joint_gap_ms * 1e6))
+    return Snapshot.taken(frames, joints, max(stamps, default=None))

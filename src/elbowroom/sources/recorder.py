@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -15,6 +14,7 @@ from elbowroom.files.atomic import folder, whole_file
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.sensing import DepthFrame
 from elbowroom.site import Site
+from elbowroom.site.written import written
 
 UNIT_M = 0.0002
 """Metres per unit of the images: 65534 of them reach 13 m."""
@@ -66,12 +66,7 @@ def write_recording(
             writer = csv.writer(file)
             writer.writerow(["stamp_ns", *what.joints])
             writer.writerow([frames[0].stamp_ns, *(repr(float(value)) for value in what.joints.values())])
-    with whole_file(out / "site.yaml") as unfinished:
-        unfinished.write_text(
-            "# written by elbowroom simulate\n" + yaml.safe_dump(_site(what, cameras), sort_keys=False),
-            encoding="utf-8",
-        )
-    return out / "site.yaml"
+    return written(_site(what, cameras), out / "site.yaml", "written by elbowroom simulate")
 
 
 def as_units(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:
@@ -80,37 +75,49 @@ def as_units(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:
     return np.where(units <= LARGEST, units, 0).astype(np.uint16)
 
 
-def _site(what: Recording, cameras: Sequence[DepthCamera]) -> dict[str, Any]:
+def recorded_site(name: str, grid: VoxelGrid, cameras: Sequence[DepthCamera], noise: str) -> dict[str, Any]:
+    """What a site file says of cameras of one kind, and of their images beside it.
+
+    Args:
+        name: of the site.
+        grid: the watched box.
+        cameras: alike but for name and pose.
+        noise: name of the sensors' noise, such as "tof"; "exact": none.
+    """
     first = cameras[0]
-    intrinsics = first.intrinsics
-    machine = {} if what.joints is None else {"machine": {"builtin": "ceiling_c_arm"}, "joints": _speeds()}
-    defaults: dict[str, Any] = {
-        "width": first.width,
-        "height": first.height,
-        **{name: float(getattr(intrinsics, name)) for name in ("fx", "fy", "cx", "cy")},
-        "depth_kind": first.depth_kind,
-        "depth_scale_m": UNIT_M,
-        "noise": what.noise,
-        "min_depth_m": first.min_depth_m,
-        "max_depth_m": min(first.max_depth_m, LARGEST * UNIT_M),
-    }
     return {
-        "name": what.name,
+        "name": name,
         "grid": {
-            "origin_m": what.grid.lower_m.tolist(),
-            "shape": list(what.grid.shape),
-            "voxel_size_m": what.grid.voxel_size_m,
+            "origin_m": grid.lower_m.tolist(),
+            "shape": list(grid.shape),
+            "voxel_size_m": grid.voxel_size_m,
         },
-        "camera_defaults": defaults,
+        "camera_defaults": {
+            "width": first.width,
+            "height": first.height,
+            **{name: float(getattr(first.intrinsics, name)) for name in ("fx", "fy", "cx", "cy")},
+            "depth_kind": first.depth_kind,
+            "depth_scale_m": UNIT_M,
+            "noise": noise,
+            "min_depth_m": first.min_depth_m,
+            "max_depth_m": min(first.max_depth_m, LARGEST * UNIT_M),
+        },
         "cameras": [
             {"name": camera.name, "world_from_camera": camera.world_from_camera.tolist()}
             for camera in cameras
         ],
+        "recording": {"layout": "folder", "folder": "images"},
+    }
+
+
+def _site(what: Recording, cameras: Sequence[DepthCamera]) -> dict[str, Any]:
+    machine = {} if what.joints is None else {"machine": {"builtin": "ceiling_c_arm"}, "joints": _speeds()}
+    return {
+        **recorded_site(what.name, what.grid, cameras, what.noise),
         **machine,
         "rule": "three",
         "detail": "pixel",
         "margin": {"sigmas": 3.0, "bias_m": 0.0, "lateral_px": 0.5},
-        "recording": {"layout": "folder", "folder": "images"},
     }
 
 

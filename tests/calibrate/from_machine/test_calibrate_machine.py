@@ -11,12 +11,11 @@ from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.geometry.twist import between, moved, sizes
 from elbowroom.machine import Machine
-from elbowroom.sensing import NOISE_PRESETS
+from elbowroom.sensing import NOISE_PRESETS, Snapshot
 from elbowroom.simulate import Moment, render
 from elbowroom.simulate.machine_solids import link_solids, random_joints
 from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Solid
-from elbowroom.sources import RecordedMoment
 from reference.calibrate_machines import camera, cameras, errors, poses_of, record, room, roughly
 
 FAR_OUT = chi2.ppf(0.9999, 6)
@@ -156,7 +155,7 @@ def test_a_six_axis_arm_is_a_target_too():
         joints = {name: value / 2 for name, value in random_joints(arm, rng).items()}
         moment = Moment(1.0 + number, (floor, *link_solids(arm, joints)), joints)
         frames = tuple(render([true], moment))
-        moments.append(RecordedMoment(moment.stamp_ns, frames, joints, {"arm": joints}))
+        moments.append(Snapshot(frames, joints, now_ns=moment.stamp_ns))
     result = calibrate_from_machine(arm, roughly([true], 2, 0.06, 3.0), moments)
     ((metres, degrees, square),) = errors(result.cameras, [true]).values()
     assert metres < 0.004

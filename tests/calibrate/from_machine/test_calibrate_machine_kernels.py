@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
-from elbowroom.calibrate.from_machine.kernels.surface import Sums, compare
+from elbowroom.calibrate.from_machine.kernels.surface import DepthError, Sums, compare
 from elbowroom.calibrate.from_machine.surface_sums import TRUST
 from elbowroom.machine.rasterise import view_of
 from elbowroom.sensing.planar_images import planar_images
@@ -24,7 +24,7 @@ def test_surface_sums_are_those_of_the_twin(kind, noise):
     normal, gradient, counts = np.zeros((8, 8)), np.zeros(8), np.zeros(5, dtype=np.int64)
     residuals = np.full(drawing.inverse.shape, np.nan, dtype=np.float32)
     sums = Sums(normal, gradient, counts, residuals)
-    compare(view_of(images.thinned), drawing, images.depth_m[0], (0.004, 0.002), TRUST, sums)
+    compare(view_of(images.thinned), drawing, images.depth_m[0], DepthError(0.004, 0.002), TRUST, sums)
     slow = calibrate_surface.compare(images.thinned, drawing.inverse, images.depth_m[0], 0.004, 0.002, TRUST)
     assert counts[1] > 50
     assert (counts == slow[2]).all()

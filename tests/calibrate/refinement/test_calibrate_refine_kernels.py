@@ -1,13 +1,6 @@
 import numpy as np
 
-from elbowroom.calibrate.refinement.kernels.overlap import (
-    Image,
-    Overlap,
-    Seen,
-    Sums,
-    compare_points,
-    fit_planes,
-)
+from elbowroom.calibrate.refinement.kernels.overlap import Overlap, Sums, Surface, compare_points, fit_planes
 from elbowroom.calibrate.refinement.overlap import surfaces
 from elbowroom.geometry import invert_rigid
 from elbowroom.machine.rasterise import view_of
@@ -20,9 +13,8 @@ def test_planes_are_those_of_the_twin():
     true = camera("north", *PLACES["north"], width=64)
     (moment,) = record([true], poses_of(room(), 1))
     depth = planar_images(true, moment.frames).depth_m[0]
-    k = true.intrinsics
     planes = np.zeros((*depth.shape, 3), dtype=np.float32)
-    fit_planes(depth, k.fx, k.fy, k.cx, k.cy, 1, 0.02, planes)
+    fit_planes(depth, view_of(true), 1, 0.02, planes)
     assert planes.any(axis=-1).mean() > 0.2
     for v, u in np.ndindex(depth.shape):
         slow = calibrate_overlap.fit_plane(depth, u, v, true, 1, 0.02)
@@ -37,10 +29,11 @@ def test_overlap_sums_are_those_of_the_twin():
     )
     rule = Overlap(gate_m=0.1, reach=4.7, floor_m=0.002, least_cosine=0.6, tiles=3, arm_px=7.0)
     other_from_one = invert_rigid(other.world_from_camera) @ one.world_from_camera
-    normal, gradient, counts = np.zeros((9, 6, 6)), np.zeros((9, 6)), np.zeros(4, dtype=np.int64)
-    offs, by_noise = np.full(len(a.points[0].points), np.nan), np.zeros((6, 6))
-    image, sums = Image(b.images.depth_m[0], b.planes[0]), Sums(normal, gradient, by_noise, counts)
-    compare_points(view_of(b.images.thinned), image, Seen(*a.points[0]), other_from_one, rule, sums, offs)
+    sums = Sums(np.zeros((9, 6, 6)), np.zeros((9, 6)), np.zeros((6, 6)), np.zeros(4, dtype=np.int64))
+    normal, gradient, by_noise, counts = sums
+    offs = np.full(len(a.points[0].points), np.nan)
+    surface = Surface(b.images.depth_m[0], b.planes[0])
+    compare_points(view_of(b.images.thinned), surface, a.points[0], other_from_one, rule, sums, offs)
     slow = calibrate_overlap.compare_points(
         other, b.images.depth_m[0], b.planes[0], *a.points[0], other_from_one, rule
     )

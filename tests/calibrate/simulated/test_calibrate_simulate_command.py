@@ -20,7 +20,7 @@ from elbowroom.geometry.lens import project
 from elbowroom.geometry.twist import log
 from elbowroom.simulate import wall_cameras
 from elbowroom.site import Site
-from elbowroom.sources.images import images_of_cameras
+from elbowroom.sources.layouts.layout import layout_of
 
 RUNNER = CliRunner()
 BOARD = Board(8, 5, 0.1, "cut_out", 0.04, marked=True, thickness_m=0.003)
@@ -58,7 +58,7 @@ def test_a_capture_with_near_poses_gives_intrinsics(tmp_path):
     (row,) = json.loads(rows.read_text())["rows"]
     assert (row["cameras"], row["poses"]) == (1, 8)
     site, truth = Site.load(out / "site.yaml"), read_truth(out)["cameras"]["cam00"]
-    assert row["images"] == len(images_of_cameras(site)["cam00"])
+    assert row["images"] == len(layout_of(site).by_camera()["cam00"])
     new = tmp_path / "new.yaml"
     page = tmp_path / "report"
     done = call("intrinsics", out, "--distortion", 0, "--out", new, "--json", rows, "--report", page)
@@ -152,7 +152,7 @@ def test_a_knocked_camera_is_elsewhere_than_the_site_says(tmp_path):
     ("arguments", "expected"),
     [
         (("room", "--near"), "--near with room: near poses are those of a board"),
-        (("room", "--noise", "kinect"), "--noise: 'kinect' is unknown; exact, "),
+        (("room", "--noise", "kinect"), "--noise: 'kinect' is unknown, allowed are exact, "),
         (("room", "--knock", "north"), "knocked camera 'north': unknown; cameras are cam00, cam01"),
         (("board", "--corners", "8x6"), "odd"),
         (("board", "--poses", 3, "--stands", 4), "4 stands, must be 0 to the 3 poses"),

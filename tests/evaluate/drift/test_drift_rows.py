@@ -81,7 +81,7 @@ def test_a_camera_before_a_cabinet_is_named_by_a_part_and_no_image_shows_the_res
     assert (alone["named"], alone["others_named"], alone["said_median"]) == (1, 0, None)
     assert list(alone["named_by_a_part"]) == ["cam03"]
     (row,) = knocks.not_shown_rows(corner)
-    assert row["camera"] == "cam03" and row["not_shown"] == "move along y"
+    assert row["camera"] == "cam03" and row["not_shown"] == "moving up and down"
     # a move of 2 cm that the room shows changes images by millimetres
     assert row["differs_mm"] < 1.0 and row["differs_sigmas"] < 0.5
     assert not list(

@@ -5,11 +5,11 @@ from importlib import import_module
 
 import pytest
 
-from elbowroom.cli.monitor_run import watch
-from elbowroom.cli.room import open_room
 from elbowroom.monitor.start.compiling import run_jobs
 from elbowroom.monitor.start.kernel_jobs import JOBS, Job
+from elbowroom.monitor.start.start import started
 from elbowroom.site import Site
+from elbowroom.sources import open_room
 
 ECHO = (sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line.strip(), flush=True)")
 DIES = (sys.executable, "-c", "input()")
@@ -43,12 +43,12 @@ def test_jobs_come_after_jobs_that_exist_and_are_begun_before():
         assert each.after is None or each.after in names[:n]
 
 
-def test_a_run_compiles_nothing_that_the_jobs_did_not(tmp_path):
+def test_a_run_compiles_nothing_that_the_jobs_did_not():
     for each in JOBS:
         each.run()
     kernels = [kernel for name in list(sys.modules) if ".kernels." in name for kernel in _kernels_of(name)]
     before = {kernel: len(kernel.signatures) for kernel in kernels}
-    watch(open_room(Site.simulated_room(), cameras=3), seconds=0.0, json_file=None, out_dir=None)
+    started(open_room(Site.simulated_room(), cameras=3), lambda step: None).run([], seconds=0.0)
     more = {kernel.py_func.__name__ for kernel in kernels if len(kernel.signatures) > before[kernel]}
     assert not more
 

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 from rich.console import Console
 
 from elbowroom.geometry import VoxelGrid
-from elbowroom.monitor import CameraHealth, Condition, CycleResult, Health, LinkHealth, Shift
+from elbowroom.monitor import CameraHealth, Condition, CycleResult, Health, LinkHealth, Pass, Shift
 from elbowroom.motion import Cause, Level, Motion, Verdict
+from elbowroom.sensing import Snapshot
 from elbowroom.view.screen.run_log import RunLog
 from elbowroom.view.screen.terminal import TerminalView
 from elbowroom.view.screen.watched import Watched
@@ -41,12 +42,16 @@ def a_result(fault: str | None = None) -> CycleResult:
     return CycleResult(7, 3_200_000_000, None, VERDICTS, {"reconstruct": 30.0, "motion": 5.0}, 12.0, fault)
 
 
+def a_pass(result: CycleResult) -> Pass:
+    return Pass(Snapshot(()), result, 33.0)
+
+
 def shown(width: int, fault: str | None = None, *, terminal: bool = True) -> str:
     console = Console(file=io.StringIO(), width=width, force_terminal=terminal, color_system=None)
-    with TerminalView(WATCHED, console) as view:
-        view.start()
-        view.show(a_result(fault), 33.0)
-    view.print_summary()
+    with TerminalView(console) as view:
+        view.open(WATCHED)
+        view.show(a_pass(a_result(fault)))
+    view.end()
     return console.file.getvalue()
 
 
@@ -122,9 +127,10 @@ def test_without_a_terminal_there_are_plain_lines_and_a_summary():
 
 def test_plain_lines_come_about_once_a_second():
     console = Console(file=io.StringIO(), width=200, force_terminal=False)
-    with TerminalView(WATCHED, console) as view:
+    with TerminalView(console) as view:
+        view.open(WATCHED)
         for _ in range(50):
-            view.show(a_result(), 1.0)
+            view.show(a_pass(a_result()))
     assert console.file.getvalue().count("long + STOP") == 1
     assert view.log.cycles == 50
 
@@ -178,11 +184,11 @@ def test_the_health_line_says_how_cameras_and_machine_are():
 @pytest.mark.parametrize("terminal", [True, False])
 def test_a_stop_of_the_watch_is_shown_with_its_reason_and_stays_in_the_summary(terminal):
     console = Console(file=io.StringIO(), width=140, force_terminal=terminal, color_system=None)
-    with TerminalView(WATCHED, console) as view:
-        view.start()
-        view.show(of_health({"cam03": "camera cam03 has turned by 0.9 degrees"}), 33.0)
+    with TerminalView(console) as view:
+        view.open(WATCHED)
+        view.show(a_pass(of_health({"cam03": "camera cam03 has turned by 0.9 degrees"})))
     assert "camera cam03 has turned by 0.9 degrees" in console.file.getvalue()
-    view.print_summary()
+    view.end()
     assert "Every motion was stopped: camera cam03 has turned" in console.file.getvalue()
 
 

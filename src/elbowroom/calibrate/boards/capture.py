@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,8 @@ from elbowroom.site import Site
 from elbowroom.site.calibration_entry import CaptureImagesEntry
 from elbowroom.site.paths import existing_folder, inside
 from elbowroom.site.recording_entry import StampedFolder
-from elbowroom.sources.images import Image, images_of_cameras
+from elbowroom.sources.layouts.image import Image
+from elbowroom.sources.layouts.layout import layout_of
 
 LOOKED_AT_AGAIN = 24
 """Images in which a board of another size is looked for where none shows the right one."""
@@ -43,6 +45,14 @@ class Sightings:
     views: tuple[BoardView, ...]
     troubles: tuple[Trouble, ...]
     poses: int
+
+    def row(self) -> dict[str, Any]:
+        """How much was seen, and what was wrong with the rest."""
+        return {
+            "poses": self.poses,
+            "views": len(self.views),
+            "troubles": [str(trouble) for trouble in self.troubles],
+        }
 
 
 def board_of(site: Site) -> Board:
@@ -76,7 +86,7 @@ def images_by_pose(site: Site) -> list[list[Image]]:
     Raises:
         SiteError: no recording, or not laid out as the site says.
     """
-    by_camera = images_of_cameras(site)
+    by_camera = layout_of(site).by_camera()
     recording = site.entry.recording
     if not isinstance(recording, StampedFolder):
         return [list(group) for group in zip(*by_camera.values(), strict=True)]
@@ -171,6 +181,12 @@ def seen_in(site: Site, board: Board, image: Image, pose: int, *, other_sizes: b
 
 def picture_path(site: Site, images: CaptureImagesEntry, image: Image, pose: int) -> Path:
     """The infrared or colour picture that belongs to a depth image.
+
+    Args:
+        site: of the capture.
+        images: which pictures there are, and where.
+        image: the depth image.
+        pose: its number, from 0.
 
     Raises:
         SiteError: the folder is not there.

@@ -86,6 +86,12 @@ def corner_rows(
 
     Both motions are on the right of their pose, in their own frame: world_from_camera @ exp(motion).
 
+    Args:
+        camera: that sees them.
+        camera_from_board: pose of the board, shape (4, 4).
+        corners: in the board's frame, shape (n, 3) [m].
+        view: where they were seen, and with which sigmas.
+
     Returns:
         shapes (2 n,), (2 n, 6), (2 n, 6).
     """
@@ -129,6 +135,11 @@ def seen_boards(
 ) -> list[SeenBoard]:
     """Every view by itself.
 
+    Args:
+        cameras: by name.
+        board: that was shown.
+        views: of any cameras and poses.
+
     Raises:
         CalibrationError: a view of a camera that is not there, or that does not show this board.
         PackageError: OpenCV is not installed.
@@ -137,7 +148,13 @@ def seen_boards(
 
 
 def seen_board(cameras: Mapping[str, DepthCamera], board: Board, view: BoardView) -> SeenBoard:
-    """One view by itself; see `seen_boards`."""
+    """One view by itself; see `seen_boards`.
+
+    Args:
+        cameras: by name.
+        board: that was shown.
+        view: of one camera.
+    """
     if view.camera not in cameras:
         raise CalibrationError(
             f"camera {view.camera}: has a view of the board but is not among the site's cameras ({', '.join(cameras)})"

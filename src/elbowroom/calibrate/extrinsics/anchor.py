@@ -109,6 +109,12 @@ def world_from_base(
 ) -> Array:
     """Where the frame of a first solution lies in the world, shape (4, 4).
 
+    Args:
+        anchor: what fixes the world.
+        cameras: by name, as the site has them.
+        base_from_camera: of the first solution, by name, shape (4, 4).
+        base_from_board: of the first solution, by pose, shape (4, 4).
+
     Raises:
         CalibrationError: what shall fix the world was not seen, or does not fix it.
     """

@@ -125,7 +125,7 @@ def require_still(seen: Sequence[SeenBoard], solution: Solution, corners: Array)
     more = f" (and poses {', '.join(str(p) for p in poses if p != pose)})" if len(poses) > 1 else ""
     raise CalibrationError(
         f"pose {pose}{more}: cameras {', '.join(cameras)} do not agree where the board was ({apart * 1e3:.0f} mm); "
-        f"it was moved between their images: capture again, or leave out by --without-pose {pose}"
+        f"it was moved between their images: capture again, or leave pose {pose} out"
     )
 
 
@@ -201,7 +201,12 @@ ROWS, COLUMNS = ("upper", "middle", "lower"), ("left", "middle", "right")
 
 
 def unseen_parts(width: int, height: int, corners_px: Sequence[Array]) -> list[str]:
-    """Which of the image's nine parts never had a corner of the board in them, in words."""
+    """Which of the image's nine parts never had a corner of the board in them, in words.
+
+    Args:
+        width, height: of the image [px].
+        corners_px: of each view, shape (n, 2) [px].
+    """
     points = np.concatenate([*corners_px, np.zeros((0, 2))])
     column = np.clip((points[:, 0] * 3 / width).astype(int), 0, 2)
     row = np.clip((points[:, 1] * 3 / height).astype(int), 0, 2)

@@ -3,6 +3,7 @@
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +81,16 @@ class Extrinsics:
                 if abs(at @ error) > 2 * np.sqrt(at @ self.depth_covariance[name] @ at):
                     wrong[name] = (bias, self.depth_scale[name])
         return wrong
+
+    def row(self) -> dict[str, Any]:
+        """How much was found, and how far measured points are from where they are seen."""
+        return {
+            "cameras": len(self.cameras),
+            "poses": len(self.world_from_board),
+            "views": len(self.seen),
+            "points_unseen": list(self.points_unseen),
+            "points_off_m": dict(self.points_off_m),
+        }
 
 
 def solve_extrinsics(

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine import Machine
-from elbowroom.machine.kernels.draw import Drawn, draw
+from elbowroom.machine.kernels.draw import Canvas, draw
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
 
 Array = NDArray[np.float64]
@@ -25,7 +25,7 @@ class DrawnMachine:
     machine: Machine
     world_from_base: Array
 
-    def image(self, camera: DepthCamera, base_from_links: Array) -> Drawn:
+    def image(self, camera: DepthCamera, base_from_links: Array) -> Canvas:
         """The machine in a pinhole camera's view.
 
         Args:
@@ -34,7 +34,7 @@ class DrawnMachine:
         """
         drawing = canvas(camera.height, camera.width)
         camera_from_links = camera.camera_from_world @ self.world_from_base @ base_from_links
-        draw(mesh_of(self.machine), camera_from_links, view_of(camera), *drawing)
+        draw(mesh_of(self.machine), camera_from_links, view_of(camera), drawing)
         return drawing
 
     def links_seen(self, camera: DepthCamera, base_from_links: Array) -> dict[str, int]:
@@ -48,12 +48,8 @@ class DrawnMachine:
                 )
             )
             drawing = canvas(camera.height, camera.width)
-            draw(
-                only,
-                camera.camera_from_world @ self.world_from_base @ base_from_links,
-                view_of(camera),
-                *drawing,
-            )
+            camera_from_links = camera.camera_from_world @ self.world_from_base @ base_from_links
+            draw(only, camera_from_links, view_of(camera), drawing)
             count = int(((drawing.inverse > 0) & (drawing.inverse >= whole)).sum())
             if count:
                 found[link.name] = count

@@ -125,8 +125,8 @@ def fit(
     known = dict(known or {})
     if free_base and not known:
         raise CalibrationError(
-            "the machine's base and all cameras at once: nothing fixes the world; name cameras whose poses hold with "
-            "--hold, or find the cameras by a board first"
+            "the machine's base and all cameras at once: nothing fixes the world; say which cameras' poses hold, or "
+            "find the cameras by a board first"
         )
     state = _State(
         machine,

@@ -12,6 +12,7 @@ from elbowroom.calibrate.from_machine.kernels.surface import (
     BEHIND,
     SEEN,
     SILENT,
+    DepthError,
     Sums,
     Trust,
     compare,
@@ -100,7 +101,7 @@ def surface_sums(
         depth_error: bias [m] and scale of its depth, shape (2,).
         trust: which pixels count.
     """
-    bias, scale = (float(value) for value in depth_error)
+    error = DepthError(float(depth_error[0]), float(depth_error[1]))
     camera = views.images.at(world_from_camera)
     view, count = view_of(camera), len(views.poses)
     normal, gradient = np.zeros((count, 8, 8)), np.zeros((count, 8))
@@ -108,10 +109,9 @@ def surface_sums(
     residuals = np.full(views.images.depth_m.shape, np.nan, dtype=np.float32)
     cost = 0.0
     for row, (links, measured) in enumerate(zip(views.base_from_links, views.images.depth_m, strict=True)):
-        drawing = drawn.image(camera, links)
-        added = Sums(normal[row], gradient[row], counts[row], residuals[row])
-        cost += compare(view, drawing, measured, (bias, scale), trust, added)
-    return SurfaceSums(normal, gradient, np.array([bias, scale]), counts, cost, residuals)
+        sums = Sums(normal[row], gradient[row], counts[row], residuals[row])
+        cost += compare(view, drawn.image(camera, links), measured, error, trust, sums)
+    return SurfaceSums(normal, gradient, np.array(error), counts, cost, residuals)
 
 
 def whole(sums: SurfaceSums) -> tuple[Array, Array]:
@@ -132,6 +132,11 @@ def of_pose(normal: Array, gradient: Array) -> tuple[Array, Array]:
 
 
 def depth_error_step(normal: Array, gradient: Array, twist: Array) -> Array:
-    """How bias and scale follow when the pose moves by a twist, shape (2,)."""
+    """How bias and scale follow when the pose moves by a twist, shape (2,).
+
+    Args:
+        normal, gradient: of pose and depth error together, shapes (8, 8) and (8,).
+        twist: of the pose, shape (6,) [rad, m].
+    """
     left = gradient[DEPTH_ERRORS] + normal[DEPTH_ERRORS, :6] @ twist
     return -np.asarray(np.linalg.solve(normal[DEPTH_ERRORS, DEPTH_ERRORS], left))

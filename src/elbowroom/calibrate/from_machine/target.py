@@ -13,13 +13,13 @@ from elbowroom.calibrate.from_machine.start import start
 from elbowroom.calibrate.from_machine.surface_sums import SurfaceSums
 from elbowroom.calibrate.from_machine.verdict import check_camera, notes_of
 from elbowroom.calibrate.from_machine.views import MachineViews, machine_views
-from elbowroom.calibrate.pages.surface_picture import SurfacePicture
 from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
+from elbowroom.calibrate.result.surface_picture import SurfacePicture
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
-from elbowroom.sources import RecordedMoment
+from elbowroom.sensing import Snapshot
 
 PICTURE_WIDTH_PX = 320
 Progress = Callable[[str], None]
@@ -49,11 +49,21 @@ class MachineCalibration:
     rows: tuple[dict[str, Any], ...]
     pictures: tuple[SurfacePicture, ...]
 
+    def row(self) -> dict[str, Any]:
+        """A row of kind "base": where the machine stands."""
+        return {
+            "kind": "base",
+            "machine": self.machine.name,
+            "world_from_base": self.machine.world_from_base.tolist(),
+            "covariance": None if self.base_covariance is None else self.base_covariance.tolist(),
+            "poses": self.poses,
+        }
+
 
 def calibrate_from_machine(
     machine: Machine,
     cameras: Sequence[DepthCamera],
-    moments: Iterable[RecordedMoment],
+    moments: Iterable[Snapshot],
     *,
     hold: Mapping[str, NDArray[np.float64] | None] | None = None,
     free_base: bool = False,
@@ -154,8 +164,8 @@ def _first_base(
     """Where the base is, from the first camera whose pose is known and its pose relative to the base."""
     if not known:
         raise CalibrationError(
-            "the machine's base and all cameras at once: nothing fixes the world; name cameras whose poses hold with "
-            "--hold, or find the cameras by a board first"
+            "the machine's base and all cameras at once: nothing fixes the world; say which cameras' poses hold, or "
+            "find the cameras by a board first"
         )
     name, first = next(iter(known.items()))
     camera_from_base = invert_rigid(starts[name]) @ machine.world_from_base

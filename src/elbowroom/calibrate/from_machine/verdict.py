@@ -73,7 +73,13 @@ def check_camera(machine: Machine, views: MachineViews, found: MachineFit) -> No
 
 
 def notes_of(machine: Machine, views: MachineViews, found: MachineFit) -> tuple[str, ...]:
-    """What is weak about a camera's pose, a sentence each."""
+    """What is weak about a camera's pose, a sentence each.
+
+    Args:
+        machine: that was seen.
+        views: of the camera.
+        found: what the fit came to.
+    """
     name, sums = views.camera.name, found.sums[views.camera.name]
     notes = []
     place_m, turn = deviations(found.covariances[name])

@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera, invert_rigid
 from elbowroom.machine import Machine
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, Snapshot
 from elbowroom.sensing.planar_images import PlanarImages, planar_images
-from elbowroom.sources import RecordedMoment
 
 LEAST_POSES = 4
 """Fewer poses say too little of how far they agree with each other."""
@@ -46,7 +45,7 @@ class MachineViews:
 
 
 def machine_views(
-    machine: Machine, cameras: Sequence[DepthCamera], moments: Iterable[RecordedMoment]
+    machine: Machine, cameras: Sequence[DepthCamera], moments: Iterable[Snapshot]
 ) -> tuple[MachineViews, ...]:
     """Images and joints of a recording, camera by camera.
 
@@ -74,7 +73,7 @@ def machine_views(
         taken.append(here)
         for frame in moment.frames:
             if frame.camera in kept:
-                positions = machine.positions(moment.joints_of.get(frame.camera, moment.joints))
+                positions = machine.positions(moment.joints_at(frame.camera) or {})
                 kept[frame.camera].append((len(taken) - 1, frame, positions))
     if len(taken) < LEAST_POSES:
         raise CalibrationError(

@@ -135,7 +135,13 @@ class LensModel:
         )
 
     def face_depth(self, k: Intrinsics, camera_from_board: Array, pixels: Array) -> Array:
-        """Depth of the board's face along the rays of pixels, in the camera's kind [m]."""
+        """Depth of the board's face along the rays of pixels, in the camera's kind [m].
+
+        Args:
+            k: the camera's intrinsics.
+            camera_from_board: pose of the board, shape (4, 4).
+            pixels: raw, shape (n, 2) [px].
+        """
         rays = np.column_stack([directions(k, pixels), np.ones(len(pixels))])
         normal = camera_from_board[:3, 2]
         z = float(normal @ camera_from_board[:3, 3]) / (rays @ normal)

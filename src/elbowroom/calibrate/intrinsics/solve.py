@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
-from elbowroom.calibrate.intrinsics.coverage import advice, tilt_deg
+from elbowroom.calibrate.intrinsics.coverage import advice, cells_seen, tilt_deg
 from elbowroom.calibrate.intrinsics.lens_model import PINHOLE, LensModel
 from elbowroom.calibrate.least_squares import covariance, huber, solved
 from elbowroom.errors import CalibrationError
@@ -53,6 +54,27 @@ class FoundIntrinsics:
     views: tuple[BoardView, ...]
     camera_from_boards: Array
     notes: tuple[str, ...]
+
+    def row(self) -> dict[str, Any]:
+        """A row of kind "intrinsics"."""
+        k, before = self.camera.intrinsics, self.before.intrinsics
+        return {
+            "kind": "intrinsics",
+            "camera": self.camera.name,
+            **{name: getattr(k, name) for name in ("fx", "fy", "cx", "cy")},
+            "distortion": list(k.distortion),
+            "sigma": self.sigma,
+            "fx_before": before.fx,
+            "fy_before": before.fy,
+            "depth_scale": self.depth_scale,
+            "depth_bias_m": self.depth_bias_m,
+            "depth_sigma": list(self.depth_sigma),
+            "residual_px": float(np.sqrt(np.mean(self.residuals_px**2))),
+            "residual_m": float(np.sqrt(np.mean(self.residuals_m**2))) if len(self.residuals_m) else None,
+            "views": len(self.views),
+            "corners_by_ninth": cells_seen(self.camera, self.views),
+            "notes": list(self.notes),
+        }
 
 
 def solve_intrinsics(

@@ -41,7 +41,14 @@ def histograms(residuals_px: Array, residuals_m: Array) -> list[Block]:
 def camera_pictures(
     camera: DepthCamera, notes: Sequence[str], views: Sequence[Reprojected], image_of: ImageOf
 ) -> list[Block]:
-    """Where in the image corners lay, and two views with their corners: the worst, and a middling one."""
+    """Where in the image corners lay, and two views with their corners: the worst, and a middling one.
+
+    Args:
+        camera: whose pictures.
+        notes: sentences under them.
+        views: its views, with their residuals.
+        image_of: the grey image of a pose.
+    """
     blocks: list[Block] = [
         Words(f"*{camera.name}*: " + (" ".join(f"{note}." for note in notes) or "nothing is weak.")),
         Picture(

@@ -58,6 +58,40 @@ def report_sections(
     return sections
 
 
+def lens_table(found: Sequence[FoundIntrinsics]) -> Table:
+    """What was found, a line a camera, as short as a screen needs it."""
+    columns = (
+        "camera",
+        "views",
+        "fx",
+        "fy",
+        "cx",
+        "cy",
+        "distortion",
+        "depth scale",
+        "depth bias",
+        "corners",
+    )
+    lines = []
+    for one in found:
+        k = one.camera.intrinsics
+        lines.append(
+            (
+                one.camera.name,
+                str(len(one.views)),
+                *(
+                    f"{getattr(k, name):.2f} ±{sigma:.2f}"
+                    for name, sigma in zip(("fx", "fy", "cx", "cy"), one.sigma[:4], strict=True)
+                ),
+                str(len(k.distortion)),
+                f"{one.depth_scale:.4f} ±{one.depth_sigma[0]:.4f}",
+                f"{1e3 * one.depth_bias_m:.1f} ±{1e3 * one.depth_sigma[1]:.1f} mm",
+                f"{float(np.sqrt(np.mean(one.residuals_px**2))):.2f} px",
+            )
+        )
+    return Table("Intrinsics: what was found, and one sigma", columns, lines)
+
+
 def _lenses(found: Sequence[FoundIntrinsics]) -> Block:
     lines = []
     for one in found:

@@ -15,7 +15,12 @@ EXAGGERATED = 20
 
 
 def grey_depth(depth_m: NDArray[np.floating], nearest_m: float, farthest_m: float) -> NDArray[np.uint8]:
-    """A depth image as grey, near is bright; no return is black, shape (h, w)."""
+    """A depth image as grey, near is bright; no return is black, shape (h, w).
+
+    Args:
+        depth_m: shape (h, w) [m]; 0 or not finite: no return.
+        nearest_m, farthest_m: what is white, and what is darkest grey [m].
+    """
     depth = np.nan_to_num(np.asarray(depth_m, dtype=np.float64))
     grey = 235 - 190 * np.clip((depth - nearest_m) / max(farthest_m - nearest_m, 1e-6), 0, 1)
     return np.where(depth > 0, grey, 0).astype(np.uint8)
@@ -49,7 +54,13 @@ def reprojection(grey: NDArray[np.uint8], seen_px: Array, projected_px: Array, w
 
 
 def coverage(width: int, height: int, corners_px: Sequence[Array], width_px: int = 200) -> bytes:
-    """Where in the image corners lay over all poses, PNG."""
+    """Where in the image corners lay over all poses, PNG.
+
+    Args:
+        width, height: of the image [px].
+        corners_px: of each pose, shape (n, 2) [px].
+        width_px: of the picture.
+    """
     scale = width_px / width
     picture = Image.new("RGB", (width_px, max(1, round(height * scale))), (250, 250, 250))
     draw = ImageDraw.Draw(picture)
@@ -108,7 +119,13 @@ def camera_graph(
 
 
 def histogram(values: Array, unit: str, width_px: int = 220, height_px: int = 90) -> bytes:
-    """How values are spread between their 0.5th and 99.5th percentile, PNG."""
+    """How values are spread between their 0.5th and 99.5th percentile, PNG.
+
+    Args:
+        values: any shape.
+        unit: written under them.
+        width_px, height_px: of the picture.
+    """
     low, high = (float(v) for v in np.percentile(values, (0.5, 99.5)))
     counts, _ = np.histogram(values, bins=30, range=(low, max(high, low + 1e-12)))
     picture = Image.new("RGB", (width_px, height_px), (255, 255, 255))

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from elbowroom.calibrate.from_machine.target import MachineCalibration
-from elbowroom.calibrate.pages.surface_picture import SurfacePicture
 from elbowroom.calibrate.refinement.refine import Refinement
 from elbowroom.calibrate.result.change import change_table
+from elbowroom.calibrate.result.surface_picture import SurfacePicture
 from elbowroom.view.draw.depth import depth_picture
 from elbowroom.view.report.blocks import Block, Picture, Table, Words
 

@@ -2,17 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.refinement.kernels.overlap import (
     COMPARED,
-    Image,
     Overlap,
-    Seen,
+    Points,
     Sums,
+    Surface,
     compare_points,
     fit_planes,
 )
@@ -28,14 +28,6 @@ MOST_POINTS = 3000
 """Points of an image that are laid on another; more say the same again."""
 
 Array = NDArray[Any]
-
-
-class Points(NamedTuple):
-    """Points with normals away from the camera and sigma along them [m], frame of their camera, shapes (n, 3), (n,)."""
-
-    points: Array
-    normals: Array
-    sigmas: Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,14 +87,14 @@ def surfaces(images: PlanarImages, moments: Sequence[int]) -> Surfaces:
     """
     camera = images.thinned
     k, noise = camera.intrinsics, camera.noise
-    half = half_window(camera)
+    half, view = half_window(camera), view_of(camera)
     planes = np.zeros((*images.depth_m.shape, 3), dtype=np.float32)
     rays = np.stack(
         [*np.meshgrid(*k.normalised(camera.width, camera.height)), np.ones((camera.height, camera.width))], -1
     )
     found = []
     for depth, plane in zip(images.depth_m, planes, strict=True):
-        fit_planes(depth, k.fx, k.fy, k.cx, k.cy, half, BEND, plane)
+        fit_planes(depth, view, half, BEND, plane)
         rows, columns = np.nonzero(plane.any(axis=-1))
         chosen = slice(None, None, max(1, len(rows) // MOST_POINTS))
         rows, columns = rows[chosen], columns[chosen]
@@ -148,19 +140,21 @@ def pair_sums(
         one, other = pair
         half = half_window(other.images.thinned)
         fitting = rule._replace(arm_px=float(np.sqrt((2 * half + 1) ** 2 * half * (half + 1) / 3)))
-        tiles, by_noise = rule.tiles**2, np.zeros((6, 6))
-        normal, gradient = np.zeros((tiles, 6, 6)), np.zeros((tiles, 6))
-        counts, offs = np.zeros(4, dtype=np.int64), []
-        sums = Sums(normal, gradient, by_noise, counts)
+        tiles, offs = rule.tiles**2, []
+        sums = Sums(
+            normal=np.zeros((tiles, 6, 6)),
+            gradient=np.zeros((tiles, 6)),
+            by_noise=np.zeros((6, 6)),
+            counts=np.zeros(4, dtype=np.int64),
+        )
         other_from_one = invert_rigid(poses[other.name]) @ poses[one.name]
         view = view_of(other.images.thinned)
         _, rows, other_rows = np.intersect1d(one.moments, other.moments, return_indices=True)
         for row, at in zip(rows, other_rows, strict=True):
-            seen = Seen(*one.points[row])
-            off = np.full(len(seen.points), np.nan)
-            image = Image(other.images.depth_m[at], other.planes[at])
-            compare_points(view, image, seen, other_from_one, fitting, sums, off)
+            points, surface = one.points[row], Surface(other.images.depth_m[at], other.planes[at])
+            off = np.full(len(points.sigmas), np.nan)
+            compare_points(view, surface, points, other_from_one, fitting, sums, off)
             offs.append(off[np.isfinite(off)])
-        return PairSums(one.name, other.name, normal, gradient, by_noise, counts, np.concatenate(offs))
+        return PairSums(one.name, other.name, *sums, np.concatenate(offs))
 
     return spread(compare, pairs)

@@ -7,18 +7,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.calibrate.pages.surface_picture import SurfacePicture
 from elbowroom.calibrate.refinement.agreement import Agreement, agreement, seen_from
 from elbowroom.calibrate.refinement.kernels.overlap import Overlap
 from elbowroom.calibrate.refinement.overlap import PairSums, Surfaces, pair_sums, pairs_of, surfaces
 from elbowroom.calibrate.refinement.step import Before, equations, step
 from elbowroom.calibrate.refinement.verdict import FEWEST_COMMON, check_refined, untouched_notes
 from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
+from elbowroom.calibrate.result.surface_picture import SurfacePicture
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, Snapshot
 from elbowroom.sensing.planar_images import planar_images
-from elbowroom.sources import RecordedMoment
 
 GATES_M = (0.40,) * 6 + (0.25,) * 6 + (0.15,) * 6 + (0.10,) * 6 + (0.05,) * 8
 """How far apart surfaces may be and still be the same, round by round [m]; then by sigmas alone."""
@@ -53,6 +52,19 @@ class PairAgreement:
     before: Agreement
     after: Agreement
 
+    def row(self) -> dict[str, Any]:
+        """A row of kind "pair": shares of pixels that agree, before and after [%]."""
+        return {
+            "kind": "pair",
+            "one": self.one,
+            "other": self.other,
+            "compared": self.after.compared,
+            "agree_before_pct": self.before.agree_pct,
+            "agree_pct": self.after.agree_pct,
+            "hidden_pct": self.after.hidden_pct,
+            "conflict_pct": self.after.conflict_pct,
+        }
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Refinement:
@@ -74,7 +86,7 @@ class Refinement:
 def refine(
     cameras: Sequence[DepthCamera],
     covariances: Mapping[str, Array | None],
-    moments: Iterable[RecordedMoment],
+    moments: Iterable[Snapshot],
     *,
     progress: Progress = lambda words: None,
 ) -> Refinement:
@@ -129,7 +141,7 @@ def _before(cameras: Sequence[DepthCamera], covariances: Mapping[str, Array | No
     if missing:
         raise CalibrationError(
             f"camera {missing[0]}: how sure its pose is, is not known; calibrate it by a board or the machine, or "
-            "say it with --sure-to"
+            "give its covariance"
         )
     known = {name: given for name in names if (given := covariances[name]) is not None}
     if len(names) < 2 or not known:
@@ -163,7 +175,7 @@ def _refined(
     return tuple(found)
 
 
-def _views(cameras: Sequence[DepthCamera], moments: Iterable[RecordedMoment]) -> tuple[list[Surfaces], int]:
+def _views(cameras: Sequence[DepthCamera], moments: Iterable[Snapshot]) -> tuple[list[Surfaces], int]:
     """Images of all cameras as surfaces, of as many moments as are worth it, and how many those are."""
     everything = list(moments)
     count = min(MOST_MOMENTS, max(1, MOST_COMPARISONS // (len(cameras) * (len(cameras) - 1))))

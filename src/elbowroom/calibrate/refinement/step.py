@@ -42,7 +42,14 @@ class Before:
 def step(
     sums: Sequence[PairSums], poses: Mapping[str, Array], before: Before, share: float = 1.0
 ) -> tuple[dict[str, Array], float]:
-    """One step of Gauss and Newton, or a share of it: new poses, and the whole step's length in sigmas."""
+    """One step of Gauss and Newton, or a share of it: new poses, and the whole step's length in sigmas.
+
+    Args:
+        sums: of all pairs of cameras.
+        poses: world_from_camera by name, shape (4, 4).
+        before: what is known of the poses beforehand.
+        share: how much of the step to go, up to 1.
+    """
     normal, gradient = equations(sums, poses, before)
     twist = -np.linalg.solve(normal, gradient)
     new = dict(poses)

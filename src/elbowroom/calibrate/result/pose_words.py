@@ -3,17 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.geometry.twist import CAMERA_MOTIONS
+
 RANGE_M = 2.5
 """At this distance a rotation is compared with a shift [m]."""
-WORDS = (
-    "tilting up and down",
-    "turning left and right",
-    "rolling about its line of sight",
-    "moving sideways",
-    "moving up and down",
-    "moving along its line of sight",
-)
-"""Of the six numbers of a twist in the camera's frame."""
 
 
 def deviations(covariance: NDArray[np.float64]) -> tuple[float, float]:
@@ -31,5 +24,5 @@ def weakest_words(covariance: NDArray[np.float64]) -> str:
     parts = np.abs(vectors[:, -1])
     first, second = np.argsort(-parts)[:2]
     if parts[second] > 0.6 * parts[first]:
-        return f"{WORDS[first]} together with {WORDS[second]}"
-    return WORDS[first]
+        return f"{CAMERA_MOTIONS[first]} together with {CAMERA_MOTIONS[second]}"
+    return CAMERA_MOTIONS[first]

@@ -177,7 +177,13 @@ def _facing(middle: NDArray[np.float64]) -> Rotation:
 
 
 def in_room(board: Board, pose: NDArray[np.float64], half_side_m: float) -> bool:
-    """Whether a board fits in the room at a pose, world_from_board of shape (4, 4), and touches nothing."""
+    """Whether a board fits in the room at a pose, world_from_board of shape (4, 4), and touches nothing.
+
+    Args:
+        board: to be held.
+        pose: world_from_board, shape (4, 4).
+        half_side_m: of the room [m].
+    """
     corners = board.outline_in_board @ pose[:3, :3].T + pose[:3, 3]
     low, high = corners.min(axis=0), corners.max(axis=0)
     side = half_side_m - CLEARANCE_M
@@ -204,7 +210,15 @@ def worth_of(
     views: dict[str, int],
     cells: dict[tuple[str, int, int], int],
 ) -> float:
-    """How much a pose gives to cameras that have few `views` so far, or few in that ninth of the image (`cells`)."""
+    """How much a pose gives to cameras that have few `views` so far, or few in that ninth of the image (`cells`).
+
+    Args:
+        cameras: all of the room.
+        board: to be held.
+        pose: world_from_board, shape (4, 4).
+        views: how many each camera has, by name.
+        cells: how many of them in each ninth of its image, by name, column and row.
+    """
     worth = 0.0
     for camera in cameras:
         seen = shown(camera, board, pose)
@@ -220,7 +234,14 @@ def count_views(
     views: dict[str, int],
     cells: dict[tuple[str, int, int], int],
 ) -> None:
-    """Adds a pose to the views and cells of the cameras that see it."""
+    """Adds a pose to the views and cells of the cameras that see it.
+
+    Args:
+        cameras: all of the room.
+        board: that is held.
+        pose: world_from_board, shape (4, 4).
+        views, cells: as of `worth_of`; added to.
+    """
     for camera in cameras:
         seen = shown(camera, board, pose)
         if seen.whole and seen.front:

@@ -56,7 +56,16 @@ def record_room(
     out: Path,
     on_pose: Callable[[int, int], None] = lambda done, views: None,
 ) -> Path:
-    """The room with its furniture and its machine at rest, at 30 Hz; arguments as of `record_machine`."""
+    """The room with its furniture and its machine at rest, at 30 Hz; arguments as of `record_machine`.
+
+    Args:
+        cameras: true and said.
+        moments: how many.
+        noise: name of the sensors' noise, for the site file.
+        seed: of all random numbers.
+        out: folder.
+        on_pose: is told how many moments are done, and how many images the last one gave.
+    """
     room = InterventionRoom(people=False)
     rest = dict.fromkeys(room.machine.joint_names, 0.0)
     shown = [room.at(1.0 + FRAME_S * number, joints=rest) for number in range(moments)]
@@ -67,6 +76,12 @@ def knocked(
     cameras: Sequence[TrueCamera], name: str, turned_deg: float, moved_m: float, random: np.random.Generator
 ) -> tuple[TrueCamera, ...]:
     """The cameras, of which one was knocked after the site file was written: its true pose differs by so much.
+
+    Args:
+        cameras: true and said.
+        name: of the one that is knocked.
+        turned_deg, moved_m: by how much [deg], [m].
+        random: for the directions.
 
     Raises:
         CalibrationError: no camera of this name.

@@ -83,7 +83,12 @@ def started(
 
 
 def moved(turned_deg: float, moved_m: float, random: np.random.Generator) -> NDArray[np.float64]:
-    """A motion by exactly these amounts about and along random directions, shape (4, 4)."""
+    """A motion by exactly these amounts about and along random directions, shape (4, 4).
+
+    Args:
+        turned_deg, moved_m: how far [deg], [m].
+        random: for the directions.
+    """
     motion = np.eye(4)
     axis, way = random.standard_normal(3), random.standard_normal(3)
     motion[:3, :3] = Rotation.from_rotvec(np.radians(turned_deg) * axis / np.linalg.norm(axis)).as_matrix()

@@ -30,4 +30,6 @@ def commission(
     """
     from elbowroom.cli.calibrate.commission_run import run_commission
 
-    run_commission(site, out, frames, every, parse_joints(joints), json)
+    run_commission(
+        path=site, out=out, frames=frames, every_s=every, joints=parse_joints(joints), json_file=json
+    )

@@ -7,20 +7,19 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 from rich.progress import track
-from rich.table import Table
 
-from elbowroom.cli.room import open_room
+from elbowroom.cli.options import options_named
+from elbowroom.cli.screen import show
 from elbowroom.errors import CalibrationError
 from elbowroom.files.json_rows import json_rows
-from elbowroom.monitor import CameraReference, Tolerance
+from elbowroom.monitor import Tolerance
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.site_file import write_commissioned
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import Snapshot
 from elbowroom.site import Site
-from elbowroom.sources import moments
-from elbowroom.sources.images import image_groups
-
-Moment = tuple[Sequence[DepthFrame], Mapping[str, float] | None]
+from elbowroom.sources import Room, open_room
+from elbowroom.sources.layouts.layout import layout_of
+from elbowroom.view.report.blocks import Table
 
 
 def run_commission(
@@ -45,15 +44,13 @@ def run_commission(
         InputError: a site, a recording or a file that is not usable, or too little that stands still.
     """
     site = Site.simulated_room() if path is None else Site.load(path)
-    room = open_room(site, joints=joints)
-    console = Console()
-    wanted, given = _moments(site, joints, frames, every_s)
+    with options_named(joints="--joints"):
+        room = open_room(site, joints=joints)
+        wanted, given = _moments(room, frames, every_s)
     commissioning = Commissioning(room.cameras, room.machine, wanted)
     with json_rows(json_file) as add:
-        for seen, positions in track(
-            given, "looking", total=wanted, console=Console(stderr=True), transient=True
-        ):
-            commissioning.add(seen, positions)
+        for snapshot in track(given, "looking", total=wanted, console=Console(stderr=True), transient=True):
+            commissioning.add(snapshot)
         references = [
             commissioning.reference_of(camera)
             for camera in track(
@@ -61,75 +58,47 @@ def run_commission(
             )
         ]
         written, beside = write_commissioned(site, references, out)
-        rows = [_row(reference) for reference in references]
+        rows = [reference.row(Tolerance()) for reference in references]
         for row in rows:
             add(row)
-    console.print(_table(rows))
-    console.print(
-        f"{written} and {beside.name}: try `elbowroom monitor {written}`", soft_wrap=True, highlight=False
-    )
+    show(reference_table(rows))
+    print(f"{written} and {beside.name}: try `elbowroom monitor {written}`")
 
 
-def _moments(
-    site: Site, joints: Mapping[str, float] | None, frames: int, every_s: float
-) -> tuple[int, Iterator[Moment]]:
+def _moments(room: Room, frames: int, every_s: float) -> tuple[int, Iterator[Snapshot]]:
     """How many moments there will be, and each: of the simulated room, or evenly of a recording."""
-    if site.simulated is not None:
-        return frames, _simulated(site, joints, frames, every_s)
-    total = len(image_groups(site))
+    if room.site.simulated is not None:
+        from elbowroom.sources.simulated import Simulated
+
+        assert isinstance(room.source, Simulated)
+        return frames, room.source.at(number * every_s for number in range(frames))
+    total = len(layout_of(room.site).moments())
     if total < 5:
         raise CalibrationError(
-            f"{site.path}: a recording of {total} moments, at least 5 are needed to see what stands still"
+            f"{room.site.path}: a recording of {total} moments, at least 5 are needed to see what stands still"
         )
     chosen = set(np.unique(np.linspace(0, total - 1, min(frames, total)).round().astype(int)).tolist())
-    recorded = (
-        (moment.frames, moment.joints)
-        for number, moment in enumerate(moments(site, joints))
-        if number in chosen
-    )
-    return len(chosen), recorded
+    return len(chosen), (moment for number, moment in enumerate(room.source) if number in chosen)
 
 
-def _simulated(
-    site: Site, joints: Mapping[str, float] | None, frames: int, every_s: float
-) -> Iterator[Moment]:
-    from elbowroom.simulate import InterventionRoom, render
+def reference_table(rows: Sequence[Mapping[str, Any]]) -> Table:
+    """What each camera's reference shows, a line a camera.
 
-    assert site.simulated is not None
-    room, opened = InterventionRoom(machine=site.machine()), open_room(site)
-    for number in range(frames):
-        moment = room.at(number * every_s, joints=joints)
-        yield render(opened.cameras, moment, seed=site.simulated.seed + number), moment.joints
-
-
-def _row(reference: CameraReference) -> dict[str, Any]:
-    tolerance = Tolerance()
-    sigma = np.sqrt(np.diag(reference.covariance()))
-    return {
-        "kind": "reference",
-        "camera": reference.camera,
-        "spots": len(reference.pixel),
-        "range_m": [float(reference.depth_m.min()), float(reference.depth_m.max())],
-        "turn_sigma_deg": np.degrees(sigma[:3]).tolist(),
-        "move_sigma_mm": (1e3 * sigma[3:]).tolist(),
-        "not_shown": list(reference.unseen_motions(tolerance.turn_rad, tolerance.move_m)),
-    }
-
-
-def _table(rows: Sequence[Mapping[str, Any]]) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="dim")
-    for column in ("camera", "spots", "range", "turn told to", "move told to", "not shown by what it sees"):
-        table.add_column(
-            column, justify="left" if column in ("camera", "not shown by what it sees") else "right"
-        )
+    Args:
+        rows: of kind "reference".
+    """
+    lines = []
     for row in rows:
         near, far = row["range_m"]
-        table.add_row(
-            row["camera"],
-            str(row["spots"]),
-            f"{near:.1f} to {far:.1f} m",
-            f"{max(row['turn_sigma_deg']):.2f}°",
-            f"{max(row['move_sigma_mm']):.1f} mm",
-            ", ".join(row["not_shown"]) or "-",
+        lines.append(
+            (
+                row["camera"],
+                str(row["spots"]),
+                f"{near:.1f} to {far:.1f} m",
+                f"{max(row['turn_sigma_deg']):.2f}°",
+                f"{max(row['move_sigma_mm']):.1f} mm",
+                ", ".join(row["not_shown"]) or "-",
+            )
         )
-    return table
+    columns = ("camera", "spots", "range", "turn told to", "move told to", "not shown by what it sees")
+    return Table("", columns, lines, left=(0, 5))

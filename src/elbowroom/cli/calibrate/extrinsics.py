@@ -26,6 +26,9 @@ def extrinsics(
     that were measured (corners of the board in several poses, or points in images), or a camera that stays where it
     is. Intrinsics are the site's: calibrate those first.
     """
-    from elbowroom.cli.calibrate.extrinsics_run import run_extrinsics
+    from elbowroom.cli.calibrate.extrinsics_run import ExtrinsicsOptions, run_extrinsics
+    from elbowroom.cli.calibrate.result import ResultOptions
 
-    run_extrinsics(site, out, report, tuple(without_pose or ()), confidence, near, json)
+    result = ResultOptions(out=out, report=report, confidence=confidence, near_m=near)
+    options = ExtrinsicsOptions(site=site, without_poses=tuple(without_pose or ()), result=result)
+    run_extrinsics(options, json)

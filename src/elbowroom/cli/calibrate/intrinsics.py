@@ -26,6 +26,9 @@ def intrinsics(
 
     The site's key calibration names the board and its images. Poses stay as they are: go on with extrinsics.
     """
-    from elbowroom.cli.calibrate.intrinsics_run import run_intrinsics
+    from elbowroom.cli.calibrate.intrinsics_run import IntrinsicsOptions, run_intrinsics
 
-    run_intrinsics(site, out, report, tuple(camera or ()), int(distortion), json)
+    options = IntrinsicsOptions(
+        site=site, out=out, report=report, only=tuple(camera or ()), coefficients=int(distortion)
+    )
+    run_intrinsics(options, json)

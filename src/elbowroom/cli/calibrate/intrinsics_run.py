@@ -1,80 +1,65 @@
 """The run of `elbowroom calibrate intrinsics`."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 from rich.console import Console
-from rich.table import Table
 
 from elbowroom.calibrate.boards.capture import Sightings, sightings
-from elbowroom.calibrate.intrinsics import FoundIntrinsics, cells_seen, solve_intrinsics
-from elbowroom.calibrate.pages.intrinsics import report_sections
+from elbowroom.calibrate.intrinsics import FoundIntrinsics, solve_intrinsics
+from elbowroom.calibrate.intrinsics.site_keys import changed_keys
+from elbowroom.calibrate.pages.intrinsics import lens_table, report_sections
 from elbowroom.cli.calibrate.images import PoseImages
-from elbowroom.cli.calibrate.result import write_page
-from elbowroom.cli.calibrate.site import site_path
+from elbowroom.cli.calibrate.result import say_weak, write_page
+from elbowroom.cli.calibrate.site import chosen_cameras, site_path
 from elbowroom.cli.progress import Steps
+from elbowroom.cli.screen import show
 from elbowroom.errors import CalibrationError
 from elbowroom.files.json_rows import json_rows
 from elbowroom.geometry import DepthCamera
 from elbowroom.site import Site
-from elbowroom.site.update import lens_entry, refuse_other_files, update_lenses
-
-SIGNIFICANT = 2.0
-"""Scale and bias of depth are written where one of them is off by so many sigmas."""
+from elbowroom.site.update import refuse_other_files, update_lenses
 
 
-def run_intrinsics(
-    given: Path,
-    out: Path,
-    report: Path | None,
-    names: Sequence[str],
-    coefficients: int,
-    json_file: Path | None,
-) -> None:
+@dataclass(frozen=True, slots=True)
+class IntrinsicsOptions:
+    """What the command line says; see its help."""
+
+    site: Path
+    out: Path
+    report: Path | None
+    only: tuple[str, ...]
+    coefficients: int
+
+
+def run_intrinsics(options: IntrinsicsOptions, json_file: Path | None) -> None:
     """Detects, solves camera by camera, writes the new site file and the page, prints what was found.
 
     Raises:
         CalibrationError: a camera whose intrinsics cannot be had from this capture; no file is written.
         SiteError, FrameError: a site or images that cannot be used.
     """
-    site = Site.load(site_path(given))
-    refuse_other_files(site, out)
-    cameras = _chosen(site, names)
+    site = Site.load(site_path(options.site))
+    refuse_other_files(site, options.out)
+    cameras = chosen_cameras(site, options.only)
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 2) as steps:
             steps.begin("looking for the board in all images")
             seen = sightings(site)
             steps.begin("solving camera by camera")
-            found = [_solved(site, camera, seen, coefficients) for camera in cameras]
-        update_lenses(site, {one.camera.name: _entry(site, one) for one in found}, out, "intrinsics")
+            found = [_solved(site, camera, seen, options.coefficients) for camera in cameras]
+        lenses = {one.camera.name: changed_keys(site, one) for one in found}
+        update_lenses(site, lenses, options.out, "intrinsics")
         for one in found:
-            add(intrinsics_row(one))
-        add(_summary(site, seen, steps.seconds))
-    _show(found)
+            add(one.row())
+        add({"kind": "capture", "site": str(site.path), **seen.row(), "seconds": steps.seconds})
+    show(lens_table(found))
+    say_weak([note for one in found for note in one.notes])
     print(f"views     {len(seen.views)} of {len(seen.views) + len(seen.troubles)} images")
-    print(f"site      {out}")
-    if report is not None:
-        write_page(
-            report,
-            f"Intrinsics of {site.name}",
-            "How the cameras see, from a board that each of them saw.",
-            report_sections(
-                found,
-                seen.board.corners_in_board,
-                [str(trouble) for trouble in seen.troubles],
-                PoseImages(site).grey,
-            ),
-        )
-
-
-def _chosen(site: Site, names: Sequence[str]) -> list[DepthCamera]:
-    known = {camera.name: camera for camera in site.cameras()}
-    unknown = [name for name in names if name not in known]
-    if unknown:
-        raise CalibrationError(f"--camera {unknown[0]}: unknown; cameras are {', '.join(known)}")
-    return [known[name] for name in names] if names else list(known.values())
+    print(f"site      {options.out}")
+    if options.report is not None:
+        _write_page(options.report, site, found, seen)
 
 
 def _solved(site: Site, camera: DepthCamera, seen: Sightings, coefficients: int) -> FoundIntrinsics:
@@ -90,86 +75,8 @@ def _solved(site: Site, camera: DepthCamera, seen: Sightings, coefficients: int)
         raise CalibrationError(f"{error} (of its images {len(why)} show no whole board: {why[0]})") from None
 
 
-def _entry(site: Site, one: FoundIntrinsics) -> dict[str, Any]:
-    """The keys of the site file that change: measured = scale * true + bias, solved for what is true."""
-    entry = lens_entry(one.camera.intrinsics)
-    off = np.abs([one.depth_scale - 1, one.depth_bias_m]) > SIGNIFICANT * np.array(one.depth_sigma)
-    if off.any():
-        name = one.camera.name
-        entry["depth_scale_m"] = float(f"{site.depth_scale_m(name) / one.depth_scale:.8g}")
-        bias = (site.depth_bias_m(name) - one.depth_bias_m) / one.depth_scale
-        entry["depth_bias_m"] = round(bias, 6)
-    return entry
-
-
-def intrinsics_row(one: FoundIntrinsics) -> dict[str, Any]:
-    """A row of kind "intrinsics"."""
-    k, before = one.camera.intrinsics, one.before.intrinsics
-    return {
-        "kind": "intrinsics",
-        "camera": one.camera.name,
-        **{name: getattr(k, name) for name in ("fx", "fy", "cx", "cy")},
-        "distortion": list(k.distortion),
-        "sigma": one.sigma,
-        "fx_before": before.fx,
-        "fy_before": before.fy,
-        "depth_scale": one.depth_scale,
-        "depth_bias_m": one.depth_bias_m,
-        "depth_sigma": list(one.depth_sigma),
-        "residual_px": float(np.sqrt(np.mean(one.residuals_px**2))),
-        "residual_m": float(np.sqrt(np.mean(one.residuals_m**2))) if len(one.residuals_m) else None,
-        "views": len(one.views),
-        "corners_by_ninth": cells_seen(one.camera, one.views),
-        "notes": list(one.notes),
-    }
-
-
-def _summary(site: Site, seen: Sightings, seconds: dict[str, float]) -> dict[str, Any]:
-    return {
-        "kind": "capture",
-        "site": str(site.path),
-        "poses": seen.poses,
-        "views": len(seen.views),
-        "troubles": [str(trouble) for trouble in seen.troubles],
-        "seconds": seconds,
-    }
-
-
-def _show(found: Sequence[FoundIntrinsics]) -> None:
-    table = Table(
-        box=None, pad_edge=False, title="Intrinsics: what was found, and one sigma", title_justify="left"
-    )
-    for column in (
-        "camera",
-        "views",
-        "fx",
-        "fy",
-        "cx",
-        "cy",
-        "distortion",
-        "depth scale",
-        "depth bias",
-        "corners",
-    ):
-        table.add_column(column, justify="left" if column == "camera" else "right", no_wrap=True)
-    for one in found:
-        k, s = one.camera.intrinsics, one.sigma
-        table.add_row(
-            one.camera.name,
-            str(len(one.views)),
-            *(
-                f"{getattr(k, name):.2f} ±{sigma:.2f}"
-                for name, sigma in zip(("fx", "fy", "cx", "cy"), s[:4], strict=True)
-            ),
-            str(len(k.distortion)),
-            f"{one.depth_scale:.4f} ±{one.depth_sigma[0]:.4f}",
-            f"{1e3 * one.depth_bias_m:.1f} ±{1e3 * one.depth_sigma[1]:.1f} mm",
-            f"{float(np.sqrt(np.mean(one.residuals_px**2))):.2f} px",
-        )
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console.width = 140
-    console.print(table)
-    for one in found:
-        for note in one.notes:
-            console.print(f"weak      {note}", soft_wrap=True)
+def _write_page(report: Path, site: Site, found: Sequence[FoundIntrinsics], seen: Sightings) -> None:
+    troubles = [str(trouble) for trouble in seen.troubles]
+    sections = report_sections(found, seen.board.corners_in_board, troubles, PoseImages(site).grey)
+    about = "How the cameras see, from a board that each of them saw."
+    write_page(report, f"Intrinsics of {site.name}", about, sections)

@@ -38,9 +38,15 @@ def machine(
     The recording has one moment per pose and joints.csv; 12 poses in which every joint moves are good. The cameras'
     poses in the site may be 10 cm and 5 degrees off. The machine's base fixes the world.
     """
-    from elbowroom.cli.calibrate.machine_run import Wanted, run_machine
+    from elbowroom.cli.calibrate.machine_run import MachineOptions, run_machine
+    from elbowroom.cli.calibrate.result import ResultOptions
 
-    run_machine(
-        Wanted(site, out, report, tuple(camera or ()), base, tuple(hold or ()), model_mm, confidence, near),
-        json,
+    options = MachineOptions(
+        site=site,
+        only=tuple(camera or ()),
+        base=base,
+        hold=tuple(hold or ()),
+        model_mm=model_mm,
+        result=ResultOptions(out=out, report=report, confidence=confidence, near_m=near),
     )
+    run_machine(options, json)

@@ -1,6 +1,7 @@
 """The run of `elbowroom calibrate machine`."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,12 +11,11 @@ from rich.console import Console
 
 from elbowroom.calibrate.from_machine.target import MachineCalibration, calibrate_from_machine
 from elbowroom.calibrate.pages.surface_report import machine_sections
-from elbowroom.cli.calibrate.result import with_margins, write_page, write_result
+from elbowroom.cli.calibrate.result import ResultOptions, write_page, write_result
 from elbowroom.cli.calibrate.site import chosen_cameras, require_known, site_path
 from elbowroom.cli.progress import Steps
 from elbowroom.errors import CalibrationError, SiteError
-from elbowroom.files.json_rows import json_rows
-from elbowroom.geometry import DepthCamera
+from elbowroom.files.json_rows import AddRow, json_rows
 from elbowroom.site import Site
 from elbowroom.site.calibration_entry import WorldFromCamera
 from elbowroom.site.update import refuse_other_files
@@ -23,36 +23,33 @@ from elbowroom.sources import moments
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class MachineOptions:
     """What the command line says; see its help."""
 
     site: Path
-    out: Path
-    report: Path | None
     only: tuple[str, ...]
     base: bool
     hold: tuple[str, ...]
     model_mm: float
-    confidence: float
-    near_m: float | None
+    result: ResultOptions
 
 
-def run_machine(wanted: Wanted, json_file: Path | None) -> None:
+def run_machine(options: MachineOptions, json_file: Path | None) -> None:
     """Registers, writes the new site file and the page, prints what changed.
 
     Raises:
         CalibrationError: see `calibrate_from_machine`; no site file is written then.
         SiteError: a site without machine or recording, or a file in the way.
     """
-    site = Site.load(site_path(wanted.site))
-    refuse_other_files(site, wanted.out)
+    site = Site.load(site_path(options.site))
+    refuse_other_files(site, options.result.out)
     machine = site.machine()
     if machine is None:
         raise SiteError(
             f"{site.path}: machine: missing; this command needs its URDF (or builtin: ceiling_c_arm)"
         )
-    cameras = chosen_cameras(site, wanted.only)
-    hold = _hold(site, wanted, cameras)
+    cameras = chosen_cameras(site, options.only)
+    hold = held(site, options, [camera.name for camera in cameras])
     begun = time.perf_counter()
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 3) as steps:
@@ -61,51 +58,64 @@ def run_machine(wanted: Wanted, json_file: Path | None) -> None:
                 cameras,
                 moments(site),
                 hold=hold,
-                free_base=wanted.base,
-                model_sigma_m=wanted.model_mm / 1e3,
+                free_base=options.base,
+                model_sigma_m=options.model_mm / 1e3,
                 progress=steps.begin_once,
             )
         for row in found.rows:
             add(row)
-        add(_base_row(found, time.perf_counter() - begun))
-        written = with_margins(
-            site, found.cameras, wanted.confidence, found.depth_errors, near_m=wanted.near_m
-        )
-        base = None if found.base_covariance is None else found.machine.world_from_base
-        rows = write_result(site, found.cameras, written, wanted.out, "machine", add, world_from_base=base)
-        _say_base(found)
-        if wanted.report is not None:
-            about = f"{site.name}: cameras from the machine itself"
-            write_page(wanted.report, "Calibration from the machine", about, machine_sections(found, rows))
+        add(found.row() | {"seconds": time.perf_counter() - begun})
+        _write(site, found, options.result, add)
 
 
-def _hold(
-    site: Site, wanted: Wanted, cameras: tuple[DepthCamera, ...]
+def _write(site: Site, found: MachineCalibration, options: ResultOptions, add: AddRow) -> None:
+    base = None if found.base_covariance is None else found.machine.world_from_base
+    rows = write_result(
+        site,
+        found.cameras,
+        options,
+        "machine",
+        add,
+        depth_errors=found.depth_errors,
+        world_from_base=base,
+    )
+    _say_base(found)
+    if options.report is not None:
+        about = f"{site.name}: cameras from the machine itself"
+        write_page(options.report, "Calibration from the machine", about, machine_sections(found, rows))
+
+
+def held(
+    site: Site, options: MachineOptions, cameras: Sequence[str]
 ) -> dict[str, NDArray[np.float64] | None]:
-    """Cameras that fix the world when the base is to be found: named ones exactly, sure ones within covariance."""
-    if not wanted.base:
-        if wanted.hold:
+    """Cameras that fix the world when the base is to be found: named ones exactly, sure ones within covariance.
+
+    Args:
+        site: may say how sure poses are, and which camera fixes the world.
+        options: may name cameras that hold.
+        cameras: names of those that are calibrated.
+
+    Raises:
+        CalibrationError: named without need, or none where one is needed.
+        SiteError: a name of no camera.
+    """
+    if not options.base:
+        if options.hold:
             raise CalibrationError("--hold: goes with --base; without it the machine's base fixes the world")
         return {}
-    known = {camera.name: site.pose_covariance(camera.name) for camera in cameras}
+    known = {name: site.pose_covariance(name) for name in cameras}
     hold = {name: covariance for name, covariance in known.items() if covariance is not None}
-    named = list(wanted.hold)
+    named = list(options.hold)
     world = site.entry.calibration.world if site.entry.calibration is not None else None
     if isinstance(world, WorldFromCamera):
         named.append(world.camera)
-    require_known("--hold", named, list(known))
+    require_known("--hold", named, cameras)
+    if not hold and not named:
+        raise CalibrationError(
+            "the machine's base and all cameras at once: nothing fixes the world; name cameras whose poses hold with "
+            "--hold, or find the cameras by a board first"
+        )
     return {**hold, **dict.fromkeys(named)}
-
-
-def _base_row(found: MachineCalibration, seconds: float) -> dict:
-    return {
-        "kind": "base",
-        "machine": found.machine.name,
-        "world_from_base": found.machine.world_from_base.tolist(),
-        "covariance": None if found.base_covariance is None else found.base_covariance.tolist(),
-        "poses": found.poses,
-        "seconds": seconds,
-    }
 
 
 def _say_base(found: MachineCalibration) -> None:

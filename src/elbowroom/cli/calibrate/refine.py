@@ -33,8 +33,14 @@ def refine(
     No camera moves farther than the covariance of its pose allows (99 %); one that wants to is named, and nothing is
     written. The recording shows the room in one or more moments; people may walk in it.
     """
-    from elbowroom.cli.calibrate.refine_run import Wanted, run_refine
+    from elbowroom.cli.calibrate.refine_run import RefineOptions, run_refine
+    from elbowroom.cli.calibrate.result import ResultOptions
 
-    run_refine(
-        Wanted(site, out, report, tuple(camera or ()), tuple(hold or ()), sure_to, confidence, near), json
+    options = RefineOptions(
+        site=site,
+        only=tuple(camera or ()),
+        hold=tuple(hold or ()),
+        sure_to=sure_to,
+        result=ResultOptions(out=out, report=report, confidence=confidence, near_m=near),
     )
+    run_refine(options, json)

@@ -1,6 +1,7 @@
 """The run of `elbowroom calibrate refine`."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,34 +10,30 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from elbowroom.calibrate.pages.surface_report import pair_table, refine_sections
-from elbowroom.calibrate.refinement.refine import Refinement, refine
-from elbowroom.cli.calibrate.result import with_margins, write_page, write_result
+from elbowroom.calibrate.refinement.refine import refine
+from elbowroom.cli.calibrate.result import ResultOptions, write_page, write_result
 from elbowroom.cli.calibrate.site import chosen_cameras, require_known, site_path
 from elbowroom.cli.progress import Steps
-from elbowroom.errors import InputError
+from elbowroom.cli.screen import show
+from elbowroom.errors import CalibrationError, InputError
 from elbowroom.files.json_rows import json_rows
-from elbowroom.geometry import DepthCamera
 from elbowroom.site import Site
 from elbowroom.site.update import refuse_other_files
 from elbowroom.sources import moments
-from elbowroom.view.report.tables import rich_table
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class RefineOptions:
     """What the command line says; see its help."""
 
     site: Path
-    out: Path
-    report: Path | None
     only: tuple[str, ...]
     hold: tuple[str, ...]
     sure_to: str | None
-    confidence: float
-    near_m: float | None
+    result: ResultOptions
 
 
-def run_refine(wanted: Wanted, json_file: Path | None) -> None:
+def run_refine(options: RefineOptions, json_file: Path | None) -> None:
     """Refines, writes the new site file and the page, prints what changed.
 
     Raises:
@@ -44,58 +41,52 @@ def run_refine(wanted: Wanted, json_file: Path | None) -> None:
         SiteError: a site without recording, or a file in the way.
         InputError: `--sure-to` that is not two numbers.
     """
-    site = Site.load(site_path(wanted.site))
-    refuse_other_files(site, wanted.out)
-    cameras = chosen_cameras(site, wanted.only)
-    covariances = _covariances(site, wanted, cameras)
+    site = Site.load(site_path(options.site))
+    refuse_other_files(site, options.result.out)
+    cameras = chosen_cameras(site, options.only)
+    covariances = pose_covariances(site, options, [camera.name for camera in cameras])
     begun = time.perf_counter()
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 3) as steps:
             # where the machine was does not matter here
             found = refine(cameras, covariances, moments(site, joints={}), progress=steps.begin_once)
-        for row in pair_rows(found):
-            add(row | {"seconds": time.perf_counter() - begun})
-        written = with_margins(site, found.cameras, wanted.confidence, near_m=wanted.near_m)
-        rows = write_result(site, found.cameras, written, wanted.out, "refine", add)
-        Console(highlight=False).print(rich_table(pair_table(found)))
-        if wanted.report is not None:
+        for pair in found.pairs:
+            add(pair.row() | {"seconds": time.perf_counter() - begun})
+        rows = write_result(site, found.cameras, options.result, "refine", add)
+        show(pair_table(found))
+        if options.result.report is not None:
             about = f"{site.name}: cameras refined on what they see in common"
-            write_page(wanted.report, "Refinement", about, refine_sections(found, rows))
+            write_page(options.result.report, "Refinement", about, refine_sections(found, rows))
 
 
-def pair_rows(found: Refinement) -> list[dict]:
-    """A row of kind "pair" for each two cameras: shares of pixels that agree before and after [%]."""
-    return [
-        {
-            "kind": "pair",
-            "one": pair.one,
-            "other": pair.other,
-            "compared": pair.after.compared,
-            "agree_before_pct": pair.before.agree_pct,
-            "agree_pct": pair.after.agree_pct,
-            "hidden_pct": pair.after.hidden_pct,
-            "conflict_pct": pair.after.conflict_pct,
-        }
-        for pair in found.pairs
-    ]
-
-
-def _covariances(
-    site: Site, wanted: Wanted, cameras: tuple[DepthCamera, ...]
+def pose_covariances(
+    site: Site, options: RefineOptions, cameras: Sequence[str]
 ) -> dict[str, NDArray[np.float64] | None]:
-    """By camera: None holds exactly; what the site says; or what the command line says."""
-    names = [camera.name for camera in cameras]
-    require_known("--hold", wanted.hold, names)
-    usual = _sure_to(wanted.sure_to)
-    found: dict[str, NDArray[np.float64] | None] = {}
-    for name in names:
+    """By camera: None where it holds exactly; what the site says; or what the command line says.
+
+    Args:
+        site: may say how sure poses are.
+        options: may name cameras that hold, and say how sure the others are.
+        cameras: names of those that are refined.
+
+    Raises:
+        SiteError: a name of no camera.
+        InputError: `--sure-to` that is not two numbers.
+        CalibrationError: a camera of which nothing is said.
+    """
+    require_known("--hold", options.hold, cameras)
+    usual = _sure_to(options.sure_to)
+    found: dict[str, NDArray[np.float64] | None] = dict.fromkeys(options.hold)
+    for name in cameras:
+        if name in found:
+            continue
         known = site.pose_covariance(name)
-        if name in wanted.hold:
-            found[name] = None
-        elif known is not None:
-            found[name] = known
-        elif usual is not None:
-            found[name] = usual
+        found[name] = usual if known is None else known
+        if found[name] is None:
+            raise CalibrationError(
+                f"camera {name}: how sure its pose is, is not known; calibrate it by a board or the machine, or say it "
+                "with --sure-to"
+            )
     return found
 
 

@@ -1,13 +1,14 @@
 """The run of `elbowroom calibrate simulate`."""
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 from rich.console import Console
-from rich.progress import track
+from rich.progress import Progress
 
 from elbowroom.calibrate import Board
 from elbowroom.calibrate.simulated import (
@@ -20,12 +21,14 @@ from elbowroom.calibrate.simulated import (
 )
 from elbowroom.calibrate.simulated.room_capture import knocked
 from elbowroom.calibrate.simulated.start import TrueCamera
+from elbowroom.cli.noise import noise_named
 from elbowroom.cli.options import parse_resolution
+from elbowroom.cli.simulate_options import Size
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
-from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import wall_cameras
 
+OnPose = Callable[[int, int], None]
 USUAL_POSES = {"board": 40, "machine": 12, "room": 30}
 USUAL_BOARD = {"vga": ((8, 5), 0.1), "qqvga": ((6, 5), 0.12), "thesis": ((5, 4), 0.18)}
 """Inner corners and edge of a square [m] by size of image."""
@@ -39,119 +42,158 @@ PLATE_M = 0.003
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class BoardOptions:
+    """The board, and on how many stands it is; see the help of the command."""
+
+    kind: Literal["cut_out", "printed"]
+    corners: str | None
+    square_m: float | None
+    border_m: float
+    stands: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class MotionOptions:
+    """Where the board is held, and how still."""
+
+    near: bool
+    hand_m: float
+    moved_pose: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class KnockOptions:
+    """The camera that was knocked after the site was written, and by how much."""
+
+    camera: str
+    turned_deg: float
+    moved_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class CaptureOptions:
     """What the command line says; see its help."""
 
     kind: Literal["board", "machine", "room"]
     out: Path
     cameras: int
-    size: str
+    size: Size
     poses: int | None
     noise: str
-    board: Literal["cut_out", "printed"]
-    corners: str | None
-    square_m: float | None
-    border_m: float
-    stands: int | None
-    start: Start
-    near: bool
-    hand_m: float
-    moved_pose: int | None
-    knock: str | None
-    knock_deg: float
-    knock_m: float
     seed: int
+    start: Start
+    board: BoardOptions
+    motion: MotionOptions
+    knock: KnockOptions | None
+
+    @property
+    def next_command(self) -> str:
+        """What the capture is for."""
+        if self.motion.near:
+            return "calibrate intrinsics"
+        return {"machine": "calibrate machine", "room": "calibrate refine"}.get(
+            self.kind, "calibrate extrinsics"
+        )
 
 
-def simulate_capture(wanted: Wanted, json: Path | None) -> None:
+def simulate_capture(options: CaptureOptions, json: Path | None) -> None:
     """Renders a capture and writes it.
 
     Raises:
         InputError: a noise that is none, a board that does not fit, a folder that cannot be written to.
     """
     begun = time.perf_counter()
-    cameras = _cameras(wanted)
-    if wanted.near and wanted.kind != "board":
-        raise InputError(f"--near with {wanted.kind}: near poses are those of a board; leave it out")
-    poses = wanted.poses or (NEAR_POSES * len(cameras) if wanted.near else USUAL_POSES[wanted.kind])
-    console = Console(stderr=True)
-    images: list[int] = []
-
-    with json_rows(json) as add:
-        bar = iter(track(range(poses), "rendering", console=console, disable=not console.is_terminal))
-
-        def on_pose(done: int, views: int) -> None:
-            images.append(views)
-            next(bar, None)
-            if not console.is_terminal and (done % 10 == 0 or done == poses):
-                console.print(f"rendering: {done} of {poses}, {sum(images)} images", highlight=False)
-
-        site = _record(wanted, cameras, poses, on_pose)
-        next(bar, None)
+    cameras = _cameras(options)
+    near = options.motion.near
+    if near and options.kind != "board":
+        raise InputError(f"--near with {options.kind}: near poses are those of a board; leave it out")
+    poses = options.poses or (NEAR_POSES * len(cameras) if near else USUAL_POSES[options.kind])
+    with json_rows(json) as add, _Rendering(poses) as rendering:
+        site = _record(options, cameras, poses, rendering.on_pose)
         seconds = time.perf_counter() - begun
         add(
             {
                 "kind": "calibrate simulate",
-                "capture": wanted.kind,
+                "capture": options.kind,
                 "cameras": len(cameras),
                 "poses": poses,
-                "images": sum(images),
+                "images": rendering.images,
                 "seconds": seconds,
                 "site": str(site),
             }
         )
-    on = {"machine": "calibrate machine", "room": "calibrate refine"}.get(wanted.kind, "calibrate extrinsics")
-    on = "calibrate intrinsics" if wanted.near else on
-    Console(highlight=False).print(
-        f"{sum(images)} images of {len(cameras)} cameras in {seconds:.0f} s; "
-        f"now: elbowroom {on} {site} --out calibrated.yaml",
-        soft_wrap=True,
+    print(
+        f"{rendering.images} images of {len(cameras)} cameras in {seconds:.0f} s; "
+        f"now: elbowroom {options.next_command} {site} --out calibrated.yaml"
     )
 
 
-def _record(wanted: Wanted, cameras: tuple[TrueCamera, ...], poses: int, on_pose) -> Path:  # type: ignore[no-untyped-def]
-    if wanted.kind == "machine":
-        return record_machine(cameras, poses, wanted.noise, wanted.seed, wanted.out, on_pose)
-    if wanted.kind == "room":
-        return record_room(cameras, poses, wanted.noise, wanted.seed, wanted.out, on_pose)
-    usual_stands = 0 if wanted.near else min(USUAL_STANDS[wanted.size], poses)
+class _Rendering:
+    """Says how many poses are rendered: a bar on a terminal, a line for every tenth elsewhere. Use it as a context."""
+
+    def __init__(self, poses: int) -> None:
+        self.poses, self.images = poses, 0
+        self._console = Console(stderr=True)
+        self._bar = Progress(console=self._console, disable=not self._console.is_terminal)
+        self._task = self._bar.add_task("rendering", total=poses)
+
+    def __enter__(self) -> "_Rendering":
+        self._bar.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.stop()
+
+    def on_pose(self, done: int, views: int) -> None:
+        self.images += views
+        self._bar.update(self._task, completed=done)
+        if not self._console.is_terminal and (done % 10 == 0 or done == self.poses):
+            self._console.print(f"rendering: {done} of {self.poses}, {self.images} images", highlight=False)
+
+
+def _record(options: CaptureOptions, cameras: tuple[TrueCamera, ...], poses: int, on_pose: OnPose) -> Path:
+    if options.kind == "machine":
+        return record_machine(cameras, poses, options.noise, options.seed, options.out, on_pose)
+    if options.kind == "room":
+        return record_room(cameras, poses, options.noise, options.seed, options.out, on_pose)
+    motion, stands = options.motion, options.board.stands
+    if stands is None:
+        stands = 0 if motion.near else min(USUAL_STANDS[options.size], poses)
     capture = BoardCapture(
-        cameras,
-        _board(wanted),
-        poses,
-        usual_stands if wanted.stands is None else wanted.stands,
-        wanted.noise,
-        wanted.seed,
-        hand_moved_m=wanted.hand_m,
-        hand_turned_deg=np.degrees(wanted.hand_m),
-        moved_pose=wanted.moved_pose,
-        near=wanted.near,
+        cameras=cameras,
+        board=_board(options.board, options.size),
+        poses=poses,
+        stands=stands,
+        noise=options.noise,
+        seed=options.seed,
+        hand_moved_m=motion.hand_m,
+        hand_turned_deg=np.degrees(motion.hand_m),
+        moved_pose=motion.moved_pose,
+        near=motion.near,
     )
-    return record_board(capture, wanted.out, on_pose)
+    return record_board(capture, options.out, on_pose)
 
 
-def _board(wanted: Wanted) -> Board:
-    (columns, rows), square_m = USUAL_BOARD[wanted.size]
-    if wanted.corners is not None:
-        columns, rows = parse_resolution(wanted.corners)
+def _board(options: BoardOptions, size: str) -> Board:
+    (columns, rows), square_m = USUAL_BOARD[size]
+    if options.corners is not None:
+        columns, rows = parse_resolution(options.corners)
     return Board(
         columns,
         rows,
-        wanted.square_m or square_m,
-        wanted.board,
-        wanted.border_m,
-        marked=wanted.board == "cut_out",
+        options.square_m or square_m,
+        options.kind,
+        options.border_m,
+        marked=options.kind == "cut_out",
         thickness_m=PLATE_M,
     )
 
 
-def _cameras(wanted: Wanted) -> tuple[TrueCamera, ...]:
-    if wanted.noise != "exact" and wanted.noise not in NOISE_PRESETS:
-        raise InputError(f"--noise: {wanted.noise!r} is unknown; exact, {', '.join(NOISE_PRESETS)}")
-    model = None if wanted.noise == "exact" else NOISE_PRESETS[wanted.noise]
-    hung = wall_cameras(wanted.cameras, size=wanted.size, noise=model)
-    random = np.random.default_rng([wanted.seed, 5])
-    cameras = started(hung, wanted.start, random)
-    if wanted.knock is not None:
-        cameras = knocked(cameras, wanted.knock, wanted.knock_deg, wanted.knock_m, random)
-    return cameras
+def _cameras(options: CaptureOptions) -> tuple[TrueCamera, ...]:
+    hung = wall_cameras(options.cameras, size=options.size, noise=noise_named(options.noise))
+    random = np.random.default_rng([options.seed, 5])
+    cameras = started(hung, options.start, random)
+    knock = options.knock
+    if knock is None:
+        return cameras
+    return knocked(cameras, knock.camera, knock.turned_deg, knock.moved_m, random)

@@ -1,17 +1,17 @@
 """The run of `elbowroom bench calibration`."""
 
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
+from elbowroom.cli.evaluate.measured import Tell, telling
 from elbowroom.errors import InputError
 from elbowroom.evaluate.calibrating.extrinsics import CASES, PARTS, extrinsics_rows
 from elbowroom.evaluate.calibrating.intrinsics import intrinsics_row
 from elbowroom.evaluate.calibrating.machine import machine_row, refine_rows, room_refine_row
 from elbowroom.evaluate.drift import drift_rows
+from elbowroom.evaluate.examples import EXAMPLES
 from elbowroom.files.atomic import folder
 from elbowroom.files.json_rows import json_rows
 
@@ -48,15 +48,20 @@ SHOWN = (
 
 
 def run_bench_calibration(
-    quick: bool, captures: Path | None, parts: Sequence[str], json_file: Path | None
+    quick: bool,
+    captures: Path | None,
+    parts: Sequence[str],
+    json_file: Path | None,
+    examples: Path | None = None,
 ) -> None:
     """Measures board, machine, refinement and drift watch, and prints a line for each row.
 
     Args:
         quick: one capture of five cameras and twelve poses, ten draws, and nothing else.
-        parts: which to measure, of `PARTS`; none: all.
         captures: folder where simulated captures are kept; None: a temporary one.
+        parts: which to measure, of `PARTS`; none: all.
         json_file: for the rows.
+        examples: folder of the examples' site files; None: that of a checkout.
 
     Raises:
         InputError: a part that is none.
@@ -64,42 +69,28 @@ def run_bench_calibration(
     unknown = [part for part in parts if part not in (*PARTS, *MORE)]
     if unknown:
         raise InputError(f"--part: {unknown[0]!r} is unknown; parts are {', '.join((*PARTS, *MORE))}")
-    console = Console(stderr=True)
-    with (
-        tempfile.TemporaryDirectory() as temporary,
-        json_rows(json_file) as add,
-        console.status("") as status,
-    ):
+    with tempfile.TemporaryDirectory() as temporary, json_rows(json_file) as add, telling() as tell:
         kept = Path(temporary) if captures is None else folder(captures)
-
-        def tell(text: str) -> None:
-            status.update(text)
-            if not console.is_terminal:
-                console.print(text, highlight=False)
-
-        quickly: dict[str, Any] = (
-            {"cases": CASES[:1], "cameras": 5, "poses": 12, "draws": 10} if quick else {}
-        )
-        for row in extrinsics_rows(tell, kept, parts or PARTS, **quickly):
+        for row in _rows(quick, kept, parts, examples or EXAMPLES, tell):
             add(row)
             _say(row)
-        for part in () if quick else [part for part in MORE if part in (parts or MORE)]:
-            for row in _more_rows(part, kept, tell):
-                add(row)
-                _say(row)
 
 
-def _more_rows(part: str, captures: Path, tell: Callable[[str], None]) -> Iterator[dict[str, Any]]:
-    """The rows of a part of `MORE`."""
-    if part == "intrinsics":
-        yield intrinsics_row(captures, said=tell)
-    elif part == "machine":
-        yield machine_row(said=tell)
-    elif part == "refine":
-        yield room_refine_row(said=tell)
-        yield from refine_rows(said=tell)
-    else:
-        yield from drift_rows(tell)
+def _rows(
+    quick: bool, captures: Path, parts: Sequence[str], examples: Path, tell: Tell
+) -> Iterator[dict[str, Any]]:
+    quickly: dict[str, Any] = {"cases": CASES[:1], "cameras": 5, "poses": 12, "draws": 10} if quick else {}
+    yield from extrinsics_rows(tell, captures, parts or PARTS, **quickly, examples=examples)
+    for part in () if quick else [part for part in MORE if part in (parts or MORE)]:
+        if part == "intrinsics":
+            yield intrinsics_row(captures, said=tell)
+        elif part == "machine":
+            yield machine_row(said=tell)
+        elif part == "refine":
+            yield room_refine_row(said=tell)
+            yield from refine_rows(examples, said=tell)
+        else:
+            yield from drift_rows(tell, examples=examples)
 
 
 def _say(row: Mapping[str, Any]) -> None:

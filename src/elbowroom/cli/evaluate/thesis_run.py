@@ -22,6 +22,7 @@ from elbowroom.view.report.blocks import Block, Table
 from elbowroom.view.report.page import page
 from elbowroom.view.report.tables import rich_table
 
+Section = tuple[str, list[Block]]
 TITLE = "The thesis' experiments"
 ABOUT = (
     "I. Hamersma, *Collision avoidance using multiple correlated 3D depth measurements*, Eindhoven 2011, "
@@ -80,11 +81,10 @@ def run_parts(
         raise InputError("evaluate: nothing to do with these options; ask for more")
     with json_rows(json) as add:
         outcomes = _done(tasks, kept, spread)
-        sections: list[tuple[str, list[Block]]] = []
+        sections: list[Section] = []
         every: list[dict[str, Any]] = []
         for part in parts:
             rows, pictures = _of_part(part, tasks, outcomes)
-            rows = [{"part": part.name, **row} for row in rows]
             for row in rows:
                 add(row)
             every += rows
@@ -92,16 +92,21 @@ def run_parts(
     due = due_table(parts, every)
     if due is not None:
         sections.insert(0, (due.title, [due]))
+    _print(sections)
+    if out is not None:
+        with whole_file(out / "report.html") as unfinished:
+            unfinished.write_text(page(TITLE, ABOUT, sections, said), encoding="utf-8")
+        print(f"\nPage: {out / 'report.html'}")
+
+
+def _print(sections: Sequence[Section]) -> None:
+    """Titles and tables."""
     console = Console(highlight=False)
     for title, blocks in sections:
         console.print(f"\n{title}", style="bold")
         for block in blocks:
             if isinstance(block, Table):
                 console.print(rich_table(block))
-    if out is not None:
-        with whole_file(out / "report.html") as unfinished:
-            unfinished.write_text(page(TITLE, ABOUT, sections, said), encoding="utf-8")
-        console.print(f"\nPage: {out / 'report.html'}")
 
 
 def _done(tasks: Sequence[Task], kept: Kept, spread: Spread) -> dict[int, Outcome]:
@@ -137,4 +142,4 @@ def _of_part(
     mine = [outcomes[n] for n, task in enumerate(tasks) if task.part == part.name]
     rows = [row for outcome in mine for row in outcome.rows]
     pictures = {name: png for outcome in mine for name, png in outcome.pictures.items()}
-    return rows + part.summary(rows), pictures
+    return [{"part": part.name, **row} for row in rows + part.summary(rows)], pictures

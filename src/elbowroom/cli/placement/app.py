@@ -6,28 +6,22 @@ from typing import Annotated
 import typer
 
 from elbowroom.cli.options import JsonFile, SitePath, VoxelSize
+from elbowroom.cli.placement.options import (
+    Angle,
+    CapabilityOptions,
+    OptimiseOptions,
+    OptionalSite,
+    Pictures,
+    Required,
+    SimulateOptions,
+    SweepOptions,
+    VerifyOptions,
+    Views,
+)
 
 placement_app = typer.Typer(
     help="Where to put the cameras: verify a placement, sweep, optimise, simulate.", no_args_is_help=True
 )
-
-OptionalSite = Annotated[
-    Path | None,
-    typer.Argument(metavar="[SITE]", help="A site file (YAML). Default: the room of the thesis."),
-]
-Views = Annotated[
-    int | None,
-    typer.Option(min=1, metavar="COUNT", help="Views that a point needs. Default: the site's, or 3."),
-]
-Angle = Annotated[
-    float | None,
-    typer.Option(
-        metavar="DEGREES", help="Least angle between two views from above. Default: the site's, or 100."
-    ),
-]
-Pictures = Annotated[
-    Path | None, typer.Option("--out", metavar="DIR", help="Write pictures into this folder.")
-]
 
 
 @placement_app.command(
@@ -45,9 +39,11 @@ def verify(
     json: JsonFile = None,
 ) -> None:
     """Say how many cameras see each point of the empty room, whether they are enough, and where they are not."""
-    from elbowroom.cli.placement.run import run_verify
+    from elbowroom.cli.placement.verify import run_verify
 
-    run_verify(site, views, angle, voxel_size, worst, out, json)
+    required = Required(views=views, angle_deg=angle)
+    options = VerifyOptions(site=site, required=required, voxel_size_m=voxel_size, worst=worst, out=out)
+    run_verify(options, json)
 
 
 @placement_app.command(
@@ -84,11 +80,21 @@ def sweep(
     json: JsonFile = None,
 ) -> None:
     """Spread more and more cameras evenly along the walls: the share of valid points, and the least number."""
-    from elbowroom.cli.placement.run import run_sweep
+    from elbowroom.cli.placement.sweep import run_sweep
 
-    run_sweep(
-        site, sensor, cameras, walls, tuple(height or (2.4,)), aim, share, views, angle, voxel_size, out, json
+    options = SweepOptions(
+        site=site,
+        sensors=tuple(sensor or ()),
+        counts=cameras,
+        walls_m=tuple(walls or ()),
+        heights_m=tuple(height or (2.4,)),
+        aim_m=aim,
+        share_pct=share,
+        required=Required(views=views, angle_deg=angle),
+        voxel_size_m=voxel_size,
+        out=out,
     )
+    run_sweep(options, json)
 
 
 @placement_app.command(
@@ -127,14 +133,24 @@ def optimise(
     json: JsonFile = None,
 ) -> None:
     """Find few or cheap cameras that see the empty room well enough, or the best places for a number of them."""
-    if scenes:
-        from elbowroom.cli.placement.in_use import run_in_use
-
-        run_in_use(site, share, cameras, price, keep, scenes, seconds, seed, write, json)
-        return
+    from elbowroom.cli.placement.in_use import run_in_use
     from elbowroom.cli.placement.optimise import run_optimise
 
-    run_optimise(site, share, cameras, price, keep, seconds, points, views, angle, seed, write, out, json)
+    options = OptimiseOptions(
+        site=site,
+        share_pct=share,
+        cameras=cameras,
+        by_price=price,
+        keep=keep,
+        scenes=scenes,
+        seconds=seconds,
+        points=points,
+        required=Required(views=views, angle_deg=angle),
+        seed=seed,
+        write=write,
+        out=out,
+    )
+    (run_in_use if scenes else run_optimise)(options, json)
 
 
 @placement_app.command(
@@ -158,7 +174,16 @@ def simulate(
     """Carve many random scenes: free space found, false stops, what each camera is worth."""
     from elbowroom.cli.placement.simulate import run_simulate
 
-    run_simulate(site, scenes, people, table, voxel_size, by_camera, seed, json)
+    options = SimulateOptions(
+        site=site,
+        scenes=scenes,
+        people=people,
+        table=table,
+        voxel_size_m=voxel_size,
+        by_camera=by_camera,
+        seed=seed,
+    )
+    run_simulate(options, json)
 
 
 @placement_app.command(epilog="Example: elbowroom placement capability placed.yaml --views 3 --out pictures")
@@ -177,4 +202,4 @@ def capability(
     """Say how small an object the cameras will see, place by place, and what ISO 13855 adds to the distance for it."""
     from elbowroom.cli.placement.capability import run_capability
 
-    run_capability(site, views, voxel_size, out, json)
+    run_capability(CapabilityOptions(site=site, views=views, voxel_size_m=voxel_size, out=out), json)

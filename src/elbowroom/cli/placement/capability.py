@@ -1,11 +1,11 @@
 """The run of `elbowroom placement capability`."""
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from elbowroom.cli.placement.options import CapabilityOptions
 from elbowroom.files.atomic import folder
 from elbowroom.files.json_rows import json_rows
 from elbowroom.placement.cameras import cameras_of
@@ -16,58 +16,40 @@ from elbowroom.placement.pictures import save
 from elbowroom.placement.verification import verify
 from elbowroom.site import Site
 
-PERCENTS = (50.0, 90.0, 99.0)
-SIZES_MM = (14.0, 40.0, 70.0, 150.0)
+HIP_M = 1.1
+"""Height of the horizontal section above the box's floor [m]."""
 
 
-def run_capability(
-    site_path: Path, views: int, voxel_size_m: float | None, out: Path | None, json_file: Path | None
-) -> None:
-    """Maps detection capability of a site and prints what it says."""
-    site = Site.load(site_path)
-    cameras, room, grid = cameras_of(site), FixedRoom.of_site(site), site.grid(voxel_size_m)
+def run_capability(options: CapabilityOptions, json_file: Path | None) -> None:
+    """Maps detection capability of a site and prints what it says.
+
+    Raises:
+        InputError: a site, a number of views or a folder that cannot be.
+    """
+    site = Site.load(options.site)
+    cameras, room, grid = cameras_of(site), FixedRoom.of_site(site), site.grid(options.voxel_size_m)
     with json_rows(json_file) as add:
-        result = capability(verify(grid, cameras, room), views)
-        row = _row(site, result, len(cameras))
-        files = []
-        if out is not None:
-            out = folder(out)
-            at_hip = min(int(1.1 / grid.voxel_size_m), grid.shape[2] - 1)
-            for name, normal, layer in (("z", 2, at_hip), ("x", 0, grid.shape[0] // 2)):
-                files.append(
-                    save(capability_section(result, room, normal, layer), out / f"capability_{name}.png")
-                )
-            files.append(save_capability(out / "capability.npz", result))
+        result = capability(verify(grid, cameras, room), options.views)
+        row = result.row() | {"site": str(site.path), "name": site.name, "cameras": len(cameras)}
+        files = [] if options.out is None else _save(result, room, folder(options.out))
         add(row | {"files": [str(path) for path in files]})
     _say(row)
     for path in files:
         print(f"written   {path}")
 
 
-def _row(site: Site, result: Capability, cameras: int) -> dict[str, Any]:
-    """The row of kind "capability"; sizes in mm, null where objects of no size are seen by so many cameras."""
-    worst = np.argwhere((result.smallest_mm == result.smallest_mm[result.asked].max()) & result.asked)[0]
-    return {
-        "kind": "capability",
-        "site": str(site.path),
-        "name": site.name,
-        "cameras": cameras,
-        "views": result.views,
-        "voxel_size_m": result.grid.voxel_size_m,
-        "smallest_mm": {f"{p:g}_pct": result.percentile_mm(p) for p in PERCENTS},
-        "intrusion_mm": {
-            f"{p:g}_pct": float(
-                np.sort(result.intrusion_mm[result.asked])[int(p / 100 * (result.asked.sum() - 1))]
-            )
-            for p in PERCENTS
-        },
-        "share_pct": {f"{size:g}_mm": result.share_pct(size) for size in SIZES_MM},
-        "worst_m": result.grid.centre_of(worst),
-        "worst_mm": float(result.smallest_mm[tuple(worst)]),
-    }
+def _save(result: Capability, room: FixedRoom | None, out: Path) -> list[Path]:
+    """Sections at the height of hips and through the middle, and the arrays."""
+    grid = result.grid
+    at_hip = min(int(HIP_M / grid.voxel_size_m), grid.shape[2] - 1)
+    files = [
+        save(capability_section(result, room, normal, layer), out / f"capability_{name}.png")
+        for name, normal, layer in (("z", 2, at_hip), ("x", 0, grid.shape[0] // 2))
+    ]
+    return [*files, save_capability(out / "capability.npz", result)]
 
 
-def _say(row: dict[str, Any]) -> None:
+def _say(row: Mapping[str, Any]) -> None:
     who = f"{row['views']} of {row['cameras']} cameras see{'s' * (row['views'] == 1)}"
     print(f"smallest  object that {who}, voxels of {row['voxel_size_m'] * 100:g} cm:")
     for percent, size in row["smallest_mm"].items():

@@ -1,7 +1,7 @@
 """Sums of what goes round about a free space: passes of the monitor, merged evidence, reports, settings, placement."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import product
 
@@ -33,7 +33,7 @@ from elbowroom.reconstruct import (
     reconstruct,
     resolve,
 )
-from elbowroom.sensing import DepthFrame, JointRecord
+from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 from elbowroom.simulate import InterventionRoom, Moment, true_occupancy
 from elbowroom.site import Site
 
@@ -48,46 +48,38 @@ POINTS_M = tuple(product((-1.1, -0.3, 0.05, 0.9), (-0.8, 0.0, 0.7), (0.3, 1.1, 1
 """Places that are asked about, world frame [m]."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Pass:
-    """What a cycle is run with."""
-
-    frames: Sequence[DepthFrame]
-    joints: Mapping[str, float]
-    record: JointRecord | None = None
-
-
 def cycle_rows() -> Iterator[Row]:
     """Passes of the monitor: whole, with a stale frame, without a camera, with joints over time, with a fault."""
     room = InterventionRoom()
     shot = Shot(NOW_S, noise="tof")
     cameras, frames = images_of(room.at(NOW_S), shot)
     grid = room_grid(COARSE_M)
-    make = partial(Cycle, grid, cameras, room.machine, motions_of(room.machine), margin=NARROW)
+    make = partial(Cycle, grid, cameras, room.machine, motions_of(room.machine))
+    terms = Terms(margin=NARROW, max_age_ns=AGE_NS)
     cycles = {
-        "": make(max_age_ns=AGE_NS),
-        "unfocused ": make(max_age_ns=AGE_NS, focused=False),
-        "majority ": make(max_age_ns=AGE_NS, rule="majority", detail="footprint"),
+        "": make(terms),
+        "unfocused ": make(terms, focused=False),
+        "majority ": make(replace(terms, rule="majority", detail="footprint")),
     }
     for name, cycle in cycles.items():
-        for what, given in _passes(room, shot, frames).items():
-            result = cycle.run(given.frames, given.joints, frames[0].stamp_ns or 0, given.record)
-            yield from _cycle_rows(result, cycle, name + what)
+        for what, snapshot in _snapshots(room, shot, frames).items():
+            yield from _cycle_rows(cycle.run(snapshot), cycle.terms, name + what)
 
 
-def _passes(room: InterventionRoom, shot: Shot, frames: list[DepthFrame]) -> dict[str, _Pass]:
+def _snapshots(room: InterventionRoom, shot: Shot, frames: list[DepthFrame]) -> dict[str, Snapshot]:
     now, before, long_ago = (room.at(NOW_S - back_s) for back_s in (0.0, 0.1, 1.0))
     _, earlier = images_of(before, shot)
     _, stale = images_of(long_ago, shot)
     by_turns = [pair[n % 2] for n, pair in enumerate(zip(frames, earlier, strict=True))]
-    return {
-        "whole": _Pass(frames, now.joints),
-        "stale frame": _Pass([stale[0], *frames[1:]], now.joints),
-        "silent camera": _Pass(frames[1:], now.joints),
-        "no stamp": _Pass([replace(frames[0], stamp_ns=None), *frames[1:]], now.joints),
-        "joint record": _Pass(by_turns, now.joints, _record([long_ago, before, now])),
-        "fault": _Pass(frames, {}),
+    given: dict[str, tuple[Sequence[DepthFrame], Mapping[str, float] | JointRecord]] = {
+        "whole": (frames, now.joints),
+        "stale frame": ([stale[0], *frames[1:]], now.joints),
+        "silent camera": (frames[1:], now.joints),
+        "no stamp": ([replace(frames[0], stamp_ns=None), *frames[1:]], now.joints),
+        "joint record": (by_turns, _record([long_ago, before, now])),
+        "fault": (frames, {}),
     }
+    return {what: Snapshot.taken(*moment, frames[0].stamp_ns, AGE_NS) for what, moment in given.items()}
 
 
 def _record(moments: Sequence[Moment]) -> JointRecord:
@@ -98,16 +90,16 @@ def _record(moments: Sequence[Moment]) -> JointRecord:
     )
 
 
-def _cycle_rows(result: CycleResult, cycle: Cycle, what: str) -> Iterator[Row]:
+def _cycle_rows(result: CycleResult, terms: Terms, what: str) -> Iterator[Row]:
     if result.space is not None:
-        yield space_row(result.space, cycle.rule, cycle.detail, f"{what}: space")
+        yield space_row(result.space, terms.rule, terms.detail, f"{what}: space")
     told = [
         ("verdicts", "\n".join(verdict_text(verdict) for verdict in result.verdicts)),
         ("level", result.level.name),
         ("oldest", result.oldest_age_ms),
         ("fault", result.fault is not None),
     ]
-    yield row(f"{what}: verdicts", told, cycle.rule, cycle.detail)
+    yield row(f"{what}: verdicts", told, terms.rule, terms.detail)
 
 
 def merge_rows() -> Iterator[Row]:

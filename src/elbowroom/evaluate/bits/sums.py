@@ -99,19 +99,37 @@ def frames_row(frames: Sequence[DepthFrame]) -> Row:
 
 
 def space_row(space: FreeSpace, rule: str, detail: str, what: str = "space") -> Row:
-    """Of a free space, and how much of it is free."""
+    """Of a free space, and how much of it is free.
+
+    Args:
+        space: whose planes are summed.
+        rule, detail: that it was found by.
+        what: the row is called.
+    """
     planes = ((name, getattr(space, f"{name}_words")) for name in PLANES)
     free_pct = round(100 * float(space.free.mean()), 6)
     return {**row(what, planes, rule, detail), "free_pct": free_pct}
 
 
 def verdicts_row(verdicts: Iterable[Verdict], rule: str, detail: str, what: str = "verdicts") -> Row:
-    """Of verdicts, in their order."""
+    """Of verdicts, in their order.
+
+    Args:
+        verdicts: that are summed.
+        rule, detail: that their space was found by.
+        what: the row is called.
+    """
     return row(what, [("verdicts", "\n".join(verdict_text(verdict) for verdict in verdicts))], rule, detail)
 
 
 def evidence_row(evidence: Evidence, detail: str, what: str = "evidence") -> Row:
-    """Of evidence, with the counts where it has them."""
+    """Of evidence, with the counts where it has them.
+
+    Args:
+        evidence: whose planes are summed.
+        detail: that it was found by.
+        what: the row is called.
+    """
     pieces: list[tuple[str, Any]] = [
         ("cameras", " ".join(evidence.cameras)),
         ("planes", evidence.planes),

@@ -77,7 +77,14 @@ def board_image_rows(count: int = 20, seed: int = 3) -> Iterator[dict[str, Any]]
 def seen_views(
     camera: DepthCamera, board: Board, count: int, seed: int
 ) -> Iterator[tuple[Array, BoardView | None]]:
-    """The board held before a camera and looked for: its true pose, and the view; None: it was not found."""
+    """The board held before a camera and looked for: its true pose, and the view; None: it was not found.
+
+    Args:
+        camera: that looks.
+        board: that is held.
+        count: how many poses.
+        seed: of the poses and the noise.
+    """
     for number, pose in enumerate(hand_poses([camera], board, count, np.random.default_rng([seed, 31]))):
         moment = Moment(float(number + 1), (*shell(), Solid("board", plate_mesh(board), pose)), {})
         frame = render([camera], moment, seed=seed)[0]
@@ -86,7 +93,14 @@ def seen_views(
 
 
 def misses_of(camera: DepthCamera, board: Board, view: BoardView, world_from_board: Array) -> Misses:
-    """A view against the truth."""
+    """A view against the truth.
+
+    Args:
+        camera: that saw it.
+        board: that was held.
+        view: what was seen.
+        world_from_board: its true pose, shape (4, 4).
+    """
     camera_from_board = camera.camera_from_world @ world_from_board
     corners = board.corners_in_board[view.corner_ids]
     points = corners @ camera_from_board[:3, :3].T + camera_from_board[:3, 3]

@@ -25,7 +25,15 @@ def ring(
     noise: NoiseModel | None = NOISE_PRESETS["kinect_v1"],
     **more: Any,
 ) -> tuple[DepthCamera, ...]:
-    """Cameras about a room of 4 x 4 m that look at its middle."""
+    """Cameras about a room of 4 x 4 m that look at its middle.
+
+    Args:
+        count: how many.
+        width: of their images [px].
+        hfov_deg: horizontal field of view [deg].
+        noise: of their depth; None: exact.
+        more: further arguments of `DepthCamera`.
+    """
     f = width / 2 / np.tan(np.radians(hfov_deg / 2))
     height = width * 3 // 4
     lens = Intrinsics(f, f, (width - 1) / 2, (height - 1) / 2, more.pop("distortion", ()))
@@ -87,7 +95,15 @@ def measured_corners(
     sigma_m: float = POINT_SIGMA_M,
     board: Board = BOARD,
 ) -> tuple[BoardCorner, ...]:
-    """First corner, end of its row and end of its column in each of these poses, as somebody measures them."""
+    """First corner, end of its row and end of its column in each of these poses, as somebody measures them.
+
+    Args:
+        poses: world_from_board, shape (4, 4) each.
+        which: numbers of the poses that are measured.
+        rng: of the errors.
+        sigma_m: of each coordinate [m].
+        board: that stands there.
+    """
     return tuple(
         BoardCorner(
             f"stand {pose}, corner {number}",
@@ -108,7 +124,16 @@ def views_of(
     board: Board = BOARD,
     sigma_px: float | None = None,
 ) -> list[BoardView]:
-    """What each camera sees of each pose, if it sees all of the board's face within 68 degrees of straight on."""
+    """What each camera sees of each pose, if it sees all of the board's face within 68 degrees of straight on.
+
+    Args:
+        cameras: that look.
+        poses: world_from_board, shape (4, 4) each.
+        rng: of the errors.
+        shaken: how the hand moves between exposures, and what all views share.
+        board: that is held.
+        sigma_px: what the views say of their corners [px]; None: what is true.
+    """
     views = []
     for pose, world_from_board in enumerate(poses):
         for camera in cameras:

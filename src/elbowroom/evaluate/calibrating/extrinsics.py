@@ -19,7 +19,7 @@ from elbowroom.calibrate.refinement.agreement import agreement
 from elbowroom.calibrate.result.change import pose_difference
 from elbowroom.calibrate.result.margin import is_within, pose_margin
 from elbowroom.calibrate.simulated import BoardCapture, Start, record_board, started
-from elbowroom.errors import SiteError
+from elbowroom.errors import InputError
 from elbowroom.evaluate.calibrating.board_images import board_image_rows
 from elbowroom.evaluate.calibrating.board_views import (
     BOARD,
@@ -30,6 +30,7 @@ from elbowroom.evaluate.calibrating.board_views import (
     ring,
     views_of,
 )
+from elbowroom.evaluate.examples import EXAMPLES, example
 from elbowroom.evaluate.rooms.room import MOMENTS_S, ROOM_LOWER_M, ROOM_UPPER_M, Tally
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.twist import between
@@ -42,8 +43,8 @@ from elbowroom.sources import moments
 SENSOR_LATERAL_PX = (0.5, 0.0)
 Tell = Callable[[str], None]
 PARTS = ("real", "coverage", "images", "captures")
-REAL_SITE = Path(__file__).parents[4] / "examples" / "kinect_board_2cam_calibration.yaml"
-"""Two real cameras; only a checkout has it."""
+REAL_SITE = "kinect_board_2cam_calibration"
+"""The example with two real cameras."""
 INSIDE = float(chi2.ppf(0.95, 6))
 
 
@@ -112,6 +113,7 @@ def extrinsics_rows(
     cameras: int = 21,
     poses: int = 40,
     draws: int = 100,
+    examples: Path = EXAMPLES,
 ) -> Iterator[dict[str, Any]]:
     """All rows: captures, the room with the cameras that were found, coverage, the real recording.
 
@@ -122,12 +124,13 @@ def extrinsics_rows(
         cases: captures to make.
         cameras, poses: of the captures.
         draws: for the coverage of the covariance.
+        examples: the folder of site files of recordings.
 
     Yields:
         Rows of kind "real", "coverage", "images", "extrinsics", "room".
     """
     if "real" in parts:
-        yield real_row(tell)
+        yield real_row(tell, examples)
     if "coverage" in parts:
         yield coverage_row(draws, tell)
         yield coverage_row(draws, tell, stands=(1, 2, 3))
@@ -165,7 +168,14 @@ def extrinsics_rows(
 
 
 def capture(case: Case, folder: Path, cameras: int, poses: int, tell: Tell) -> Site:
-    """The capture's site; rendered unless it is there."""
+    """The capture's site; rendered unless it is there.
+
+    Args:
+        case: what is calibrated.
+        folder: of captures.
+        cameras, poses: how many.
+        tell: what is being done.
+    """
     path = folder / "site.yaml"
     if not path.is_file():
         hung = wall_cameras(cameras, size=case.size, noise=NOISE_PRESETS[case.noise])
@@ -210,6 +220,12 @@ def room_rows(
     """The simulated room at 5 cm, seen by the true cameras and carved with those that were found and their margins.
 
     Once with the half pixel that sensors have by default beside what calibration leaves open, and once without it.
+
+    Args:
+        case: what was calibrated.
+        found: the result.
+        truth: world_from_camera by name, shape (4, 4).
+        moments_s: of the room [s].
     """
     grid, room = VoxelGrid.covering(ROOM_LOWER_M, ROOM_UPPER_M, 0.05), InterventionRoom()
     true = [replace(one.camera, world_from_camera=truth[one.camera.name]) for one in found.cameras]
@@ -294,16 +310,17 @@ def coverage_row(draws: int, tell: Tell, stands: Sequence[int] = ()) -> dict[str
     }
 
 
-def real_row(tell: Tell) -> dict[str, Any]:
-    """The recorded board seen by two Kinects: share of co-visible depth pixels that agree within 5 cm."""
+def real_row(tell: Tell, examples: Path = EXAMPLES) -> dict[str, Any]:
+    """The recorded board seen by two Kinects: share of co-visible depth pixels that agree within 5 cm.
+
+    Where the example or its recording is not there, the row says so.
+    """
     tell("the recorded board")
     row: dict[str, Any] = {"kind": "real", "case": "kinect_board_2cam, pair 2", "due": {"agree_pct": 80.0}}
-    if not REAL_SITE.is_file():
-        return row | {"skipped": True, "note": "examples are not there"}
-    site = Site.load(REAL_SITE)
     try:
+        site = Site.load(example(REAL_SITE, examples))
         folder = site.recording_folder()
-    except SiteError as error:
+    except InputError as error:
         return row | {"skipped": True, "note": str(error)}
     seen = sightings(site)
     found = solve_extrinsics(site.cameras(), seen.board, seen.views, anchor_of(site))

@@ -12,14 +12,15 @@ from scipy.stats import chi2
 from elbowroom.calibrate.from_machine.target import calibrate_from_machine
 from elbowroom.calibrate.refinement.agreement import Agreement, agreement
 from elbowroom.calibrate.refinement.refine import refine
-from elbowroom.errors import SiteError
+from elbowroom.errors import InputError
+from elbowroom.evaluate.examples import EXAMPLES, example
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.twist import between, moved, sizes
-from elbowroom.sensing import NOISE_PRESETS
+from elbowroom.sensing import NOISE_PRESETS, Snapshot
 from elbowroom.sensing.planar_images import planar_images
-from elbowroom.simulate import InterventionRoom, render, wall_cameras
+from elbowroom.simulate import InterventionRoom, Optics, render, wall_cameras
 from elbowroom.site import Site
-from elbowroom.sources import RecordedMoment, moments
+from elbowroom.sources import moments
 
 ROUGH_M, ROUGH_DEG = 0.10, 5.0
 """How far the rough poses for `calibrate machine` are off, in a random direction each."""
@@ -27,8 +28,9 @@ REAL_M, REAL_DEG = 0.05, 3.0
 """How far the second real camera is off before `calibrate refine`."""
 ROOM_M, ROOM_DEG = 0.02, 0.5
 """How far simulated cameras are off before they are refined."""
-REAL_SITE = Path(__file__).parents[4] / "examples" / "piv_table_2cam.yaml"
-"""Two real cameras; only a checkout has it."""
+REAL_SITE = "piv_table_2cam"
+"""The example with two real cameras."""
+RANGE = Optics(min_depth_m=0.1, max_depth_m=8.0)
 DUE_MACHINE = {"worst_mm": 8.0, "worst_deg": 0.2}
 DUE_REAL = {"cam1 to cam2": 60.0, "cam2 to cam1": 77.0}
 """Share of co-visible pixels within 5 cm that the recording's README gives for its own poses [%]."""
@@ -58,13 +60,13 @@ def machine_row(
         seconds from images to poses.
     """
     room, random = InterventionRoom(), np.random.default_rng([seed, 71])
-    true = wall_cameras(cameras, size=size, noise=NOISE_PRESETS[noise], min_depth_m=0.1, max_depth_m=8.0)
+    true = wall_cameras(cameras, size=size, noise=NOISE_PRESETS[noise], optics=RANGE)
     said(f"rendering {poses} poses")
     recorded = []
     for _ in range(poses):
         moment = room.random_moment(random)
         frames = tuple(render(true, moment, seed=seed))
-        recorded.append(RecordedMoment(moment.stamp_ns, frames, dict(moment.joints)))
+        recorded.append(Snapshot(frames, dict(moment.joints), now_ns=moment.stamp_ns))
     rough = [_off(camera, ROUGH_M, ROUGH_DEG, random) for camera in true]
     # a first call that compiles
     calibrate_from_machine(room.machine, rough[:1], recorded)
@@ -118,10 +120,10 @@ def room_refine_row(
         A row of kind "refine": worst and median of the poses' errors [mm, degrees] before and after, seconds.
     """
     room, random = InterventionRoom(), np.random.default_rng([seed, 79])
-    true = wall_cameras(cameras, size=size, noise=NOISE_PRESETS[noise], min_depth_m=0.1, max_depth_m=8.0)
+    true = wall_cameras(cameras, size=size, noise=NOISE_PRESETS[noise], optics=RANGE)
     said(f"refining {cameras} cameras of the simulated room")
     moment = room.random_moment(random)
-    recorded = [RecordedMoment(moment.stamp_ns, tuple(render(true, moment, seed=seed)), {})]
+    recorded = [Snapshot(tuple(render(true, moment, seed=seed)), {}, now_ns=moment.stamp_ns)]
     given = (true[0], *(_off(camera, ROOM_M, ROOM_DEG, random) for camera in true[1:]))
     sure = np.diag([np.radians(ROOM_DEG) ** 2] * 3 + [ROOM_M**2] * 3)
     held = {camera.name: None if camera is true[0] else sure for camera in given}
@@ -148,14 +150,14 @@ def room_refine_row(
 
 
 def refine_rows(
-    site_path: Path = REAL_SITE, *, seeds: Sequence[int] = (1, 2, 3), said: Said = lambda words: None
+    examples: Path = EXAMPLES, *, seeds: Sequence[int] = (1, 2, 3), said: Said = lambda words: None
 ) -> Iterator[dict[str, Any]]:
     """Real cameras of piv_table_2cam, the second one off at random, refined on what both see.
 
     Agreement is measured at full resolution over all moments, with the poses that come with the recording as well.
 
     Args:
-        site_path: of the recording.
+        examples: the folder of site files of recordings.
         seeds: a start of its own for each.
         said: told what is being done.
 
@@ -164,9 +166,9 @@ def refine_rows(
         recording is absent a single row with a note.
     """
     try:
-        site = Site.load(site_path)
+        site = Site.load(example(REAL_SITE, examples))
         own, recorded = site.cameras(), list(moments(site, joints={}))
-    except SiteError as error:
+    except InputError as error:
         yield {"kind": "refine", "skipped": True, "note": str(error)}
         return
     images = [

@@ -8,6 +8,7 @@ import numpy as np
 from elbowroom.evaluate.drift.scene import BEFORE, KNOCKED_FRAMES, PERIOD_S, Commissioned, Tell, frames_of
 from elbowroom.monitor.health.drift.watch import TURNS
 from elbowroom.monitor.health.health import Condition
+from elbowroom.sensing import Snapshot
 from elbowroom.simulate import Moment, Solid
 
 
@@ -23,7 +24,9 @@ def furniture_row(scene: Commissioned, tell: Tell) -> dict[str, Any]:
         if k >= BEFORE:
             solids = tuple(_pushed(solid, shift, moved) for solid in moment.solids)
             moment = Moment(moment.time_s, solids, moment.joints)
-        health = watch.hear(frames_of(scene.cameras, moment, k), moment.joints, moment.stamp_ns)
+        health = watch.hear(
+            Snapshot.taken(frames_of(scene.cameras, moment, k), moment.joints, moment.stamp_ns)
+        )
     return {
         "kind": "furniture",
         "what": "table and patient pushed by 10 cm",
@@ -47,6 +50,11 @@ def false_alarm_row(scene: Commissioned, passes: int, tell: Tell) -> dict[str, A
 
     A watch listens to every other camera at each pass, in turn, so only those are rendered: each frame is new, is
     listened to, and counts once. After an alarm a new watch goes on.
+
+    Args:
+        scene: that was commissioned.
+        passes: how many.
+        tell: what is being done.
     """
     alarms: list[str] = []
     watch, listened, said_moved, unsure = scene.watch(), 0, 0, 0
@@ -57,7 +65,7 @@ def false_alarm_row(scene: Commissioned, passes: int, tell: Tell) -> dict[str, A
         moment = scene.room.at(400.0 + k * PERIOD_S)
         turn = slice(watch.turn, None, TURNS)
         frames[turn] = frames_of(scene.cameras[turn], moment, k)
-        health = watch.hear(frames, moment.joints, moment.stamp_ns)
+        health = watch.hear(Snapshot.taken(frames, moment.joints, moment.stamp_ns))
         heard = [camera.condition for camera in health.cameras[turn]]
         listened += len(heard)
         said_moved += sum(condition is Condition.MOVED for condition in heard)

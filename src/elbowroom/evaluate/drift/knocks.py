@@ -17,7 +17,7 @@ from elbowroom.evaluate.drift.scene import (
 from elbowroom.monitor.health.drift.shift import Shift
 from elbowroom.monitor.health.drift.shown_part import ShownPart
 from elbowroom.monitor.health.drift.tolerance import Tolerance
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, Snapshot
 from elbowroom.simulate import render
 from elbowroom.simulate.knock import Knock
 
@@ -70,7 +70,7 @@ def _run(scene: Commissioned, still: Sequence[Sequence[DepthFrame]], number: int
         now = list(still[k])
         if k >= BEFORE:
             now[number] = frames_of([truly], scene.room.at(START_S + k * PERIOD_S), 5000 + k)[0]
-        health = watch.hear(now, joints, now[0].stamp_ns or 0)
+        health = watch.hear(Snapshot.taken(now, joints, now[0].stamp_ns))
         if camera.name in health.stops:
             break
     others = len(set(health.stops) - {camera.name})
@@ -119,7 +119,7 @@ def several_row(scene: Commissioned, still: Sequence[Sequence[DepthFrame]]) -> d
             else frame
             for camera, frame in zip(scene.cameras, still[k], strict=True)
         ]
-        health = watch.hear(now, joints, moment.stamp_ns)
+        health = watch.hear(Snapshot.taken(now, joints, moment.stamp_ns))
         if knocked <= set(health.stops):
             break
     return {

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from elbowroom.evaluate.drift.scene import PERIOD_S, Tell, commissioned, frames_of
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, Snapshot
 
 
 def time_row(tell: Tell, passes: int = 100) -> dict[str, Any]:
@@ -20,7 +20,7 @@ def time_row(tell: Tell, passes: int = 100) -> dict[str, Any]:
         stamp = int(k * PERIOD_S * 1e9)
         now = [DepthFrame(f.camera, stamp, f.depth_m) for f in frames[k % 4]]
         begun, worked = time.perf_counter(), time.process_time()
-        watch.hear(now, shown[k % 4].joints, stamp)
+        watch.hear(Snapshot.taken(now, shown[k % 4].joints, stamp))
         times.append((time.perf_counter() - begun) * 1e3)
         cpu.append((time.process_time() - worked) * 1e3)
     p50, p99, worst = np.percentile(times[12:], (50, 99, 100))

@@ -11,6 +11,7 @@ from elbowroom.evaluate.drift.scene import Tell
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.reference import CameraReference
 from elbowroom.monitor.health.drift.watch import Watch
+from elbowroom.sensing import Snapshot
 from elbowroom.simulate.knock import Knock
 from elbowroom.site import Site
 from elbowroom.sources import moments
@@ -34,12 +35,12 @@ def recorded_rows(site: Site, tell: Tell, passes: int = 90) -> Iterator[dict[str
     cameras, seen = site.cameras(), [moment.frames for moment in moments(site)]
     commissioning = Commissioning(cameras, None, len(seen[::2]))
     for frames in seen[::2]:
-        commissioning.add(frames, None)
+        commissioning.add(Snapshot(frames))
     references = commissioning.references()
     for name, knock in {"none": Knock(""), **KNOCKS}.items():
         watch = Watch(cameras, [commissioned_elsewhere(references[0], knock), *references[1:]])
         for k in range(passes):
-            health = watch.hear(seen[k % len(seen)], None, k)
+            health = watch.hear(Snapshot(seen[k % len(seen)], now_ns=k))
             if health.stops:
                 break
         shift = watch.shift_of(cameras[0].name)

@@ -4,27 +4,28 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from elbowroom.errors import SiteError
+from elbowroom.errors import InputError
 from elbowroom.evaluate.drift.false_alarms import false_alarm_row, furniture_row
 from elbowroom.evaluate.drift.knocks import knock_rows, not_shown_rows
 from elbowroom.evaluate.drift.pass_time import time_row
 from elbowroom.evaluate.drift.recorded import recorded_rows
 from elbowroom.evaluate.drift.scene import VISITORS, Tell, commissioned
 from elbowroom.evaluate.drift.wrong_joints import joint_rows
+from elbowroom.evaluate.examples import EXAMPLES, example
 from elbowroom.simulate.room import STAFF
 from elbowroom.site import Site
 
-RECORDED_SITE = Path(__file__).parents[4] / "examples" / "piv_table_2cam.yaml"
-"""Two real cameras; only a checkout has it."""
+RECORDED_SITE = "piv_table_2cam"
+"""The example with two real cameras."""
 
 
-def drift_rows(tell: Tell, *, passes: int = 1000, recorded: Path = RECORDED_SITE) -> Iterator[dict[str, Any]]:
+def drift_rows(tell: Tell, *, passes: int = 1000, examples: Path = EXAMPLES) -> Iterator[dict[str, Any]]:
     """All rows, told apart by their key `kind`.
 
     Args:
         tell: called with what is done next, in words.
         passes: for false alarms; each brings ten or eleven frames that are listened to.
-        recorded: site file of a real recording; where there is none, a row says so.
+        examples: the folder of site files of recordings; where the one is not there, a row says so.
     """
     for noise in ("tof", "kinect_v1"):
         tell(f"commissioning, noise {noise}")
@@ -35,7 +36,7 @@ def drift_rows(tell: Tell, *, passes: int = 1000, recorded: Path = RECORDED_SITE
         yield furniture_row(scene, tell)
         yield false_alarm_row(commissioned(noise, staff=STAFF + VISITORS), passes, tell)
     try:
-        yield from recorded_rows(Site.load(recorded), tell)
-    except SiteError as error:
+        yield from recorded_rows(Site.load(example(RECORDED_SITE, examples)), tell)
+    except InputError as error:
         yield {"kind": "recorded", "skipped": True, "note": str(error)}
     yield time_row(tell)

@@ -8,13 +8,14 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.reference import CameraReference
 from elbowroom.monitor.health.drift.watch import Watch
-from elbowroom.sensing import NOISE_PRESETS, DepthFrame
-from elbowroom.simulate import InterventionRoom, Moment, render, wall_cameras
+from elbowroom.sensing import NOISE_PRESETS, DepthFrame, Snapshot
+from elbowroom.simulate import InterventionRoom, Moment, Optics, render, wall_cameras
 from elbowroom.simulate.person import Person, Walk
 from elbowroom.simulate.room import STAFF
 
 PERIOD_S = 1 / 30
 HEIGHTS_M = (2.4, 0.4)
+RANGE = Optics(min_depth_m=0.1, max_depth_m=8.0)
 COMMISSION_FRAMES = 20
 KNOCKED_FRAMES = 60
 """2 s: by then a knock must have been named."""
@@ -60,23 +61,40 @@ class Commissioned:
 def commissioned(
     noise: str, width: int = 160, height: int = 120, count: int = 21, staff: Sequence[Person] = STAFF
 ) -> Commissioned:
-    """The simulated room with cameras at two heights in turn, commissioned over 14 s."""
-    cameras = wall_cameras(
-        count, HEIGHTS_M, width, height, noise=NOISE_PRESETS.get(noise), min_depth_m=0.1, max_depth_m=8.0
-    )
+    """The simulated room with cameras at two heights in turn, commissioned over 14 s.
+
+    Args:
+        noise: name of the sensors' noise.
+        width, height: of the images [px].
+        count: how many cameras.
+        staff: who walks.
+    """
+    cameras = wall_cameras(count, HEIGHTS_M, width, height, noise=NOISE_PRESETS.get(noise), optics=RANGE)
     room = InterventionRoom(staff=staff)
     commissioning = Commissioning(cameras, room.machine, COMMISSION_FRAMES)
     for number in range(COMMISSION_FRAMES):
         moment = room.at(200 + 0.7 * number)
-        commissioning.add(render(cameras, moment, seed=number), moment.joints)
+        commissioning.add(Snapshot.taken(render(cameras, moment, seed=number), moment.joints))
     return Commissioned(room, cameras, commissioning.references(), noise)
 
 
 def frames_of(cameras: Sequence[DepthCamera], moment: Moment, seed: int) -> list[DepthFrame]:
-    """Frames with noise of their own, other than those that were commissioned."""
+    """Frames with noise of their own, other than those that were commissioned.
+
+    Args:
+        cameras: that look.
+        moment: what is there.
+        seed: of the noise.
+    """
     return render(cameras, moment, seed=10_000 + seed)
 
 
 def joints_of(scene: Commissioned, start_s: float, count: int) -> Iterator[dict[str, float]]:
-    """Joint positions of so many moments at 30 Hz [m or rad]."""
+    """Joint positions of so many moments at 30 Hz [m or rad].
+
+    Args:
+        scene: whose machine.
+        start_s: of the room's time [s].
+        count: how many moments.
+    """
     return (scene.room.at(start_s + k * PERIOD_S).joints for k in range(count))

@@ -7,6 +7,7 @@ import numpy as np
 
 from elbowroom.evaluate.drift.scene import BEFORE, KNOCKED_FRAMES, PERIOD_S, Commissioned, Tell, frames_of
 from elbowroom.monitor.health.drift.watch import BODY
+from elbowroom.sensing import Snapshot
 
 WRONG_JOINTS: dict[str, tuple[float, ...]] = {
     "long": (0.03,),
@@ -31,7 +32,9 @@ def joint_rows(scene: Commissioned, tell: Tell) -> Iterator[dict[str, Any]]:
                 moment = scene.room.at(30.0 + k * PERIOD_S)
                 joints = dict(moment.joints)
                 joints[joint] += amount if k >= BEFORE else 0.0
-                health = watch.hear(frames_of(scene.cameras, moment, k), joints, moment.stamp_ns)
+                health = watch.hear(
+                    Snapshot.taken(frames_of(scene.cameras, moment, k), joints, moment.stamp_ns)
+                )
                 if health.stops:
                     break
             yield {

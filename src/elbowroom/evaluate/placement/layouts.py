@@ -13,6 +13,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.placement import (
     FixedRoom,
     Goal,
+    Search,
     candidates_of,
     even_cameras,
     known_sensors,
@@ -92,9 +93,8 @@ def optimise_rows(effort: Effort) -> Iterator[dict[str, Any]]:
         "the share of 21 evenly spread": verify(grid, _even(walls_m), room).valid_pct,
     }
     for what, share_pct in wanted.items():
-        done = optimise(
-            grid, room, candidates_of(site, grid, room), goal=Goal(share_pct), seconds=effort.seconds
-        )
+        search = Search(effort.seconds)
+        done = optimise(grid, room, candidates_of(site, grid, room), goal=Goal(share_pct), search=search)
         yield {
             "kind": "optimise",
             "what": what,

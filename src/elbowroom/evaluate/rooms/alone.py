@@ -7,6 +7,7 @@ import numpy as np
 
 from elbowroom.choices import Detail
 from elbowroom.evaluate.due import Due
+from elbowroom.evaluate.rooms.room import cameras_row
 from elbowroom.evaluate.rooms.scene import WELL_KNOWN, only, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
@@ -45,33 +46,16 @@ def alone_rows(
     motions = room_motions(room.machine)
     views = wall_cameras(cameras, heights_m, size=size, noise=NOISE_PRESETS["tof"])
     rng = np.random.default_rng(seed)
+    said = {"detail": detail, "seed": seed, **cameras_row(views), "heights_m": list(heights_m)}
     for pose in range(poses):
         moment = room.random_moment(rng)
-        frames = render(views, moment)
+        frames, joints = render(views, moment), moment.joints
         for edge in voxel_sizes_m:
-            space = reconstruct(
-                room_grid(edge),
-                views,
-                frames,
-                machine=room.machine,
-                joints=moment.joints,
-                detail=detail,
-                margin=WELL_KNOWN,
-            )
-            verdicts = check_motions(space, room.machine, moment.joints, motions)
-            for verdict in verdicts:
-                yield {
-                    "kind": "verdict",
-                    "pose": pose,
-                    "voxel_size_m": edge,
-                    "detail": detail,
-                    "seed": seed,
-                    "cameras": len(views),
-                    "width": views[0].width,
-                    "height": views[0].height,
-                    "heights_m": list(heights_m),
-                    **only(verdict.row(), SAID),
-                }
+            grid = room_grid(edge)
+            space = reconstruct(grid, views, frames, room.machine, joints, detail=detail, margin=WELL_KNOWN)
+            for verdict in check_motions(space, room.machine, joints, motions):
+                row = {"kind": "verdict", "pose": pose, "voxel_size_m": edge, **said}
+                yield row | only(verdict.row(), SAID)
 
 
 def alone_summary(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:

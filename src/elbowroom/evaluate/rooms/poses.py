@@ -8,6 +8,7 @@ import numpy as np
 from elbowroom.choices import Detail
 from elbowroom.evaluate.due import Due
 from elbowroom.evaluate.rooms.exact import ExactTravel
+from elbowroom.evaluate.rooms.room import cameras_row
 from elbowroom.evaluate.rooms.scene import WELL_KNOWN, Comparison, only, room_grid, room_motions, settings_of
 from elbowroom.motion import Level, check_motions
 from elbowroom.reconstruct import reconstruct
@@ -55,33 +56,17 @@ def poses_rows(
     views = hung_clear(wall_cameras(cameras, heights_m, size=size), room.at(0.0).solids, max(heights_m))
     grid = room_grid(voxel_size_m)
     rng = np.random.default_rng(seed)
+    said = {"voxel_size_m": voxel_size_m, "detail": detail, "seed": seed, **cameras_row(views)}
     for pose in range(poses):
         moment = room.random_moment(rng)
-        truth = ExactTravel(room.machine, moment.solids)
-        space = reconstruct(
-            grid,
-            views,
-            render(views, moment, noise=False),
-            machine=room.machine,
-            joints=moment.joints,
-            detail=detail,
-            margin=WELL_KNOWN,
-        )
-        verdicts = check_motions(space, room.machine, moment.joints, motions)
+        truth, joints = ExactTravel(room.machine, moment.solids), moment.joints
+        frames = render(views, moment, noise=False)
+        space = reconstruct(grid, views, frames, room.machine, joints, detail=detail, margin=WELL_KNOWN)
+        verdicts = check_motions(space, room.machine, joints, motions)
         for motion, verdict in zip(motions, verdicts, strict=True):
-            compared = Comparison(motion, verdict, truth.until_contact(moment.joints, motion)).row()
-            yield {
-                "kind": "verdict",
-                "pose": pose,
-                "voxel_size_m": voxel_size_m,
-                "detail": detail,
-                "seed": seed,
-                "cameras": len(views),
-                "width": views[0].width,
-                "height": views[0].height,
-                "heights_m": list(heights_m),
-                **only(compared, COMPARED),
-            }
+            compared = Comparison(motion, verdict, truth.until_contact(joints, motion)).row()
+            row = {"kind": "verdict", "pose": pose, **said, "heights_m": list(heights_m)}
+            yield row | only(compared, COMPARED)
 
 
 def poses_summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

@@ -1,7 +1,9 @@
 """The simulated room against its exact truth: occupied voxels kept, free voxels found."""
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,7 +68,13 @@ class Tally:
         machine: NDArray[np.bool_],
         seen: NDArray[np.bool_],
     ) -> None:
-        """One moment: declared free; truly occupied; touched by the machine; centre seen by some camera."""
+        """Counts one moment.
+
+        Args:
+            free: what is declared free.
+            occupied, machine: what a solid or the machine truly touches.
+            seen: voxels whose centre some camera sees.
+        """
         truly_free = ~occupied & ~machine
         visible = truly_free & seen
         self.occupied += int(occupied.sum())
@@ -91,6 +99,14 @@ class Tally:
         }
 
 
+class _Scene(NamedTuple):
+    """A moment of the room, its images without noise and with it."""
+
+    moment: Moment
+    plain: list[DepthFrame]
+    rough: list[DepthFrame]
+
+
 def room_rows(
     voxel_sizes_m: Sequence[float] = (0.05, 0.02),
     *,
@@ -105,6 +121,12 @@ def room_rows(
     Occupied is every voxel that a solid touches, the machine apart; found is counted without the layer that touches
     the floor, of the free voxels whose centre an exact camera sees. Footprint, pixel and point use the same frames.
 
+    Args:
+        voxel_sizes_m: edges of voxels [m].
+        details, rule: of the carve.
+        cameras, size: along the walls, and of their images.
+        moments_s: times of the room's course [s].
+
     Yields:
         Rows of voxel_size_m, detail, rule, noise, cameras, width, height, moments, occupied_pct, found_pct, free_pct
         and what they are shares of.
@@ -112,39 +134,22 @@ def room_rows(
     room = InterventionRoom()
     exact = wall_cameras(cameras, size=size)
     noisy = wall_cameras(cameras, size=size, noise=NOISE_PRESETS["tof"])
-    scenes = [(room.at(time_s), *_frames(room.at(time_s), exact, noisy)) for time_s in moments_s]
+    scenes = [_Scene(at, render(exact, at, noise=False), render(noisy, at)) for at in map(room.at, moments_s)]
     for voxel_size_m in voxel_sizes_m:
         grid = VoxelGrid.covering(ROOM_LOWER_M, ROOM_UPPER_M, voxel_size_m)
-        truths = [true_occupancy(grid, moment) for moment, _, _ in scenes]
-        seen = [reconstruct(grid, exact, frames, rule="any", detail="point").free for _, frames, _ in scenes]
-        for noise in (False, True):
-            for detail in details:
-                tally = Tally()
-                for (moment, plain, rough), truth, visible in zip(scenes, truths, seen, strict=True):
-                    space = reconstruct(
-                        grid,
-                        noisy if noise else exact,
-                        rough if noise else plain,
-                        machine=room.machine,
-                        joints=moment.joints,
-                        rule=rule,
-                        detail=detail,
-                    )
-                    tally.add(space.free, truth.occupied, truth.machine, visible)
-                yield {
-                    "voxel_size_m": voxel_size_m,
-                    "detail": detail,
-                    "rule": rule,
-                    "noise": noise,
-                    "cameras": len(exact),
-                    "width": exact[0].width,
-                    "height": exact[0].height,
-                    "moments": len(scenes),
-                    **tally.row(),
-                }
+        truths = [true_occupancy(grid, scene.moment) for scene in scenes]
+        seen = [reconstruct(grid, exact, scene.plain, rule="any", detail="point").free for scene in scenes]
+        for noise, detail in itertools.product((False, True), details):
+            tally = Tally()
+            for scene, truth, visible in zip(scenes, truths, seen, strict=True):
+                views, frames = (noisy, scene.rough) if noise else (exact, scene.plain)
+                joints = scene.moment.joints
+                space = reconstruct(grid, views, frames, room.machine, joints, rule=rule, detail=detail)
+                tally.add(space.free, truth.occupied, truth.machine, visible)
+            said = {"voxel_size_m": voxel_size_m, "detail": detail, "rule": rule, "noise": noise}
+            yield {**said, **cameras_row(exact), "moments": len(scenes), **tally.row()}
 
 
-def _frames(
-    moment: Moment, exact: Sequence[DepthCamera], noisy: Sequence[DepthCamera]
-) -> tuple[list[DepthFrame], list[DepthFrame]]:
-    return render(exact, moment, noise=False), render(noisy, moment)
+def cameras_row(cameras: Sequence[DepthCamera]) -> dict[str, int]:
+    """What rows say of cameras that are all alike: how many, and the size of their images."""
+    return {"cameras": len(cameras), "width": cameras[0].width, "height": cameras[0].height}

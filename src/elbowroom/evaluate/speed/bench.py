@@ -23,7 +23,7 @@ MOMENTS_S = (3.0, 11.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class BenchCase:
     """One process of the benchmark.
 
     Args:
@@ -56,16 +56,16 @@ DUE = (
 )
 """On two cores."""
 CASES = (
-    Case(0.05, "footprint", False, 60),
-    Case(0.02, "footprint", False, 40),
-    Case(0.05, "pixel", False, 40),
-    Case(0.02, "pixel", False, 25),
-    Case(0.02, "pixel", True, 15),
+    BenchCase(0.05, "footprint", False, 60),
+    BenchCase(0.02, "footprint", False, 40),
+    BenchCase(0.05, "pixel", False, 40),
+    BenchCase(0.02, "pixel", False, 25),
+    BenchCase(0.02, "pixel", True, 15),
 )
 
 
 def bench_rows(
-    cases: Sequence[Case] = CASES,
+    cases: Sequence[BenchCase] = CASES,
     *,
     cameras: int = 21,
     size: str = "vga",
@@ -101,7 +101,13 @@ def bench_rows(
 
 
 def save_scenes(path: Path, cameras: int, size: str, noise: bool) -> None:
-    """Renders two moments of the room and writes them for the cases' processes."""
+    """Renders two moments of the room and writes them for the cases' processes.
+
+    Args:
+        path: of the file.
+        cameras, size: along the walls, and of their images.
+        noise: whether they have any.
+    """
     from elbowroom.sensing import NOISE_PRESETS
 
     room = InterventionRoom()
@@ -117,7 +123,7 @@ def save_scenes(path: Path, cameras: int, size: str, noise: bool) -> None:
     )
 
 
-def _in_own_process(scene_file: Path, case: Case, threads: int | None) -> list[dict[str, Any]]:
+def _in_own_process(scene_file: Path, case: BenchCase, threads: int | None) -> list[dict[str, Any]]:
     given = {
         "scene_file": str(scene_file),
         "voxel_size_m": case.voxel_size_m,

@@ -6,54 +6,44 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
+from elbowroom.choices import Detail
+from elbowroom.evaluate.rooms.room import cameras_row
+from elbowroom.evaluate.speed.kernels.reference import reference
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, parallel
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
 from elbowroom.motion import joint_motions
-from elbowroom.reconstruct import carve
-from elbowroom.sensing import NOISE_PRESETS, DepthFrame
+from elbowroom.reconstruct import Terms, carve
+from elbowroom.sensing import NOISE_PRESETS, DepthFrame, NoiseModel, Snapshot
 
 SPEEDS = {"long": 0.15, "larm": np.radians(12), "propeller": np.radians(25), "carc": np.radians(25)}
 """Full speeds of the ceiling C-arm [m/s or rad/s]."""
 BRAKING_TIME_S = 0.5
 
 
-@njit(cache=True, nogil=True)
-def _reference(values: NDArray[np.float32]) -> float:
-    """A fixed piece of work, half arithmetic and half look-up, to compare computers by."""
-    total = 0.0
-    index = 1
-    for _ in range(2_000_000):
-        index = (index * 1103515245 + 12345) & 0x3FFFF
-        total += np.sqrt(values[index] + 1.0)
-    return total
-
-
-def _times(work: Callable[[int], object], rounds: int, reference: list[float]) -> list[float]:
+def _times(work: Callable[[int], object], rounds: int, beside: list[float]) -> list[float]:
     """Milliseconds of each round, each beside one of the reference kernel."""
     table = np.linspace(0, 1, 1 << 18, dtype=np.float32)
-    _reference(table)
+    reference(table)
     work(0)
     work(1)
     spent = []
     for n in range(rounds):
         start = time.perf_counter()
-        _reference(table)
+        reference(table)
         middle = time.perf_counter()
         work(n)
         spent.append((time.perf_counter() - middle) * 1e3)
-        reference.append((middle - start) * 1e3)
+        beside.append((middle - start) * 1e3)
     return spent
 
 
 def run_case(
-    scene_file: Path, voxel_size_m: float, detail: str, noise: bool, threads: int, rounds: int
+    scene_file: Path, voxel_size_m: float, detail: Detail, noise: bool, threads: int, rounds: int
 ) -> list[dict[str, Any]]:
     """Carve alone in the bare room, then whole cycles with machine and motions, then the cycle's stages.
 
@@ -64,63 +54,60 @@ def run_case(
         noise: whether cameras have a noise model, hence margins and the filter of flying pixels.
         rounds: how many times each is measured.
     """
-    with np.load(scene_file, allow_pickle=False) as scenes:
-        poses, lens, depths, joints = (scenes[name] for name in ("poses", "lens", "depths", "joints"))
-    machine = ceiling_c_arm()
-    model = NOISE_PRESETS["tof"] if noise else None
-    height, width = depths.shape[2:]
-    cameras = [
-        DepthCamera(f"cam{n:02d}", width, height, pose, Intrinsics(*lens), noise=model)
-        for n, pose in enumerate(poses)
-    ]
-    moments = [
-        [DepthFrame(camera.name, m, image) for camera, image in zip(cameras, images, strict=True)]
-        for m, images in enumerate(depths)
-    ]
-    positions = [dict(zip(machine.joint_names, row, strict=True)) for row in joints.tolist()]
+    scene = _Scene.load(scene_file, NOISE_PRESETS["tof"] if noise else None)
+    machine, moments = ceiling_c_arm(), scene.moments
+    positions = [dict(zip(machine.joint_names, row, strict=True)) for row in scene.joints]
     grid = VoxelGrid.covering((-2.0, -2.0, 0.0), (2.0, 2.0, 2.5), voxel_size_m)
     motions = joint_motions(machine, SPEEDS, BRAKING_TIME_S)
-    cycle = Cycle(grid, cameras, machine, motions, detail=detail)  # type: ignore[arg-type]
+    cycle = Cycle(grid, scene.cameras, machine, motions, Terms(detail=detail))
     stages: list[Mapping[str, float]] = []
 
     def pass_once(n: int) -> None:
         m = n % len(moments)
-        result = cycle.run(moments[m], positions[m], m)
+        result = cycle.run(Snapshot.taken(moments[m], positions[m], m))
         if result.fault is not None:
             raise RuntimeError(result.fault)
         stages.append(result.stage_ms)
 
     def carve_once(n: int) -> None:
-        carve(grid, cameras, moments[n % len(moments)], detail=detail)  # type: ignore[arg-type]
+        carve(grid, scene.cameras, moments[n % len(moments)], detail=detail)
 
-    shared = {
-        "voxel_size_m": voxel_size_m,
-        "cameras": len(cameras),
-        "width": width,
-        "height": height,
-        "detail": detail,
-        "noise": noise,
-        "threads": threads,
-        "rounds": rounds,
-    }
-    reference: list[float] = []
+    beside: list[float] = []
     with parallel.threads(threads):
-        carves = _times(carve_once, rounds, reference)
-        cycles = _times(pass_once, rounds, reference)
-    against = float(np.median(reference))
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    measured = [("carve", carves), ("cycle", cycles)]
-    measured += [(f"cycle/{name}", [stage[name] for stage in stages[2:]]) for name in stages[-1]]
+        measured = {"carve": _times(carve_once, rounds, beside), "cycle": _times(pass_once, rounds, beside)}
+    measured |= {f"cycle/{name}": [stage[name] for stage in stages[2:]] for name in stages[-1]}
+    said = {"voxel_size_m": voxel_size_m, **cameras_row(scene.cameras), "detail": detail, "noise": noise}
+    said |= {"threads": threads, "rounds": rounds}
+    peak = {"peak_rss_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}
+    against = float(np.median(beside))
     return [
-        {
-            "case": case,
-            **shared,
-            **_summary(spent),
-            "peak_rss_mb": peak,
-            "ratio": float(np.median(spent)) / against,
-        }
-        for case, spent in measured
+        {"case": case, **said, **_summary(spent), **peak, "ratio": float(np.median(spent)) / against}
+        for case, spent in measured.items()
     ]
+
+
+class _Scene(NamedTuple):
+    """Cameras, and the frames and joint positions of some moments."""
+
+    cameras: list[DepthCamera]
+    moments: list[list[DepthFrame]]
+    joints: list[list[float]]
+
+    @classmethod
+    def load(cls, path: Path, noise: NoiseModel | None) -> "_Scene":
+        """As `bench.save_scenes` wrote it."""
+        with np.load(path, allow_pickle=False) as scenes:
+            poses, lens, depths, joints = (scenes[name] for name in ("poses", "lens", "depths", "joints"))
+        height, width = depths.shape[2:]
+        cameras = [
+            DepthCamera(f"cam{n:02d}", width, height, pose, Intrinsics(*lens), noise=noise)
+            for n, pose in enumerate(poses)
+        ]
+        moments = [
+            [DepthFrame(camera.name, m, image) for camera, image in zip(cameras, images, strict=True)]
+            for m, images in enumerate(depths)
+        ]
+        return cls(cameras, moments, joints.tolist())
 
 
 def _summary(spent: Sequence[float]) -> dict[str, float]:

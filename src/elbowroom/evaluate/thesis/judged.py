@@ -67,7 +67,13 @@ def motions_of(machine: Machine) -> dict[tuple[str, int], Motion]:
 
 @cache
 def cameras_of(sensor: str, noise: bool, count: int) -> tuple[DepthCamera, ...]:
-    """Always the same objects, since images of what never moves are kept by camera."""
+    """Always the same objects, since images of what never moves are kept by camera.
+
+    Args:
+        sensor: a name of `SENSORS`.
+        noise: whether it has any.
+        count: how many.
+    """
     return sensor_cameras(sensor, noise=noise, count=count)
 
 
@@ -79,7 +85,14 @@ def seen_space(
     frames: Sequence[DepthFrame],
     variant: Variant,
 ) -> FreeSpace:
-    """Free space where the motions can go."""
+    """Free space where the motions can go.
+
+    Args:
+        machine, moment: what is there.
+        motions: of the machine.
+        views, frames: what it is seen by.
+        variant: how it is judged.
+    """
     grid = room_grid(variant.voxel_size_m)
     return reconstruct(
         grid,

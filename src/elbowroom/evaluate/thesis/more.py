@@ -63,6 +63,7 @@ def judge_counts(number: int, voxel_size_m: float) -> Outcome:
     truth = true_occupancy(grid, moment)
     exact = ExactTravel(machine, scene.solids())
     travels = [exact.until_contact(moment.joints, motion).travel for motion in motions]
+    said = {"kind": "cameras", "setup": number, **_said("640x480", voxel_size_m), "detail": "pixel"}
     rows = []
     for count in COUNTS:
         views = hung_clear(sensor_cameras("640x480", count=count), scene.solids(), max(HEIGHTS_M))
@@ -77,27 +78,19 @@ def judge_counts(number: int, voxel_size_m: float) -> Outcome:
             for verdict, travel in zip(verdicts, travels, strict=True)
             if travel > 0
         ]
-        rows.append(
-            {
-                "kind": "cameras",
-                "setup": number,
-                "sensor": "640x480",
-                "noise": False,
-                "voxel_size_m": voxel_size_m,
-                "rule": "three",
-                "detail": "pixel",
-                "cameras": count,
-                **tally.row(),
-                "travel_pct": mean(shares),
-            }
-        )
+        rows.append({**said, "cameras": count, **tally.row(), "travel_pct": mean(shares)})
     return Outcome(rows)
+
+
+def _said(sensor: str, voxel_size_m: float) -> dict[str, Any]:
+    return {"sensor": sensor, "noise": False, "voxel_size_m": voxel_size_m, "rule": "three"}
 
 
 def judge_balls(sensor: str, voxel_size_m: float) -> Outcome:
     """Balls of each size in the bare room, by the thesis' test and ours."""
     grid = room_grid(voxel_size_m)
     views = sensor_cameras(sensor)
+    said = {"kind": "balls", **_said(sensor, voxel_size_m)}
     rows: list[dict[str, Any]] = []
     for size in SIZES_M:
         balls = hung_balls(size)
@@ -113,11 +106,7 @@ def judge_balls(sensor: str, voxel_size_m: float) -> Outcome:
             ]
             rows.append(
                 {
-                    "kind": "balls",
-                    "sensor": sensor,
-                    "noise": False,
-                    "voxel_size_m": voxel_size_m,
-                    "rule": "three",
+                    **said,
                     "detail": detail,
                     "size_m": size,
                     "balls": len(balls),

@@ -1,6 +1,6 @@
 """The 35 movements of the thesis' Appendix B by several sensors, beside exact geometry and the true volume."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from elbowroom.evaluate.due import where
@@ -24,7 +24,7 @@ from elbowroom.machine import Machine
 from elbowroom.motion import Motion, check_motions
 from elbowroom.reconstruct import FreeSpace
 from elbowroom.sensing import DepthFrame
-from elbowroom.simulate import Moment, render, setup, true_occupancy
+from elbowroom.simulate import Moment, Movement, Setup, render, setup, true_occupancy
 from elbowroom.view.report.blocks import Block, Table, cm
 
 VARIANTS = (
@@ -93,42 +93,50 @@ def judge_movements(
         cameras: how many.
         voxel_sizes_m: edges of voxels [m]; None: the variants' own.
     """
-    scene, machine = setup(number), c_arm()
-    truth = ExactTravel(machine, scene.solids())
-    rows = []
-    for movement in scene.movements:
-        joints = scene.joints_before(movement)
-        moment = scene.at(machine, joints)
-        motion = motions_of(machine)[movement.joint, movement.direction]
-        contact = truth.until_contact(joints, motion)
-        images: dict[tuple[str, bool], list[DepthFrame]] = {}
-        edges = {variant.voxel_size_m for variant in _variants(sensors, voxel_sizes_m)}
-        bare = Moment(moment.time_s, scene.solids(), joints)
-        volumes = {edge: _volume_band(machine, bare, motion, edge) for edge in edges}
-        for variant in _variants(sensors, voxel_sizes_m):
-            views = cameras_of(variant.sensor, variant.noise, cameras)
-            key = (variant.sensor, variant.noise)
-            if key not in images:
-                images[key] = render(views, moment, noise=variant.noise)
-            space = seen_space(machine, moment, [motion], views, images[key], variant)
-            (verdict,) = check_motions(space, machine, joints, [motion])
-            volume = volumes[variant.voxel_size_m]
-            rows.append(
-                {
-                    "kind": "movement",
-                    "setup": number,
-                    "motion": movement.name,
-                    **variant.said(cameras),
-                    **judged(Comparison(motion, verdict, contact), variant.voxel_size_m),
-                    "truth_volume_band": volume,
-                    "verdict_by_volume": compared(verdict.band, volume),
-                    "thesis_band": movement.thesis_band,
-                    "thesis_truth_band": movement.thesis_truth,
-                    "thesis_verdict_printed": movement.thesis_verdict,
-                    "thesis_verdict": compared(movement.thesis_band, movement.thesis_truth),
-                }
-            )
-    return Outcome(rows)
+    scene = setup(number)
+    truth = ExactTravel(c_arm(), scene.solids())
+    variants = _variants(sensors, voxel_sizes_m)
+    said = {"kind": "movement", "setup": number}
+    return Outcome(
+        [
+            said | row
+            for movement in scene.movements
+            for row in _judged(scene, movement, truth, variants, cameras)
+        ]
+    )
+
+
+def _judged(
+    scene: Setup, movement: Movement, truth: ExactTravel, variants: Sequence[Variant], cameras: int
+) -> Iterator[dict[str, Any]]:
+    """One movement by all variants; each sensor's images are rendered once."""
+    machine, joints = c_arm(), scene.joints_before(movement)
+    moment = scene.at(machine, joints)
+    bare = Moment(moment.time_s, scene.solids(), joints)
+    motion = motions_of(machine)[movement.joint, movement.direction]
+    contact = truth.until_contact(joints, motion)
+    edges = {variant.voxel_size_m for variant in variants}
+    volumes = {edge: _volume_band(machine, bare, motion, edge) for edge in edges}
+    images: dict[tuple[str, bool], list[DepthFrame]] = {}
+    for variant in variants:
+        key = (variant.sensor, variant.noise)
+        views = cameras_of(*key, cameras)
+        if key not in images:
+            images[key] = render(views, moment, noise=variant.noise)
+        space = seen_space(machine, moment, [motion], views, images[key], variant)
+        (verdict,) = check_motions(space, machine, joints, [motion])
+        volume = volumes[variant.voxel_size_m]
+        yield {
+            "motion": movement.name,
+            **variant.said(cameras),
+            **judged(Comparison(motion, verdict, contact), variant.voxel_size_m),
+            "truth_volume_band": volume,
+            "verdict_by_volume": compared(verdict.band, volume),
+            "thesis_band": movement.thesis_band,
+            "thesis_truth_band": movement.thesis_truth,
+            "thesis_verdict_printed": movement.thesis_verdict,
+            "thesis_verdict": compared(movement.thesis_band, movement.thesis_truth),
+        }
 
 
 def _variants(sensors: Sequence[str], voxel_sizes_m: Sequence[float] | None) -> list[Variant]:

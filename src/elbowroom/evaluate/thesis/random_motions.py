@@ -1,12 +1,12 @@
 """Random motions in the six setups: those whose truth lies within L, and false stops among all the others."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from elbowroom.evaluate.due import Due, due_of, figure_of, where
-from elbowroom.evaluate.rooms.exact import ExactTravel
+from elbowroom.evaluate.rooms.exact import Contact, ExactTravel
 from elbowroom.evaluate.rooms.scene import Comparison
 from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.thesis.bands import counted
@@ -22,8 +22,8 @@ from elbowroom.evaluate.thesis.judged import (
     seen_space,
 )
 from elbowroom.evaluate.thesis.thesis import c_arm
-from elbowroom.motion import check_motions
-from elbowroom.simulate import render, setup
+from elbowroom.motion import Motion, check_motions
+from elbowroom.simulate import Moment, render, setup
 from elbowroom.simulate.machine_solids import random_joints
 from elbowroom.view.report.blocks import Block, Table, cm, pct
 
@@ -75,41 +75,52 @@ def judge_random(
 
     Each pose is judged without an allowance for lateral error; with `careful` from the same images with it, too.
     Rows of kind "random" are the motions within L; all other motions of the poses are counted by joint.
+
+    Args:
+        number: of the setup.
+        seed: of the poses.
+        count: of motions within L.
+        cameras: how many.
+        voxel_size_m: edge of a voxel [m].
+        careful: whether they are judged with an allowance for lateral error as well.
     """
     scene, machine = setup(number), c_arm()
     truth = ExactTravel(machine, scene.solids())
     allowances = (0.0, LATERAL_PX) if careful else (0.0,)
     variants = [Variant("640x480", voxel_size_m, "pixel", lateral_px=px) for px in allowances]
-    views = cameras_of("640x480", False, cameras)
-    motions = list(motions_of(machine).values())
     rng = np.random.default_rng([number, seed])
     rows: list[dict[str, Any]] = []
-    others: list[dict[str, Any]] = []
     left, pose = count, 0
     while left:
         joints = random_joints(machine, rng)
         if truth.gap(joints, CLEAR_M) < CLEAR_M:
             continue
-        contacts = [truth.until_contact(joints, motion) for motion in motions]
-        within = [n for n, contact in enumerate(contacts) if contact.touches][:left]
+        contacts = {m: truth.until_contact(joints, m) for m in motions_of(machine).values()}
+        within = [motion for motion, contact in contacts.items() if contact.touches][:left]
         if not within:
             continue
         left, pose = left - len(within), pose + 1
-        moment = scene.at(machine, joints)
-        frames = render(views, moment, noise=False)
-        for variant in variants:
-            space = seen_space(machine, moment, motions, views, frames, variant)
-            verdicts = check_motions(space, machine, joints, motions)
-            for n, (motion, verdict) in enumerate(zip(motions, verdicts, strict=True)):
-                row = {
-                    "kind": "random" if n in within else "other",
-                    "setup": number,
-                    "motion": f"{seed}-{pose}",
-                    **variant.said(cameras),
-                    **judged(Comparison(motion, verdict, contacts[n]), voxel_size_m),
-                }
-                (rows if n in within else others).append(row)
-    return Outcome(rows + _by_joint(rows, others))
+        said = {"setup": number, "motion": f"{seed}-{pose}"}
+        for motion, row in _compared(scene.at(machine, joints), contacts, variants, cameras):
+            rows.append({"kind": "random" if motion in within else "other", **said, **row})
+    drawn, others = ([row for row in rows if row["kind"] == kind] for kind in ("random", "other"))
+    return Outcome(drawn + _by_joint(drawn, others))
+
+
+def _compared(
+    moment: Moment, contacts: Mapping[Motion, Contact], variants: Sequence[Variant], cameras: int
+) -> Iterator[tuple[Motion, dict[str, Any]]]:
+    """All motions from one pose by each variant, and their rows."""
+    machine, motions = c_arm(), list(contacts)
+    views = cameras_of("640x480", False, cameras)
+    frames = render(views, moment, noise=False)
+    for variant in variants:
+        space = seen_space(machine, moment, motions, views, frames, variant)
+        for motion, verdict in zip(
+            motions, check_motions(space, machine, moment.joints, motions), strict=True
+        ):
+            found = Comparison(motion, verdict, contacts[motion])
+            yield motion, {**variant.said(cameras), **judged(found, variant.voxel_size_m)}
 
 
 def _by_joint(rows: Sequence[Row], others: Sequence[Row]) -> list[dict[str, Any]]:

@@ -106,7 +106,13 @@ def tasks(settings: Settings) -> list[Task]:
 
 
 def judge_pose(pose: int, voxel_sizes_m: Sequence[float], picture: bool) -> Outcome:
-    """The motions from one pose that truly end at an object, by each size of voxel and kind of sensor."""
+    """The motions from one pose that truly end at an object, by each size of voxel and kind of sensor.
+
+    Args:
+        pose: its number.
+        voxel_sizes_m: edges of voxels [m of the model].
+        picture: whether to draw what is seen.
+    """
     joints, met = model_pose(pose)
     moment = Moment(1.0, model_solids() + link_solids(model_machine(), joints), joints)
     rows = [row for edge in voxel_sizes_m for row in _judged(pose, met, moment, edge)]
@@ -131,19 +137,16 @@ def _judged(
     rows: list[dict[str, Any]] = []
     for noise, losses in SENSORS:
         space = _space(grid, moment, noise, losses, pose, focus)
-        for motion, verdict in zip(
-            motions, check_motions(space, machine, moment.joints, motions), strict=True
-        ):
+        verdicts = check_motions(space, machine, moment.joints, motions)
+        sensor = {"sensor": "kinect_v1", "noise": noise, "losses": losses, "voxel_size_m": voxel_size_m}
+        for motion, verdict in zip(motions, verdicts, strict=True):
             rows.append(
                 {
                     "kind": "travel",
                     "setup": "scale model",
                     "motion": motion.name,
                     "pose": pose,
-                    "sensor": "kinect_v1",
-                    "noise": noise,
-                    "losses": losses,
-                    "voxel_size_m": voxel_size_m,
+                    **sensor,
                     "rule": "three",
                     "detail": "pixel",
                     **_compared(met[motion], verdict, in_view[motion], voxel_size_m),
@@ -171,13 +174,24 @@ def _space(
 
 
 def noisy_frames(views: Sequence[DepthCamera], moment: Moment, seed: int) -> list[DepthFrame]:
-    """Exact images, with the noise of each camera's model and none of what else `render` does to them."""
+    """Exact images, with the noise of each camera's model and none of what else `render` does to them.
+
+    Args:
+        views: the cameras.
+        moment: what is there.
+        seed: of the noise.
+    """
     frames = render(views, moment, noise=False)
     return [with_noise(*pair, [seed, number]) for number, pair in enumerate(zip(views, frames, strict=True))]
 
 
 def with_noise(camera: DepthCamera, frame: DepthFrame, seed: Sequence[int]) -> DepthFrame:
-    """An exact image with the noise of its camera's model, if that has any."""
+    """An exact image with the noise of its camera's model, if that has any.
+
+    Args:
+        camera, frame: whose image.
+        seed: of the noise.
+    """
     depth = frame.depth_m.astype(np.float64)
     if camera.noise is not None:
         normal = np.random.default_rng(seed).standard_normal(depth.shape)

@@ -12,7 +12,7 @@ among candidates far apart, then among closer ones about the best fours.
 import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -112,11 +112,16 @@ def on_rings(
         if across_squared > 0.1:
             across = np.sqrt(across_squared)
             places.append((across * np.cos(azimuth), across * np.sin(azimuth), height))
-    near = np.concatenate([s.vertices_in_world for s in model_solids() if s.name not in LABORATORY])
-    links = [link_solids(model_machine(), model_pose(pose)[0]) for pose in range(POSES)]
-    near = np.concatenate([near, *(s.vertices_in_world for solids in links for s in solids)])
-    clear = [np.linalg.norm(near - place, axis=1).min() > CLEAR_M for place in places]
+    clear = [np.linalg.norm(_in_the_way() - place, axis=1).min() > CLEAR_M for place in places]
     return np.array(places)[clear]
+
+
+@cache
+def _in_the_way() -> NDArray[np.float64]:
+    """Corners of the model, and of the machine in all poses, shape (n, 3), world frame [m]."""
+    objects = [s.vertices_in_world for s in model_solids() if s.name not in LABORATORY]
+    links = [link_solids(model_machine(), model_pose(pose)[0]) for pose in range(POSES)]
+    return np.concatenate([*objects, *(s.vertices_in_world for solids in links for s in solids)])
 
 
 class _Search:

@@ -19,12 +19,13 @@ from elbowroom.evaluate.thesis.scale_model import (
     model_solids,
 )
 from elbowroom.evaluate.thesis.way_view import WayView
-from elbowroom.geometry import DepthCamera, VoxelGrid, bits
-from elbowroom.machine import explain_frames
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits, parallel
+from elbowroom.geometry.kernels.bits import bit_of, plain, word_of
+from elbowroom.reconstruct import Terms
 from elbowroom.reconstruct.carve import carve_images
+from elbowroom.reconstruct.explained import explain
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.terms import Terms
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, Snapshot
 from elbowroom.simulate import Moment, render
 from elbowroom.simulate.machine_solids import link_solids
 
@@ -103,26 +104,14 @@ def _evidence(
 ) -> list[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
     """Of the voxels of each way, whether a Kinect sees through them, and whether it disputes them."""
     grid, images = model_grid(VOXEL_M), room_images([camera], [frame])
-    explained = explain_frames(
-        model_machine(),
-        [camera],
-        [images.least_m[camera.name]],
-        [moment.joints],
-        tolerance_m=EXPLAIN_M,
-        grid=grid,
-        growth_m=body_growth(VOXEL_M),
-    )
+    terms = Terms(margin=WELL_KNOWN, explain_tolerance_m=EXPLAIN_M, body_growth_m=body_growth(VOXEL_M))
     at = [_words_and_bits(grid, centres) for centres in ways]
     focus = np.zeros(bits.word_count(grid), dtype=np.bool_)
     for words, _ in at:
         focus[words] = True
-    evidence = carve_images(
-        grid,
-        images,
-        explained,
-        Terms(margin=WELL_KNOWN),
-        focus=focus,
-    )
+    with parallel.threads(1):
+        explained = explain(grid, model_machine(), images, Snapshot((frame,), moment.joints), terms)
+        evidence = carve_images(grid, images, explained, terms, focus=focus)
     through, disputed = evidence.through[0], evidence.disputed | evidence.unexplained
     return [((through[words] & bit) > 0, (disputed[words] & bit) > 0) for words, bit in at]
 
@@ -131,8 +120,8 @@ def _words_and_bits(
     grid: VoxelGrid, centres: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], NDArray[np.uint64]]:
     """Where voxels lie in a plane."""
-    cells, (i, j, k) = bits.lattice(grid), grid.index_of(centres).T
-    return bits.word_of.py_func(i, j, k, cells.cubes_y, cells.cubes_z), bits.bit_of.py_func(i, j, k)
+    lattice, (i, j, k) = bits.lattice(grid), grid.index_of(centres).T
+    return plain(word_of)(i, j, k, lattice.cubes_y, lattice.cubes_z), plain(bit_of)(i, j, k)
 
 
 def _shortened(short_mm: NDArray[np.float64], seen: NDArray[np.bool_]) -> Shown:

@@ -1,1 +1,1 @@
-"""Bits of voxels, for all kernels."""
+"""What kernels of all stages share: bits of voxels, a pinhole camera, noise of depth, rigid transforms, neighbours."""

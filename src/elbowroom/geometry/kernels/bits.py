@@ -4,6 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
+from numba.cpython.unsafe.numbers import trailing_zeros
+from numba.extending import overload
 
 
 def uncounted(**options: Any) -> Any:
@@ -13,6 +15,22 @@ def uncounted(**options: Any) -> Any:
     memory (https://github.com/numba/numba/issues/2345). Whoever calls them holds the arrays.
     """
     return njit(nogil=True, _nrt=False, **options)  # type: ignore[call-overload]
+
+
+def plain(kernel: Any) -> Any:
+    """The Python function of a kernel, which need not be compiled first; with the JIT off it is one already."""
+    return getattr(kernel, "py_func", kernel)
+
+
+def lowest_bit(word: np.uint64) -> int:
+    """Which is the lowest bit of a word that is set; the word must not be 0."""
+    return (int(word) & -int(word)).bit_length() - 1
+
+
+@overload(lowest_bit, inline="always")
+def _lowest_bit(word):
+    """The same as one instruction, in compiled code."""
+    return lambda word: np.int64(trailing_zeros(word))
 
 
 class Lattice(NamedTuple):

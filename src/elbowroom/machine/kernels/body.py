@@ -6,10 +6,13 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry.kernels.bits import bit_of, word_of
+from elbowroom.geometry.kernels.bits import bit_of, uncounted, word_of
+from elbowroom.geometry.kernels.rigid import moved, turned
 
 FIXED, SLIDES, TURNS = 0, 1, 2
+"""Kinds of joints."""
 MAX_BLOCKS = 4096
+"""A cluster that may come near more corners of the grid marks its balls one by one."""
 
 
 class Tree(NamedTuple):
@@ -25,10 +28,8 @@ class Tree(NamedTuple):
 
 
 class Clusters(NamedTuple):
-    """Surface samples in clusters: cluster c is points[start[c] : stop[c]], on one link, in a sphere.
-
-    points: (n, 3) in the frame of their link [m]. link, centre, radius: of each cluster.
-    """
+    """Surface samples that lie close together on one link, (n, 3) in its frame [m]: cluster c is
+    points[start[c] : stop[c]], on link[c], within a ball of radius[c] about centre[c]."""
 
     points: np.ndarray
     start: np.ndarray
@@ -41,7 +42,7 @@ class Clusters(NamedTuple):
 @njit(cache=True, nogil=True)
 def place_links(tree, world_from_base, positions, world_from_link):
     """Forward kinematics: fills world_from_link (n, links, 4, 4) for positions (n, joints)."""
-    moved = np.empty((3, 4))
+    parent_from_link = np.empty((3, 4))
     for n in range(positions.shape[0]):
         for row in range(tree.parent.size):
             parent = tree.parent[row]
@@ -50,95 +51,109 @@ def place_links(tree, world_from_base, positions, world_from_link):
                     for j in range(4):
                         world_from_link[n, row, i, j] = world_from_base[i, j]
                 continue
-            fixed = tree.parent_from_joint[row]
+            parent_from_joint = tree.parent_from_joint[row]
             if tree.kind[row] == FIXED:
                 for i in range(3):
                     for j in range(4):
-                        moved[i, j] = fixed[i, j]
+                        parent_from_link[i, j] = parent_from_joint[i, j]
             else:
                 position = positions[n, tree.column[row]] * tree.multiplier[row] + tree.offset[row]
-                _move(fixed, tree.axis[row], position, tree.kind[row] == SLIDES, moved)
-            above = world_from_link[n, parent]
-            out = world_from_link[n, row]
-            for i in range(3):
-                for j in range(4):
-                    out[i, j] = (
-                        above[i, 0] * moved[0, j] + above[i, 1] * moved[1, j] + above[i, 2] * moved[2, j]
-                    )
-                out[i, 3] += above[i, 3]
-                out[3, i] = 0.0
-            out[3, 3] = 1.0
+                slides = tree.kind[row] == SLIDES
+                _move(parent_from_joint, tree.axis[row], position, slides, parent_from_link)
+            _chain(world_from_link[n, parent], parent_from_link, world_from_link[n, row])
 
 
 @njit(nogil=True)
-def _move(fixed, axis, position, slides, moved):
-    """moved = fixed @ (slide along or turn about the axis); Rodrigues' formula for the turn."""
+def _move(parent_from_joint, axis, position, slides, parent_from_link):
+    """A joint's frame slid along or turned about the axis; Rodrigues' formula for the turn."""
     x, y, z = axis[0], axis[1], axis[2]
     if slides:
+        way = turned(parent_from_joint, x, y, z)
         for i in range(3):
             for j in range(3):
-                moved[i, j] = fixed[i, j]
-            moved[i, 3] = fixed[i, 3] + position * (fixed[i, 0] * x + fixed[i, 1] * y + fixed[i, 2] * z)
+                parent_from_link[i, j] = parent_from_joint[i, j]
+            parent_from_link[i, 3] = parent_from_joint[i, 3] + position * way[i]
     else:
         c, s = math.cos(position), math.sin(position)
         d = 1.0 - c
         for i in range(3):
-            a, b, e = fixed[i, 0], fixed[i, 1], fixed[i, 2]
-            moved[i, 0] = a * (c + x * x * d) + b * (x * y * d + z * s) + e * (x * z * d - y * s)
-            moved[i, 1] = a * (x * y * d - z * s) + b * (c + y * y * d) + e * (y * z * d + x * s)
-            moved[i, 2] = a * (x * z * d + y * s) + b * (y * z * d - x * s) + e * (c + z * z * d)
-            moved[i, 3] = fixed[i, 3]
+            a, b, e = parent_from_joint[i, 0], parent_from_joint[i, 1], parent_from_joint[i, 2]
+            parent_from_link[i, 0] = a * (c + x * x * d) + b * (x * y * d + z * s) + e * (x * z * d - y * s)
+            parent_from_link[i, 1] = a * (x * y * d - z * s) + b * (c + y * y * d) + e * (y * z * d + x * s)
+            parent_from_link[i, 2] = a * (x * z * d + y * s) + b * (y * z * d - x * s) + e * (c + z * z * d)
+            parent_from_link[i, 3] = parent_from_joint[i, 3]
+
+
+@njit(nogil=True)
+def _chain(world_from_parent, parent_from_link, world_from_link):
+    """The product of two transforms, the second of three rows; written into the third."""
+    for i in range(3):
+        for j in range(4):
+            world_from_link[i, j] = (
+                world_from_parent[i, 0] * parent_from_link[0, j]
+                + world_from_parent[i, 1] * parent_from_link[1, j]
+                + world_from_parent[i, 2] * parent_from_link[2, j]
+            )
+        world_from_link[i, 3] += world_from_parent[i, 3]
+        world_from_link[3, i] = 0.0
+    world_from_link[3, 3] = 1.0
 
 
 @njit(cache=True, nogil=True)
-def mark_balls(samples, share, shares, world_from_link, cells, reach, words):
+def mark_balls(clusters, share, shares, world_from_links, reach, lattice, words):
     """Sets the voxels that balls about surface samples meet: those whose box lies within `reach` of a sample.
 
-    A ball of half a voxel's radius at most meets only voxels of the 2 x 2 x 2 block about the grid corner
-    nearest to its middle. A cluster notes eight bits for each such corner first, and sets the voxels at its
-    end.
-
     Args:
-        samples: `Clusters`.
+        clusters: of the samples.
         share, shares: does every shares-th cluster from share on.
-        world_from_link: (links, 4, 4).
-        cells: the voxel grid.
+        world_from_links: (links, 4, 4).
         reach: radius of the balls [m].
+        lattice: the voxel grid.
         words: the plane to set bits in.
     """
-    points, starts, stops, link, centre, radius = samples
-    scale = 1.0 / cells.edge
-    r = reach * scale
+    r = reach * (1.0 / lattice.edge)
     blocks = np.zeros(MAX_BLOCKS, dtype=np.uint8)
-    rows = np.empty((3, 4))
-    for c in range(share, starts.size, shares):
-        _voxels_from_link(world_from_link[link[c]], cells, rows)
-        x, y, z = _moved(rows, centre[c, 0], centre[c, 1], centre[c, 2])
-        around = radius[c] * scale + 1e-6
-        if not (-around - r <= x <= cells.nx + around + r and -around - r <= y <= cells.ny + around + r):
-            continue
-        if not -around - r <= z <= cells.nz + around + r:
-            continue
-        i0, i1 = math.floor(x - around - 0.5), math.floor(x + around - 0.5)
-        j0, j1 = math.floor(y - around - 0.5), math.floor(y + around - 0.5)
-        k0, k1 = math.floor(z - around - 0.5), math.floor(z + around - 0.5)
-        ny, nz = j1 - j0 + 1, k1 - k0 + 1
-        count = (i1 - i0 + 1) * ny * nz
-        if r > 0.5 or count > MAX_BLOCKS:
-            for p in range(starts[c], stops[c]):
-                x, y, z = _moved(rows, points[p, 0], points[p, 1], points[p, 2])
-                _mark_ball(x, y, z, r, cells, words)
-            continue
-        for p in range(starts[c], stops[c]):
-            x, y, z = _moved(rows, points[p, 0], points[p, 1], points[p, 2])
-            i, j, k = math.floor(x - 0.5), math.floor(y - 0.5), math.floor(z - 0.5)
-            place = ((i - i0) * ny + (j - j0)) * nz + (k - k0)
-            blocks[place] |= _block_met(x - i - 1.0, y - j - 1.0, z - k - 1.0, r * r)
-        for place in range(count):
-            if blocks[place] != 0:
-                i, j, k = i0 + place // (ny * nz), j0 + place // nz % ny, k0 + place % nz
-                _set_block(i, j, k, blocks[place], cells, words)
-                blocks[place] = 0
+    voxels_from_link = np.empty((3, 4))
+    for c in range(share, clusters.start.size, shares):
+        _scale(world_from_links[clusters.link[c]], lattice, voxels_from_link)
+        _mark_cluster(clusters, c, voxels_from_link, r, lattice, blocks, words)
+
+
+@uncounted()
+def _mark_cluster(clusters, c, voxels_from_link, r, lattice, blocks, words):
+    """Sets the voxels that the balls of one cluster meet, of radius r in voxels.
+
+    A ball of half a voxel's radius at most meets only voxels of the 2 x 2 x 2 block about the grid corner nearest to
+    its middle. The cluster notes eight bits for each such corner first, and sets the voxels at its end; `blocks`:
+    zeros, and zeros again afterwards.
+    """
+    points, centre = clusters.points, clusters.centre
+    x, y, z = moved(voxels_from_link, centre[c, 0], centre[c, 1], centre[c, 2])
+    around = clusters.radius[c] * (1.0 / lattice.edge) + 1e-6
+    if not (-around - r <= x <= lattice.nx + around + r and -around - r <= y <= lattice.ny + around + r):
+        return
+    if not -around - r <= z <= lattice.nz + around + r:
+        return
+    i0, i1 = math.floor(x - around - 0.5), math.floor(x + around - 0.5)
+    j0, j1 = math.floor(y - around - 0.5), math.floor(y + around - 0.5)
+    k0, k1 = math.floor(z - around - 0.5), math.floor(z + around - 0.5)
+    ny, nz = j1 - j0 + 1, k1 - k0 + 1
+    count = (i1 - i0 + 1) * ny * nz
+    if r > 0.5 or count > MAX_BLOCKS:
+        for p in range(clusters.start[c], clusters.stop[c]):
+            x, y, z = moved(voxels_from_link, points[p, 0], points[p, 1], points[p, 2])
+            _mark_ball(x, y, z, r, lattice, words)
+        return
+    for p in range(clusters.start[c], clusters.stop[c]):
+        x, y, z = moved(voxels_from_link, points[p, 0], points[p, 1], points[p, 2])
+        i, j, k = math.floor(x - 0.5), math.floor(y - 0.5), math.floor(z - 0.5)
+        place = ((i - i0) * ny + (j - j0)) * nz + (k - k0)
+        blocks[place] |= _block_met(x - i - 1.0, y - j - 1.0, z - k - 1.0, r * r)
+    for place in range(count):
+        if blocks[place] != 0:
+            i, j, k = i0 + place // (ny * nz), j0 + place // nz % ny, k0 + place % nz
+            _set_block(i, j, k, blocks[place], lattice, words)
+            blocks[place] = 0
 
 
 @njit(nogil=True)
@@ -163,45 +178,35 @@ def _block_met(x, y, z, square):
 
 
 @njit(nogil=True)
-def _set_block(i, j, k, block, cells, words):
+def _set_block(i, j, k, block, lattice, words):
     """Sets the voxels from (i, j, k) on whose bits stand in `block`, as far as they are in the grid."""
     for n in range(8):
         if (block >> n) & 1:
             a, b, c = i + (n >> 2), j + ((n >> 1) & 1), k + (n & 1)
-            if 0 <= a < cells.nx and 0 <= b < cells.ny and 0 <= c < cells.nz:
-                words[word_of(a, b, c, cells.cubes_y, cells.cubes_z)] |= bit_of(a, b, c)
+            if 0 <= a < lattice.nx and 0 <= b < lattice.ny and 0 <= c < lattice.nz:
+                words[word_of(a, b, c, lattice.cubes_y, lattice.cubes_z)] |= bit_of(a, b, c)
 
 
 @njit(nogil=True)
-def _voxels_from_link(world_from_link, cells, rows):
-    """The pose's three rows, in voxels from the grid's corner."""
-    scale = 1.0 / cells.edge
+def _scale(world_from_link, lattice, voxels_from_link):
+    """A link's pose in voxels from the grid's corner: three rows."""
+    scale = 1.0 / lattice.edge
     for j in range(4):
         for i in range(3):
-            rows[i, j] = world_from_link[i, j] * scale
-    rows[0, 3] -= cells.x0 * scale
-    rows[1, 3] -= cells.y0 * scale
-    rows[2, 3] -= cells.z0 * scale
+            voxels_from_link[i, j] = world_from_link[i, j] * scale
+    voxels_from_link[0, 3] -= lattice.x0 * scale
+    voxels_from_link[1, 3] -= lattice.y0 * scale
+    voxels_from_link[2, 3] -= lattice.z0 * scale
 
 
 @njit(nogil=True)
-def _moved(rows, a, b, c):
-    """A point moved by three rows of a transform."""
-    return (
-        rows[0, 0] * a + rows[0, 1] * b + rows[0, 2] * c + rows[0, 3],
-        rows[1, 0] * a + rows[1, 1] * b + rows[1, 2] * c + rows[1, 3],
-        rows[2, 0] * a + rows[2, 1] * b + rows[2, 2] * c + rows[2, 3],
-    )
-
-
-@njit(nogil=True)
-def _mark_ball(x, y, z, r, cells, words):
+def _mark_ball(x, y, z, r, lattice, words):
     """Sets the voxels that a ball about (x, y, z) meets, all in voxels from the grid's corner."""
-    if not (-r <= x < cells.nx + r and -r <= y < cells.ny + r and -r <= z < cells.nz + r):
+    if not (-r <= x < lattice.nx + r and -r <= y < lattice.ny + r and -r <= z < lattice.nz + r):
         return
-    i0, i1 = max(0, math.floor(x - r)), min(cells.nx - 1, math.floor(x + r))
-    j0, j1 = max(0, math.floor(y - r)), min(cells.ny - 1, math.floor(y + r))
-    k0, k1 = max(0, math.floor(z - r)), min(cells.nz - 1, math.floor(z + r))
+    i0, i1 = max(0, math.floor(x - r)), min(lattice.nx - 1, math.floor(x + r))
+    j0, j1 = max(0, math.floor(y - r)), min(lattice.ny - 1, math.floor(y + r))
+    k0, k1 = max(0, math.floor(z - r)), min(lattice.nz - 1, math.floor(z + r))
     for i in range(i0, i1 + 1):
         dx = max(i - x, x - i - 1.0, 0.0)
         for j in range(j0, j1 + 1):
@@ -209,19 +214,19 @@ def _mark_ball(x, y, z, r, cells, words):
             for k in range(k0, k1 + 1):
                 dz = max(k - z, z - k - 1.0, 0.0)
                 if dx * dx + dy * dy + dz * dz <= r * r:
-                    words[word_of(i, j, k, cells.cubes_y, cells.cubes_z)] |= bit_of(i, j, k)
+                    words[word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)] |= bit_of(i, j, k)
 
 
 @njit(cache=True, nogil=True)
-def mark_points(points, link, first, last, world_from_link, cells, words):
-    """Sets the voxels that hold the points first to last; `link`: the row in world_from_link of each."""
-    rows = np.empty((3, 4))
+def mark_points(points, links, first, last, world_from_links, lattice, words):
+    """Sets the voxels that hold the points first to last; `links`: the row in world_from_links of each."""
+    voxels_from_link = np.empty((3, 4))
     current = -1
     for p in range(first, last):
-        if link[p] != current:
-            current = link[p]
-            _voxels_from_link(world_from_link[current], cells, rows)
-        x, y, z = _moved(rows, points[p, 0], points[p, 1], points[p, 2])
-        if 0.0 <= x < cells.nx and 0.0 <= y < cells.ny and 0.0 <= z < cells.nz:
+        if links[p] != current:
+            current = links[p]
+            _scale(world_from_links[current], lattice, voxels_from_link)
+        x, y, z = moved(voxels_from_link, points[p, 0], points[p, 1], points[p, 2])
+        if 0.0 <= x < lattice.nx and 0.0 <= y < lattice.ny and 0.0 <= z < lattice.nz:
             i, j, k = int(x), int(y), int(z)
-            words[word_of(i, j, k, cells.cubes_y, cells.cubes_z)] |= bit_of(i, j, k)
+            words[word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)] |= bit_of(i, j, k)

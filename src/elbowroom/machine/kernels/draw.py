@@ -6,8 +6,14 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.bits import uncounted
+from elbowroom.geometry.kernels.pinhole import pixel_of, radial_over_planar
+from elbowroom.geometry.kernels.rigid import moved
+
 NEAR_M = 0.001
+"""What is nearer to the camera's plane is cut off [m]."""
 EDGE_PX = 1e-7
+"""So far beyond an edge a pixel's centre is still on it: rounding leaves no gap between neighbours [px]."""
 
 
 class View(NamedTuple):
@@ -30,15 +36,6 @@ class View(NamedTuple):
     flying: bool
 
 
-class Drawn(NamedTuple):
-    """An image of inverse planar depth [1/m], float32, 0 where nothing is, and the first and last column drawn in each
-    row; rows without: width and -1."""
-
-    inverse: np.ndarray
-    first: np.ndarray
-    last: np.ndarray
-
-
 class Mesh(NamedTuple):
     """Triangles of many links; link l has vertices vertex_start[l] to vertex_start[l + 1].
 
@@ -56,67 +53,79 @@ class Mesh(NamedTuple):
     closed: np.ndarray
 
 
+class Canvas(NamedTuple):
+    """An image that is drawn into.
+
+    Fields:
+        inverse: 1 / depth, 0 where nothing is, shape (height, width), float32 [1/m]; planar as `draw` leaves it.
+        first, last: first and last column drawn in each row, shape (height,), int64; rows without: width and -1.
+    """
+
+    inverse: np.ndarray
+    first: np.ndarray
+    last: np.ndarray
+
+
+class Corner(NamedTuple):
+    """A triangle's corner in the image: column, row [px], inverse planar depth [1/m]."""
+
+    u: float
+    v: float
+    inverse: float
+
+
+class Slopes(NamedTuple):
+    """Columns per row along a triangle's edges: from top to bottom, from top to middle, from middle to bottom."""
+
+    long: float
+    upper: float
+    lower: float
+
+
+class Plane(NamedTuple):
+    """Inverse depth over a triangle's image: its top corner, change per column and per row, least and most of it."""
+
+    top: Corner
+    along: float
+    down: float
+    least: float
+    most: float
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
-def draw(mesh, camera_from_link, view, inverse, first, last):
+def draw(mesh, camera_from_links, view, canvas):
     """Draws links into an image of inverse planar depth; what is nearer wins.
 
     Args:
         mesh: the links.
-        camera_from_link: (links, 4, 4).
+        camera_from_links: (links, 4, 4).
         view: the camera.
-        inverse: (height, width) float32, 1 / planar depth [1/m], 0 where nothing is.
-        first, last: (height,) first and last column drawn in each row; rows without: width and -1.
+        canvas: where to.
     """
     seen = np.empty((mesh.vertices.shape[0], 3))
-    corners = np.empty((3, 3))
     for l in range(mesh.radius.size):  # noqa: E741
         if mesh.face_start[l + 1] == mesh.face_start[l]:
             continue
-        pose = camera_from_link[l]
-        if not _sphere_in_view(pose, mesh.centre[l], mesh.radius[l], view):
+        camera_from_link = camera_from_links[l]
+        if not _sphere_in_view(camera_from_link, mesh.centre[l], mesh.radius[l], view):
             continue
-        backs = not (mesh.closed[l] and _is_outside(pose, mesh.centre[l], mesh.radius[l]))
+        backs = not (mesh.closed[l] and _is_outside(camera_from_link, mesh.centre[l], mesh.radius[l]))
         for p in range(mesh.vertex_start[l], mesh.vertex_start[l + 1]):
-            a, b, c = mesh.vertices[p, 0], mesh.vertices[p, 1], mesh.vertices[p, 2]
-            x = pose[0, 0] * a + pose[0, 1] * b + pose[0, 2] * c + pose[0, 3]
-            y = pose[1, 0] * a + pose[1, 1] * b + pose[1, 2] * c + pose[1, 3]
-            z = pose[2, 0] * a + pose[2, 1] * b + pose[2, 2] * c + pose[2, 3]
+            x, y, z = moved(camera_from_link, mesh.vertices[p, 0], mesh.vertices[p, 1], mesh.vertices[p, 2])
             if z >= NEAR_M:
-                seen[p, 0], seen[p, 1], seen[p, 2] = (
-                    view.fx * x / z + view.cx,
-                    view.fy * y / z + view.cy,
-                    1.0 / z,
-                )
+                u, v = pixel_of(view, x, y, z)
+                seen[p, 0], seen[p, 1], seen[p, 2] = u, v, 1.0 / z
             else:
                 # behind the near plane: kept as it is, for clipping; told apart by the sign
                 seen[p, 0], seen[p, 1], seen[p, 2] = x, y, min(z - NEAR_M, -1e-12)
         for f in range(mesh.face_start[l], mesh.face_start[l + 1]):
-            a, b, c = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
-            behind = (seen[a, 2] < 0.0) + (seen[b, 2] < 0.0) + (seen[c, 2] < 0.0)
-            if behind == 0:
-                area = (seen[b, 0] - seen[a, 0]) * (seen[c, 1] - seen[a, 1])
-                area -= (seen[c, 0] - seen[a, 0]) * (seen[b, 1] - seen[a, 1])
-                if area > 0.0 and not backs:
-                    continue
-                one, two = (seen[a, 0], seen[a, 1], seen[a, 2]), (seen[b, 0], seen[b, 1], seen[b, 2])
-                _fill(one, two, (seen[c, 0], seen[c, 1], seen[c, 2]), view, inverse, first, last)
-            elif behind < 3:
-                # one number at a time, here and below: assigning rows takes the compiler seconds longer
-                for axis in range(3):
-                    corners[0, axis] = seen[a, axis]
-                    corners[1, axis] = seen[b, axis]
-                    corners[2, axis] = seen[c, axis]
-                _clip_and_fill(corners, view, inverse, first, last)
+            _draw_face(seen, (mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]), backs, view, canvas)
 
 
 @njit(nogil=True, error_model="numpy")
 def _sphere_in_view(camera_from_link, centre, radius, view):
     """Whether a sphere may meet the image: not beyond the near plane or a side of the view."""
-    pose = camera_from_link
-    a, b, c = centre[0], centre[1], centre[2]
-    x = pose[0, 0] * a + pose[0, 1] * b + pose[0, 2] * c + pose[0, 3]
-    y = pose[1, 0] * a + pose[1, 1] * b + pose[1, 2] * c + pose[1, 3]
-    z = pose[2, 0] * a + pose[2, 1] * b + pose[2, 2] * c + pose[2, 3]
+    x, y, z = moved(camera_from_link, centre[0], centre[1], centre[2])
     if z + radius < NEAR_M:
         return False
     left, right = view.cx + 0.5, view.width - 0.5 - view.cx
@@ -132,31 +141,59 @@ def _sphere_in_view(camera_from_link, centre, radius, view):
 @njit(nogil=True, error_model="numpy")
 def _is_outside(camera_from_link, centre, radius):
     """Whether the camera is outside a sphere, and the near plane too."""
-    pose = camera_from_link
-    square = 0.0
-    for i in range(3):
-        along = pose[i, 0] * centre[0] + pose[i, 1] * centre[1] + pose[i, 2] * centre[2] + pose[i, 3]
-        square += along * along
-    return square > (radius + 2 * NEAR_M) ** 2
+    x, y, z = moved(camera_from_link, centre[0], centre[1], centre[2])
+    return x * x + y * y + z * z > (radius + 2 * NEAR_M) ** 2
 
 
 @njit(nogil=True, error_model="numpy")
-def _clip_and_fill(corners, view, inverse, first, last):
+def _draw_face(seen, face, backs, view, canvas):
+    """Draws one triangle, if its front or `backs` show.
+
+    Args:
+        seen: of all vertices column, row and inverse depth, or where they are if the third is below zero.
+        face: its three vertices.
+        backs: whether the backs of faces may be seen.
+        view, canvas: as of `draw`.
+    """
+    a, b, c = face
+    behind = (seen[a, 2] < 0.0) + (seen[b, 2] < 0.0) + (seen[c, 2] < 0.0)
+    if behind == 0:
+        area = (seen[b, 0] - seen[a, 0]) * (seen[c, 1] - seen[a, 1])
+        area -= (seen[c, 0] - seen[a, 0]) * (seen[b, 1] - seen[a, 1])
+        if area > 0.0 and not backs:
+            return
+        _fill(_corner(seen, a), _corner(seen, b), _corner(seen, c), view, canvas)
+    elif behind < 3:
+        _clip_and_fill(seen, face, view, canvas)
+
+
+@njit(inline="always")
+def _corner(rows, n):
+    """One row of an array as a corner."""
+    return Corner(rows[n, 0], rows[n, 1], rows[n, 2])
+
+
+@njit(nogil=True, error_model="numpy")
+def _clip_and_fill(seen, face, view, canvas):
     """Cuts a triangle at the near plane and draws the one or two triangles that are left."""
     points = np.empty((3, 3))
+    # one number at a time, here and below: assigning rows takes the compiler seconds longer
     for p in range(3):
-        if corners[p, 2] < 0.0:
-            points[p, 0], points[p, 1], points[p, 2] = corners[p, 0], corners[p, 1], corners[p, 2] + NEAR_M
+        u, v, w = seen[face[p], 0], seen[face[p], 1], seen[face[p], 2]
+        if w < 0.0:
+            points[p, 0], points[p, 1], points[p, 2] = u, v, w + NEAR_M
         else:
-            z = 1.0 / corners[p, 2]
-            points[p, 0] = (corners[p, 0] - view.cx) * z / view.fx
-            points[p, 1] = (corners[p, 1] - view.cy) * z / view.fy
-            points[p, 2] = z
+            z = 1.0 / w
+            points[p, 0], points[p, 1], points[p, 2] = (
+                (u - view.cx) * z / view.fx,
+                (v - view.cy) * z / view.fy,
+                z,
+            )
     kept = np.empty((4, 3))
     n = 0
     for p in range(3):
         q = (p + 1) % 3
-        inside, next_inside = corners[p, 2] > 0.0, corners[q, 2] > 0.0
+        inside, next_inside = seen[face[p], 2] > 0.0, seen[face[q], 2] > 0.0
         if inside:
             for axis in range(3):
                 kept[n, axis] = points[p, axis]
@@ -168,78 +205,91 @@ def _clip_and_fill(corners, view, inverse, first, last):
             kept[n, 2] = NEAR_M
             n += 1
     for p in range(n):
-        z = kept[p, 2]
-        kept[p, 0], kept[p, 1] = view.fx * kept[p, 0] / z + view.cx, view.fy * kept[p, 1] / z + view.cy
-        kept[p, 2] = 1.0 / z
+        u, v = pixel_of(view, kept[p, 0], kept[p, 1], kept[p, 2])
+        kept[p, 0], kept[p, 1], kept[p, 2] = u, v, 1.0 / kept[p, 2]
     for p in range(1, n - 1):
-        one, two = (kept[0, 0], kept[0, 1], kept[0, 2]), (kept[p, 0], kept[p, 1], kept[p, 2])
-        _fill(one, two, (kept[p + 1, 0], kept[p + 1, 1], kept[p + 1, 2]), view, inverse, first, last)
+        _fill(_corner(kept, 0), _corner(kept, p), _corner(kept, p + 1), view, canvas)
 
 
-@njit(nogil=True, error_model="numpy")
-def _fill(one, two, three, view, inverse, first, last):
-    """Draws a triangle given by its corners, each as column, row and inverse depth.
+@uncounted(error_model="numpy")
+def _fill(a, b, c, view, canvas):
+    """Draws a triangle given by its corners.
 
     Inverse depth is linear over the image. Rows are cut by the triangle's edges, each always taken from its
     upper end, so that neighbours meet without gaps.
     """
-    ua, va, ia = one
-    ub, vb, ib = two
-    uc, vc, ic = three
     # corners from the top down
-    if vb < va:
-        ua, va, ia, ub, vb, ib = ub, vb, ib, ua, va, ia
-    if vc < va:
-        ua, va, ia, uc, vc, ic = uc, vc, ic, ua, va, ia
-    if vc < vb:
-        ub, vb, ib, uc, vc, ic = uc, vc, ic, ub, vb, ib
-    if not (va <= view.height - 1 + EDGE_PX and vc >= -EDGE_PX):
+    if b.v < a.v:
+        a, b = b, a
+    if c.v < a.v:
+        a, c = c, a
+    if c.v < b.v:
+        b, c = c, b
+    left, right = min(a.u, b.u, c.u), max(a.u, b.u, c.u)
+    if not (a.v <= view.height - 1 + EDGE_PX and c.v >= -EDGE_PX):
         return
-    left, right = min(ua, ub, uc), max(ua, ub, uc)
     if not (left <= view.width - 1 + EDGE_PX and right >= -EDGE_PX):
         return
-    top, bottom = math.ceil(max(va - EDGE_PX, 0.0)), math.floor(min(vc + EDGE_PX, view.height - 1.0))
+    top, bottom = math.ceil(max(a.v - EDGE_PX, 0.0)), math.floor(min(c.v + EDGE_PX, view.height - 1.0))
     left, right = max(left - EDGE_PX, 0.0), min(right + EDGE_PX, view.width - 1.0)
     if top > bottom or math.ceil(left) > math.floor(right):
         return
-    area = (ub - ua) * (vc - va) - (uc - ua) * (vb - va)
+    area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v)
     if abs(area) < 1e-12:
         return
-    along = ((ib - ia) * (vc - va) - (ic - ia) * (vb - va)) / area
-    down = ((ic - ia) * (ub - ua) - (ib - ia) * (uc - ua)) / area
-    least, most = min(ia, ib, ic), max(ia, ib, ic)
-    long_slope = (uc - ua) / (vc - va)
-    upper_slope = (ub - ua) / (vb - va) if vb > va else 0.0
-    lower_slope = (uc - ub) / (vc - vb) if vc > vb else 0.0
+    plane = Plane(
+        a,
+        ((b.inverse - a.inverse) * (c.v - a.v) - (c.inverse - a.inverse) * (b.v - a.v)) / area,
+        ((c.inverse - a.inverse) * (b.u - a.u) - (b.inverse - a.inverse) * (c.u - a.u)) / area,
+        min(a.inverse, b.inverse, c.inverse),
+        max(a.inverse, b.inverse, c.inverse),
+    )
+    slopes = Slopes(
+        (c.u - a.u) / (c.v - a.v),
+        (b.u - a.u) / (b.v - a.v) if b.v > a.v else 0.0,
+        (c.u - b.u) / (c.v - b.v) if c.v > b.v else 0.0,
+    )
     for row in range(top, bottom + 1):
-        v = min(max(float(row), va), vc)
-        on_long = ua + (v - va) * long_slope
-        if v < vb:
-            on_short = ua + (v - va) * upper_slope
-        elif v > vb or vc > vb:
-            on_short = ub + (v - vb) * lower_slope
-        else:
-            on_short = ub
-        x0 = math.ceil(max(min(on_long, on_short) - EDGE_PX, left))
-        x1 = math.floor(min(max(on_long, on_short) + EDGE_PX, right))
-        if x0 > x1:
-            continue
-        first[row], last[row] = min(first[row], x0), max(last[row], x1)
-        start = ia + down * (row - va) - along * ua
-        line = inverse[row]
-        # unsigned indices and small numbers, or the compiler does one pixel at a time
-        for n in range(x0, x1 + 1):
-            x = np.uint64(n)
-            value = np.float32(min(max(start + along * np.float64(np.int32(n)), least), most))
-            line[x] = max(line[x], value)
+        one, two = _crossings(a, b, c, slopes, row)
+        x0 = math.ceil(max(min(one, two) - EDGE_PX, left))
+        x1 = math.floor(min(max(one, two) + EDGE_PX, right))
+        if x0 <= x1:
+            _fill_run(plane, row, x0, x1, canvas)
+
+
+@njit(inline="always")
+def _crossings(a, b, c, slopes, row):
+    """The columns at which a row crosses the long edge of a triangle and one of the others, corners from the top."""
+    v = min(max(float(row), a.v), c.v)
+    one = a.u + (v - a.v) * slopes.long
+    if v < b.v:
+        two = a.u + (v - a.v) * slopes.upper
+    elif v > b.v or c.v > b.v:
+        two = b.u + (v - b.v) * slopes.lower
+    else:
+        two = b.u
+    return one, two
+
+
+@njit(inline="always")
+def _fill_run(plane, row, x0, x1, canvas):
+    """Draws the pixels from column x0 to x1 of a row."""
+    canvas.first[row], canvas.last[row] = min(canvas.first[row], x0), max(canvas.last[row], x1)
+    start = plane.top.inverse + plane.down * (row - plane.top.v) - plane.along * plane.top.u
+    line = canvas.inverse[row]
+    # unsigned indices and small numbers, or the compiler does one pixel at a time
+    for n in range(x0, x1 + 1):
+        x = np.uint64(n)
+        value = np.float32(min(max(start + plane.along * np.float64(np.int32(n)), plane.least), plane.most))
+        line[x] = max(line[x], value)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def to_kind(view, inverse, first, last):
+def to_kind(view, canvas):
     """Turns inverse planar depth into inverse depth of the camera's kind, where something was drawn."""
     if view.radial:
         for v in range(view.height):
             y = (v - view.cy) / view.fy
-            for u in range(first[v], last[v] + 1):
+            for u in range(canvas.first[v], canvas.last[v] + 1):
                 x = (u - view.cx) / view.fx
-                inverse[v, u] /= math.sqrt(1.0 + x * x + y * y)
+                canvas.inverse[v, u] /= radial_over_planar(x, y)

@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.neighbours import is_about
+from elbowroom.geometry.kernels.noise import sigma
 from elbowroom.machine.kernels.returns import (
     MOST_M,
     UNSAFE,
@@ -13,74 +15,84 @@ from elbowroom.machine.kernels.returns import (
     is_return,
     mark_row_of_tiles,
     set_run,
+    spread_of,
 )
 
 
 class Tolerance(NamedTuple):
-    """A depth d fits if it lies within `metres` + `sigmas` * sigma(d) of what is drawn."""
+    """How far a measured depth d may be from the model and still be the machine's: metres + sigmas * sigma(d)."""
 
     metres: float
     sigmas: float
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def explain(view, depth, drawn, tolerance, model, around):
-    """Fills `model` where a measured depth fits what was drawn in the 3 x 3 pixels about it; wipes what was drawn.
+def explain(view, depth, canvas, tolerance, model, around):
+    """Fills `model` where a measured depth fits what was drawn in the 3 x 3 pixels about it; wipes the canvas' image.
 
     Sets the voxels of the returns that do not fit, too.
 
     Args:
         view: the camera.
         depth: (height, width) float32, measured [m, the camera's kind].
-        drawn: `Drawn`, from `draw` and `to_kind`: inverse depth of the camera's kind; zeros afterwards.
-        tolerance: `Tolerance`.
+        canvas: from `draw` and `to_kind`; its image is zeros afterwards.
+        tolerance: how near is near enough.
         model: (height, width) float32 zeros; where a pixel fits, the depth drawn in it, or else nearest about it
             [m, same kind]. Of a camera whose pixels fly, also what `_settle_edges` says.
         around: where to look for other returns, and the plane for their voxels; without tiles: nowhere.
     """
-    inverse, first, last = drawn
     height, width = view.height, view.width
-    left, right = width, -1
-    for v in range(height):
-        left, right = min(left, first[v]), max(right, last[v])
-    left, right = max(0, left - 1), min(width - 1, right + 1)
+    left, right = _columns_about(canvas, 0, height)
     # for each of three rows: greatest and least inverse depth of a pixel and its neighbours
     across = np.zeros((8, width + 2), dtype=np.float32)
     # above the first row is nothing
     across[3:6] = np.inf
-    limits = np.empty((2, width), dtype=np.float32)
-    found = np.zeros((width + 7) // 8 * 8, dtype=np.uint8)
-    spans, boxes = np.empty((3, width), dtype=np.float32), np.empty((6, width), dtype=np.int32)
-    scratch = Scratch(limits, found, spans, boxes)
     for v in range(-1, height):
-        _across(inverse, v + 1, first, last, left, right, across, (v + 1) % 3)
+        _across(canvas, v + 1, left, right, across)
         if v < 0:
             continue
-        start, stop = width, -1
-        for row in range(max(0, v - 1), min(height, v + 2)):
-            start, stop = min(start, first[row]), max(stop, last[row])
-        if stop >= 0:
-            start, stop = max(0, start - 1), min(width - 1, stop + 1)
-            _compare(view, depth[v], inverse[v], across, (start, stop), tolerance, model[v])
+        start, stop = _columns_about(canvas, v - 1, v + 2)
+        if start <= stop:
+            _compare(view, depth[v], canvas.inverse[v], across, start, stop, tolerance, model[v])
     if view.flying:
-        _settle_edges(view, depth, first, last, model)
+        _settle_edges(view, depth, canvas, model)
+    scratch = Scratch(
+        np.empty((2, width), dtype=np.float32),
+        np.zeros((width + 7) // 8 * 8, dtype=np.uint8),
+        np.empty((3, width), dtype=np.float32),
+        np.empty((6, width), dtype=np.int32),
+    )
     for row in range(around.near.shape[0]):
         mark_row_of_tiles(view, depth, model, row, around, scratch)
     for v in range(height):
-        set_run(inverse[v], first[v], last[v] + 1, np.float32(0.0))
+        set_run(canvas.inverse[v], canvas.first[v], canvas.last[v] + 1, np.float32(0.0))
+
+
+@njit(nogil=True)
+def _columns_about(canvas, above, below):
+    """First and last column drawn in the rows from `above` up to `below`, or beside one; if none is, 0 and -1."""
+    first, last, width = canvas.first, canvas.last, canvas.inverse.shape[1]
+    start, stop = width, -1
+    for row in range(max(0, above), min(first.size, below)):
+        start, stop = min(start, first[row]), max(stop, last[row])
+    if stop < 0:
+        return 0, -1
+    return max(0, start - 1), min(width - 1, stop + 1)
 
 
 @njit(nogil=True, error_model="numpy")
-def _across(inverse, v, first, last, left, right, across, row):
-    """Greatest (row) and least (row + 3) inverse depth of each pixel of image row v and its two neighbours.
+def _across(canvas, v, left, right, across):
+    """Greatest and least inverse depth of each pixel of image row v and its two neighbours.
 
-    Zero and infinity where there is none. Column u of the image is column u + 1 of `across`.
+    They go into row v % 3 of `across` and the third after it: zero and infinity where there is none. Column u of the
+    image is column u + 1 of `across`. Rows 6 and 7 are scratch.
     """
-    most, least = across[row], across[row + 3]
+    most, least = across[v % 3], across[v % 3 + 3]
     set_run(most, left, right + 3, np.float32(0.0))
     set_run(least, left, right + 3, np.float32(np.inf))
-    if v < inverse.shape[0] and last[v] >= 0:
-        _of_neighbours(inverse[v], first[v], last[v], across[6], across[7], most, least)
+    if v < canvas.inverse.shape[0] and canvas.last[v] >= 0:
+        first, last = canvas.first[v], canvas.last[v]
+        _of_neighbours(canvas.inverse[v], first, last, across[6], across[7], most, least)
 
 
 @njit(nogil=True, error_model="numpy")
@@ -104,13 +116,10 @@ def _of_neighbours(drawn, first, last, padded, filled, most, least):
 
 
 @njit(nogil=True, error_model="numpy")
-def _compare(view, depth, drawn, across, span, tolerance, model):
-    """Fills a span of one row of the model where depth fits; without branches, for many pixels at once."""
-    start, stop = span
-    metres, sigmas = tolerance
+def _compare(view, depth, drawn, across, start, stop, tolerance, model):
+    """Fills one row of the model where depth fits; without branches, for many pixels at once."""
     one, zero = np.float32(1.0), np.float32(0.0)
-    fixed, factor = np.float32(metres + sigmas * view.constant), np.float32(sigmas * view.linear)
-    square, offset = np.float32(sigmas * view.quadratic), np.float32(view.offset)
+    spread = spread_of(view, tolerance.sigmas, tolerance.metres)
     low, high = np.float32(view.min_depth), np.float32(min(view.max_depth, MOST_M))
     flying = view.flying
     # unsigned indices, or the compiler does one pixel at a time
@@ -120,8 +129,7 @@ def _compare(view, depth, drawn, across, span, tolerance, model):
         nearest = max(across[0, after], max(across[1, after], across[2, after]))
         farthest = min(across[3, after], min(across[4, after], across[5, after]))
         d = depth[u]
-        beyond = max(d - offset, zero)
-        slack = fixed + factor * d + square * beyond * beyond
+        slack = sigma(spread, d)
         valid = (d > zero) & (d >= low) & (d <= high)
         fits = valid & (nearest > zero) & ((d + slack) * nearest >= one) & ((d - slack) * farthest <= one)
         # behind the model's nearest surface and beside it: perhaps a mixed pixel of its edge (`_settle_edges`)
@@ -132,7 +140,7 @@ def _compare(view, depth, drawn, across, span, tolerance, model):
 
 
 @njit(nogil=True, error_model="numpy")
-def _settle_edges(view, depth, first, last, model):
+def _settle_edges(view, depth, canvas, model):
     """Pixels that the model is about without fitting, below zero on entry by the depth that the model frees.
 
     Those that see past the machine's edge and stand alone are mixed pixels of the edge: explained, infinity. Others
@@ -141,10 +149,8 @@ def _settle_edges(view, depth, first, last, model):
     """
     for turn in range(3):
         for v in range(view.height):
-            start, stop = view.width, -1
-            for row in range(max(0, v - 1), min(view.height, v + 2)):
-                start, stop = min(start, first[row]), max(stop, last[row])
-            for u in range(max(0, start - 1), min(view.width - 1, stop + 1) + 1 if stop >= 0 else 0):
+            start, stop = _columns_about(canvas, v - 1, v + 2)
+            for u in range(start, stop + 1):
                 if model[v, u] >= 0.0:
                     continue
                 if turn == 0:
@@ -163,23 +169,24 @@ def _settle_edges(view, depth, first, last, model):
 @njit(nogil=True, error_model="numpy")
 def _is_speck(view, depth, model, u, v):
     """Whether all neighbours of a pixel, or of it and one beside it, are explained or see past the model in it."""
-    least = -model[v, u]
-    for dv in range(-1, 2):
-        for du in range(-1, 2):
-            ov, ou = v + dv, u + du
-            if not (0 < v < view.height - 1 and 0 < u < view.width - 1):
-                return False
-            if not (0 < ov < view.height - 1 and 0 < ou < view.width - 1):
-                continue
-            clear = True
-            for nv in range(min(v, ov) - 1, max(v, ov) + 2):
-                for nu in range(min(u, ou) - 1, max(u, ou) + 2):
-                    near_one = abs(nv - v) <= 1 and abs(nu - u) <= 1
-                    near_other = abs(nv - ov) <= 1 and abs(nu - ou) <= 1
-                    own = (nv == v and nu == u) or (nv == ov and nu == ou)
-                    if (near_one or near_other) and not own:
-                        d = depth[nv, nu]
-                        clear &= model[nv, nu] > 0.0 or (is_return(view, d) and d > least)
-            if clear:
+    if not (0 < v < view.height - 1 and 0 < u < view.width - 1):
+        return False
+    for ov in range(v - 1, v + 2):
+        for ou in range(u - 1, u + 2):
+            inside = 0 < ov < view.height - 1 and 0 < ou < view.width - 1
+            if inside and _sees_past_all_about(view, depth, model, u, v, ou, ov):
                 return True
     return False
+
+
+@njit(nogil=True, error_model="numpy")
+def _sees_past_all_about(view, depth, model, u, v, ou, ov):
+    """Whether all that is about a pixel (u, v) and the one beside it or itself, (ou, ov), is explained or farther."""
+    least = -model[v, u]
+    for nv in range(min(v, ov) - 1, max(v, ov) + 2):
+        for nu in range(min(u, ou) - 1, max(u, ou) + 2):
+            if is_about((nv, nu), (v, u), (ov, ou)):
+                d = depth[nv, nu]
+                if not (model[nv, nu] > 0.0 or (is_return(view, d) and d > least)):
+                    return False
+    return True

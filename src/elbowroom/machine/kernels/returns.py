@@ -7,10 +7,14 @@ import numpy as np
 from numba import njit
 
 from elbowroom.geometry.kernels.bits import Lattice, bit_of, uncounted, word_of
+from elbowroom.geometry.kernels.noise import sigma
+from elbowroom.geometry.kernels.rigid import moved, turned
 from elbowroom.machine.kernels.draw import NEAR_M
 
 MOST_M = 1e6
+"""What claims to be farther is no return [m]."""
 TILE = 16
+"""Pixels along the edge of a tile."""
 UNSAFE = np.float32(-1e-6)
 """In place of a depth where the model is about a pixel, but what is about it is not all explained or farther [m]."""
 FLOAT_ERROR = np.float32(2e-6)
@@ -28,13 +32,20 @@ class Around(NamedTuple):
     far: np.ndarray
     sigmas: float
     world_from_camera: np.ndarray
-    cells: Lattice
+    lattice: Lattice
     words: np.ndarray
 
 
 class Scratch(NamedTuple):
-    """Rows of memory for one image: least and greatest depth per pixel; pixels found; spans and boxes of
-    `_bound_returns`."""
+    """What is noted of the pixels of one row of tiles, or of one row of them, by column of the image.
+
+    Fields:
+        limits: least and greatest depth that is looked for, shape (2, width), float32 [m].
+        found: whether a return is to be looked at, uint8, in whole words of eight pixels.
+        spans: planar depth from and to [m], half a pixel there [voxels], shape (3, width), float32.
+        boxes: first and last i, j and k of the voxels that a return may lie in, shape (6, width), int32; none if the
+            last comes before the first.
+    """
 
     limits: np.ndarray
     found: np.ndarray
@@ -42,17 +53,30 @@ class Scratch(NamedTuple):
     boxes: np.ndarray
 
 
+class Spread(NamedTuple):
+    """A number of sigmas, and something beside them, by depth: float32, for `sigma` of float32 depths."""
+
+    constant: float
+    linear: float
+    quadratic: float
+    offset: float
+
+
+@njit(inline="always")
+def spread_of(view, sigmas, beside):
+    """So many sigmas of a view's noise and so much beside them [m]."""
+    return Spread(
+        np.float32(beside + sigmas * view.constant),
+        np.float32(sigmas * view.linear),
+        np.float32(sigmas * view.quadratic),
+        np.float32(view.offset),
+    )
+
+
 @njit(nogil=True, error_model="numpy")
 def is_return(view, d):
     """Whether a depth was measured at all."""
     return d > 0.0 and d >= view.min_depth and d <= view.max_depth and d <= MOST_M
-
-
-@njit(nogil=True, error_model="numpy")
-def sigma(view, d):
-    """Standard deviation at a measured depth (geometry.noise)."""
-    beyond = max(d - view.offset, 0.0)
-    return view.constant + view.linear * d + view.quadratic * beyond * beyond
 
 
 @njit(nogil=True, error_model="numpy")
@@ -82,21 +106,20 @@ def has_support(view, depth, model, u, v):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def mark_tiles(balls, link, radius, camera_from_link, view, near, far):
+def mark_tiles(balls, camera_from_links, view, near, far):
     """Per tile of 16 x 16 pixels, the least and greatest depth of the balls that may be seen in it.
 
     Args:
-        balls: (n, 3) middles, in the frame of their `link`; `radius`: (n,) [m].
-        camera_from_link: (links, 4, 4).
+        balls: link, centre and radius of each (`kernels.body.Clusters`).
+        camera_from_links: (links, 4, 4).
         view: the camera.
         near, far: (rows, columns) of tiles, infinity and 0 before [m, the camera's kind].
     """
-    for n in range(link.size):
-        pose, r = camera_from_link[link[n]], radius[n]
-        a, b, c = balls[n, 0], balls[n, 1], balls[n, 2]
-        x = pose[0, 0] * a + pose[0, 1] * b + pose[0, 2] * c + pose[0, 3]
-        y = pose[1, 0] * a + pose[1, 1] * b + pose[1, 2] * c + pose[1, 3]
-        z = pose[2, 0] * a + pose[2, 1] * b + pose[2, 2] * c + pose[2, 3]
+    for n in range(balls.link.size):
+        r = balls.radius[n]
+        x, y, z = moved(
+            camera_from_links[balls.link[n]], balls.centre[n, 0], balls.centre[n, 1], balls.centre[n, 2]
+        )
         if z + r <= 0.0:
             continue
         away = math.sqrt(x * x + y * y + z * z) if view.radial else z
@@ -122,46 +145,32 @@ def mark_row_of_tiles(view, depth, model, row, around, scratch):
     moved along the ray by up to `around.sigmas` * sigma. A return that stands alone is passed over: it may
     fly, or have slipped between two links.
     """
-    # taken out of the tuples once: each look into them counts references, which costs more than the arithmetic below
-    limits, found, spans, boxes = scratch
-    width, least, most = view.width, limits[0], limits[1]
-    ray, cells, words = (around.sigmas, around.world_from_camera), around.cells, around.words
-    left, right = width, 0
-    for column in range(around.near.shape[1]):
-        start, stop = column * TILE, min(column * TILE + TILE, width)
-        set_run(least, start, stop, np.float32(max(around.near[row, column], view.min_depth)))
-        set_run(most, start, stop, np.float32(min(around.far[row, column], view.max_depth)))
-        if around.far[row, column] > 0.0:
-            left, right = min(left, start), stop
+    left, right = _limit(view, row, around, scratch.limits)
     if left >= right:
         return
-    eight = found.view(np.uint64)
     for v in range(row * TILE, min(row * TILE + TILE, view.height)):
-        _find(depth[v], model[v], least, most, left, right, found)
-        # tiles start at whole words of eight pixels; the last pixel whose box was seen to be set: neighbours mostly
-        # have the same box
-        done, known = left, np.int64(-1)
-        for n in range(left // 8, (right + 7) // 8):
-            if eight[n] == 0:
-                continue
-            if 8 * n >= done:
-                done = 8 * n
-                while done < right and eight[done // 8] != 0:
-                    done = min(done + 8, right)
-                _bound_returns(view, v, depth[v], (8 * n, done), ray, cells, spans, boxes)
-            for u in range(8 * n, min(8 * n + 8, right)):
-                if found[u] == 0 or (known >= 0 and _same_box(boxes, u, known)):
-                    continue
-                # the voxels first: most are set already
-                if _all_set(boxes, u, cells.cubes_y, cells.cubes_z, words):
-                    known = u
-                elif has_support(view, depth, model, u, v):
-                    _mark_return(view, u, v, depth[v, u], ray, cells, words)
+        _find(depth[v], model[v], scratch.limits, left, right, scratch.found)
+        _mark_row(view, depth, model, v, left, right, around, scratch)
 
 
 @njit(nogil=True, error_model="numpy")
-def _find(depth, model, least, most, left, right, found):
+def _limit(view, row, around, limits):
+    """Writes the depths that are looked for in the pixels of a row of tiles; first and one past the last column."""
+    near, far, width, least, most = around.near, around.far, view.width, limits[0], limits[1]
+    left, right = width, 0
+    for column in range(near.shape[1]):
+        start, stop = column * TILE, min(column * TILE + TILE, width)
+        set_run(least, start, stop, np.float32(max(near[row, column], view.min_depth)))
+        set_run(most, start, stop, np.float32(min(far[row, column], view.max_depth)))
+        if far[row, column] > 0.0:
+            left, right = min(left, start), stop
+    return left, right
+
+
+@njit(nogil=True, error_model="numpy")
+def _find(depth, model, limits, left, right, found):
     """Notes the pixels of a row that are not explained and whose depth lies within their limits."""
+    least, most = limits[0], limits[1]
     for n in range(left, right):
         u = np.uint64(n)
         d = depth[u]
@@ -174,52 +183,82 @@ def _find(depth, model, least, most, left, right, found):
         )
 
 
+@njit(nogil=True, error_model="numpy")
+def _mark_row(view, depth, model, v, left, right, around, scratch):
+    """Sets the voxels of the returns that were found in one row of pixels, from column left up to right."""
+    # taken out of the tuples once: each look into them counts references, which costs more than the arithmetic below
+    found, boxes, lattice, words = scratch.found, scratch.boxes, around.lattice, around.words
+    measured, eight = depth[v], found.view(np.uint64)
+    # tiles start at whole words of eight pixels; the last pixel whose box was seen to be set: neighbours mostly
+    # have the same box
+    done, known = left, np.int64(-1)
+    for n in range(left // 8, (right + 7) // 8):
+        if eight[n] == 0:
+            continue
+        if 8 * n >= done:
+            done = 8 * n
+            while done < right and eight[done // 8] != 0:
+                done = min(done + 8, right)
+            _bound_returns(view, v, measured, 8 * n, done, around, scratch)
+        for u in range(8 * n, min(8 * n + 8, right)):
+            if found[u] == 0 or (known >= 0 and _same_box(boxes, u, known)):
+                continue
+            # the voxels first: most are set already
+            if _all_set(boxes, u, lattice, words):
+                known = u
+            elif has_support(view, depth, model, u, v):
+                _mark_return(view, u, v, measured[u], around)
+
+
 @uncounted(error_model="numpy")
-def _bound_returns(view, v, depth, run, ray, cells, spans, boxes):
+def _bound_returns(view, v, depth, start, stop, around, scratch):
     """First and last voxel along each axis of a box about all that each return of a run may lie in.
 
     In float32 and without branches, for many pixels at once; the box is wider by more than that errs.
 
     Args:
-        v, run: row of the run; its first column, one past its last.
-        ray: how many sigmas a return may lie off along its ray, and world_from_camera.
+        v, start, stop: row of the run, its first column, one past its last.
         depth: (width,) of the row [m].
-        spans: (3, width) float32, written: planar depth from and to, half a pixel there in voxels.
-        boxes: (6, width) int32, written: first and last i, j and k; none if the last comes before the first.
+        around: how far returns may be off, the camera's pose, the grid.
+        scratch: its spans and boxes are written.
     """
-    start, stop = run
-    sigmas, world_from_camera = ray
-    y, scale, one = np.float32((v - view.cy) / view.fy), 1.0 / cells.edge, np.float32(1.0)
+    y, scale, one = np.float32((v - view.cy) / view.fy), 1.0 / around.lattice.edge, np.float32(1.0)
     cx, pitch, square = np.float32(view.cx), np.float32(1.0 / view.fx), one + y * y
     half_pixel = np.float32(0.5 / min(view.fx, view.fy) * scale)
-    fixed, factor = np.float32(sigmas * view.constant), np.float32(sigmas * view.linear)
-    beyond_factor, offset = np.float32(sigmas * view.quadratic), np.float32(view.offset)
-    radial, zero = view.radial, np.float32(0.0)
+    noise, radial, spans = spread_of(view, around.sigmas, 0.0), view.radial, scratch.spans
     for n in range(start, stop):
         u = np.uint64(n)
         x = (np.float32(n) - cx) * pitch
         d = depth[u]
         planar = one / np.sqrt(square + x * x) if radial else one
-        beyond = max(d - offset, zero)
-        spread = fixed + factor * d + beyond_factor * beyond * beyond
+        spread = sigma(noise, d)
         spans[0, u], spans[1, u] = (d - spread) * planar, (d + spread) * planar
         spans[2, u] = half_pixel * d * planar
     for axis in range(3):
-        corner = cells.x0 if axis == 0 else cells.y0 if axis == 1 else cells.z0
-        end = np.float32(cells.nx if axis == 0 else cells.ny if axis == 1 else cells.nz)
-        origin = np.float32((world_from_camera[axis, 3] - corner) * scale)
-        turn = np.float32(world_from_camera[axis, 0] * scale) * pitch
-        base = np.float32((world_from_camera[axis, 1] * y + world_from_camera[axis, 2]) * scale)
-        aside = abs(origin)
-        for n in range(start, stop):
-            u = np.uint64(n)
-            along = turn * (np.float32(n) - cx) + base
-            near, far = along * spans[0, u], along * spans[1, u]
-            slack = spans[2, u] + FLOAT_ERROR * (aside + abs(near) + abs(far))
-            low, high = np.floor(origin + min(near, far) - slack), np.floor(origin + max(near, far) + slack)
-            # held near the grid before they become whole numbers
-            boxes[2 * axis, u] = np.int32(min(max(low, zero), end))
-            boxes[2 * axis + 1, u] = np.int32(max(min(high, end - one), -one))
+        _bound_along(axis, y, view, start, stop, around, scratch)
+
+
+@uncounted(error_model="numpy")
+def _bound_along(axis, y, view, start, stop, around, scratch):
+    """The boxes of `_bound_returns` along one axis, from their spans; y: Y/Z of the row's rays."""
+    lattice, pose, spans, boxes = around.lattice, around.world_from_camera, scratch.spans, scratch.boxes
+    scale, one, zero = 1.0 / lattice.edge, np.float32(1.0), np.float32(0.0)
+    cx, pitch = np.float32(view.cx), np.float32(1.0 / view.fx)
+    corner = lattice.x0 if axis == 0 else lattice.y0 if axis == 1 else lattice.z0
+    end = np.float32(lattice.nx if axis == 0 else lattice.ny if axis == 1 else lattice.nz)
+    origin = np.float32((pose[axis, 3] - corner) * scale)
+    turn = np.float32(pose[axis, 0] * scale) * pitch
+    base = np.float32((pose[axis, 1] * y + pose[axis, 2]) * scale)
+    aside = abs(origin)
+    for n in range(start, stop):
+        u = np.uint64(n)
+        along = turn * (np.float32(n) - cx) + base
+        near, far = along * spans[0, u], along * spans[1, u]
+        slack = spans[2, u] + FLOAT_ERROR * (aside + abs(near) + abs(far))
+        low, high = np.floor(origin + min(near, far) - slack), np.floor(origin + max(near, far) + slack)
+        # held near the grid before they become whole numbers
+        boxes[2 * axis, u] = np.int32(min(max(low, zero), end))
+        boxes[2 * axis + 1, u] = np.int32(max(min(high, end - one), -one))
 
 
 @uncounted(error_model="numpy")
@@ -232,51 +271,54 @@ def _same_box(boxes, u, other):
 
 
 @uncounted(error_model="numpy")
-def _all_set(boxes, u, cubes_y, cubes_z, words):
+def _all_set(boxes, u, lattice, words):
     """Whether all voxels of a box are set already."""
     for i in range(boxes[0, u], boxes[1, u] + 1):
         for j in range(boxes[2, u], boxes[3, u] + 1):
             for k in range(boxes[4, u], boxes[5, u] + 1):
-                if not words[word_of(i, j, k, cubes_y, cubes_z)] & bit_of(i, j, k):
+                if not words[word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)] & bit_of(i, j, k):
                     return False
     return True
 
 
-@njit(nogil=True, error_model="numpy")
-def _mark_return(view, u, v, d, ray, cells, words):
+@uncounted(error_model="numpy")
+def _mark_return(view, u, v, d, around):
     """Sets the voxels that one return may lie in."""
-    sigmas, pose = ray
+    pose, lattice = around.world_from_camera, around.lattice
     x, y = (u - view.cx) / view.fx, (v - view.cy) / view.fy
     z = d / math.sqrt(1.0 + x * x + y * y) if view.radial else float(d)
-    half = 0.5 / min(view.fx, view.fy) / cells.edge * z
-    scale = 1.0 / cells.edge
+    scale = 1.0 / lattice.edge
+    half = 0.5 / min(view.fx, view.fy) / lattice.edge * z
     # the ray in voxels from the grid's corner
     ox, oy, oz = (
-        (pose[0, 3] - cells.x0) * scale,
-        (pose[1, 3] - cells.y0) * scale,
-        (pose[2, 3] - cells.z0) * scale,
+        (pose[0, 3] - lattice.x0) * scale,
+        (pose[1, 3] - lattice.y0) * scale,
+        (pose[2, 3] - lattice.z0) * scale,
     )
-    rx = (pose[0, 0] * x + pose[0, 1] * y + pose[0, 2]) * scale
-    ry = (pose[1, 0] * x + pose[1, 1] * y + pose[1, 2]) * scale
-    rz = (pose[2, 0] * x + pose[2, 1] * y + pose[2, 2]) * scale
-    spread = sigmas * sigma(view, d) * z / d
+    rx, ry, rz = turned(pose, x, y, 1.0)
+    rx, ry, rz = rx * scale, ry * scale, rz * scale
+    spread = around.sigmas * sigma(view, d) * z / d
     # steps of at most half a voxel
-    steps = min(math.ceil(4.0 * spread / cells.edge), 1000)
+    steps = min(math.ceil(4.0 * spread / lattice.edge), 1000)
     for n in range(steps + 1):
         away = z if steps == 0 else z + spread * (2.0 * n / steps - 1.0)
-        px, py, pz = ox + rx * away, oy + ry * away, oz + rz * away
-        if not (
-            -half <= px < cells.nx + half and -half <= py < cells.ny + half and -half <= pz < cells.nz + half
-        ):
-            continue
-        for i in range(max(0, math.floor(px - half)), min(cells.nx - 1, math.floor(px + half)) + 1):
-            for j in range(max(0, math.floor(py - half)), min(cells.ny - 1, math.floor(py + half)) + 1):
-                for k in range(max(0, math.floor(pz - half)), min(cells.nz - 1, math.floor(pz + half)) + 1):
-                    words[word_of(i, j, k, cells.cubes_y, cells.cubes_z)] |= bit_of(i, j, k)
+        _set_cube(ox + rx * away, oy + ry * away, oz + rz * away, half, lattice, around.words)
+
+
+@uncounted(error_model="numpy")
+def _set_cube(x, y, z, half, lattice, words):
+    """Sets the voxels that a cube about (x, y, z) meets, all in voxels from the grid's corner."""
+    nx, ny, nz = lattice.nx, lattice.ny, lattice.nz
+    if not (-half <= x < nx + half and -half <= y < ny + half and -half <= z < nz + half):
+        return
+    for i in range(max(0, math.floor(x - half)), min(nx - 1, math.floor(x + half)) + 1):
+        for j in range(max(0, math.floor(y - half)), min(ny - 1, math.floor(y + half)) + 1):
+            for k in range(max(0, math.floor(z - half)), min(nz - 1, math.floor(z + half)) + 1):
+                words[word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)] |= bit_of(i, j, k)
 
 
 @njit(nogil=True, error_model="numpy")
 def set_run(array, start, stop, value):
-    """Sets a run of an array. Unsigned indices, as below, or the compiler does one pixel at a time."""
+    """Sets a run of an array. Unsigned indices, as above, or the compiler does one pixel at a time."""
     for n in range(start, stop):
         array[np.uint64(n)] = value

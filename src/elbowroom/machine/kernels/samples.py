@@ -1,9 +1,28 @@
 """Samples of triangles, and what they enclose: arrays in, arrays out."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+
+
+class Laid(NamedTuple):
+    """A triangle laid on its longest edge.
+
+    Fields:
+        first: number of the corner where that edge begins.
+        along, up: unit vectors along the edge and from it to the third corner, in the triangle's plane.
+        foot: where the third corner stands over the edge, counted from its beginning [m].
+        length, height: of the edge, and of the third corner over it [m].
+    """
+
+    first: int
+    along: tuple[float, float, float]
+    up: tuple[float, float, float]
+    foot: float
+    length: float
+    height: float
 
 
 @njit(cache=True, nogil=True)
@@ -20,50 +39,57 @@ def tile_triangles(triangles, pitch, points, reach, fill):
     """
     n = 0
     for t in range(triangles.shape[0]):
-        length = -1.0
-        base = 0
-        for e in range(3):
-            a, b = triangles[t, e], triangles[t, (e + 1) % 3]
-            side = math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
-            if side > length:
-                length, base = side, e
-        a, b, c = triangles[t, base], triangles[t, (base + 1) % 3], triangles[t, (base + 2) % 3]
-        ux, uy, uz = 0.0, 0.0, 0.0
-        if length > 0.0:
-            ux, uy, uz = (b[0] - a[0]) / length, (b[1] - a[1]) / length, (b[2] - a[2]) / length
-        foot = (c[0] - a[0]) * ux + (c[1] - a[1]) * uy + (c[2] - a[2]) * uz
-        foot = min(max(foot, 0.0), length)
-        vx, vy, vz = c[0] - a[0] - foot * ux, c[1] - a[1] - foot * uy, c[2] - a[2] - foot * uz
-        height = math.sqrt(vx * vx + vy * vy + vz * vz)
-        if height > 0.0:
-            vx, vy, vz = vx / height, vy / height, vz / height
-        columns = max(1, math.ceil(length / pitch))
-        width = length / columns
+        laid = _laid(triangles[t])
+        a, u, v = triangles[t, laid.first], laid.along, laid.up
+        columns = max(1, math.ceil(laid.length / pitch))
+        width = laid.length / columns
         for i in range(columns):
             x = (i + 0.5) * width
-            top = _top(x, foot, length, height)
-            highest = _top(min(max(foot, i * width), (i + 1) * width), foot, length, height)
+            top = _top(x, laid)
+            highest = _top(min(max(laid.foot, i * width), (i + 1) * width), laid)
             cells = max(1, math.ceil(highest / pitch))
             step = highest / cells
             for j in range(cells):
                 if fill:
                     y = min((j + 0.5) * step, top)
-                    points[n, 0] = a[0] + x * ux + y * vx
-                    points[n, 1] = a[1] + x * uy + y * vy
-                    points[n, 2] = a[2] + x * uz + y * vz
+                    points[n, 0] = a[0] + x * u[0] + y * v[0]
+                    points[n, 1] = a[1] + x * u[1] + y * v[1]
+                    points[n, 2] = a[2] + x * u[2] + y * v[2]
                     reach[n] = math.hypot(0.5 * width, max(y - j * step, (j + 1) * step - y))
                 n += 1
     return n
 
 
+@njit(nogil=True)
+def _laid(triangle):
+    """A triangle, (3, 3), as laid on its longest edge."""
+    length, first = -1.0, 0
+    for e in range(3):
+        a, b = triangle[e], triangle[(e + 1) % 3]
+        side = math.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2)
+        if side > length:
+            length, first = side, e
+    a, b, c = triangle[first], triangle[(first + 1) % 3], triangle[(first + 2) % 3]
+    ux, uy, uz = 0.0, 0.0, 0.0
+    if length > 0.0:
+        ux, uy, uz = (b[0] - a[0]) / length, (b[1] - a[1]) / length, (b[2] - a[2]) / length
+    foot = (c[0] - a[0]) * ux + (c[1] - a[1]) * uy + (c[2] - a[2]) * uz
+    foot = min(max(foot, 0.0), length)
+    vx, vy, vz = c[0] - a[0] - foot * ux, c[1] - a[1] - foot * uy, c[2] - a[2] - foot * uz
+    height = math.sqrt(vx * vx + vy * vy + vz * vz)
+    if height > 0.0:
+        vx, vy, vz = vx / height, vy / height, vz / height
+    return Laid(first, (ux, uy, uz), (vx, vy, vz), foot, length, height)
+
+
 @njit(inline="always")
-def _top(x, foot, length, height):
+def _top(x, laid):
     """Height of a triangle over its base at x."""
-    if x < foot:
-        return height * x / foot
-    if foot < length:
-        return height * (length - x) / (length - foot)
-    return height
+    if x < laid.foot:
+        return laid.height * x / laid.foot
+    if laid.foot < laid.length:
+        return laid.height * (laid.length - x) / (laid.length - laid.foot)
+    return laid.height
 
 
 @njit(cache=True, nogil=True)
@@ -129,12 +155,14 @@ def thin_out(points, slack_squared, cell, runs):
 
 @njit(nogil=True)
 def _square(points, p, q):
+    """Square of the distance of two points."""
     x, y, z = points[p, 0] - points[q, 0], points[p, 1] - points[q, 1], points[p, 2] - points[q, 2]
     return x * x + y * y + z * z
 
 
 @njit(nogil=True)
 def _newly_covered(points, slack_squared, covered, runs, q):
+    """How many pieces in `runs` a point would cover that are not covered yet."""
     count = 0
     for row in range(9):
         for r in range(runs[row, 0], runs[row, 1]):
@@ -170,26 +198,32 @@ def cluster(points, size, order, stops):
             count += 1
             stops[count] = stop
             continue
-        part = order[start:stop].copy()
-        axis, extent = 0, -1.0
-        for k in range(3):
-            low = high = points[part[0], k]
-            for p in part:
-                low, high = min(low, points[p, k]), max(high, points[p, k])
-            if high - low > extent:
-                axis, extent = k, high - low
-        along = np.empty(part.size, dtype=points.dtype)
-        for p in range(part.size):
-            along[p] = points[part[p], axis]
-        rank = np.argsort(along)
-        for p in range(part.size):
-            order[start + p] = part[rank[p]]
+        _sort_along_longest(points, order[start:stop])
         clusters = (stop - start + size - 1) // size
         middle = start + (clusters // 2) * size
         stack[depth, 0], stack[depth, 1] = middle, stop
         stack[depth + 1, 0], stack[depth + 1, 1] = start, middle
         depth += 2
     return count
+
+
+@njit(nogil=True)
+def _sort_along_longest(points, order):
+    """Sorts some points, given by their numbers, along the longest side of their bounding box."""
+    part = order.copy()
+    axis, extent = 0, -1.0
+    for k in range(3):
+        low = high = points[part[0], k]
+        for p in part:
+            low, high = min(low, points[p, k]), max(high, points[p, k])
+        if high - low > extent:
+            axis, extent = k, high - low
+    along = np.empty(part.size, dtype=points.dtype)
+    for p in range(part.size):
+        along[p] = points[part[p], axis]
+    rank = np.argsort(along)
+    for p in range(part.size):
+        order[p] = part[rank[p]]
 
 
 @njit(cache=True, nogil=True)
@@ -218,29 +252,38 @@ def mark_surface(triangles, lower, edge, surface):
             one, two = (k + 1) % 3, (k + 2) % 3
             normal[k] = (corners[1, one] - corners[0, one]) * (corners[2, two] - corners[0, two])
             normal[k] -= (corners[1, two] - corners[0, two]) * (corners[2, one] - corners[0, one])
-        main = 0
-        for k in range(1, 3):
-            if abs(normal[k]) > abs(normal[main]):
-                main = k
-        one, two = (main + 1) % 3, (main + 2) % 3
-        flat = abs(normal[main]) < 1e-12
-        cell = np.empty(3, dtype=np.int64)
-        for i in range(first[one], last[one] + 1):
-            for j in range(first[two], last[two] + 1):
-                low, high = first[main], last[main]
-                if not flat:
-                    rise = -(
-                        normal[one] * (i + 0.5 - corners[0, one]) + normal[two] * (j + 0.5 - corners[0, two])
-                    )
-                    middle = corners[0, main] + rise / normal[main]
-                    spread = 0.5 * (abs(normal[one]) + abs(normal[two])) / abs(normal[main]) + 1e-6
-                    low = max(low, math.floor(middle - spread))
-                    high = min(high, math.floor(middle + spread))
-                cell[one], cell[two] = i, j
-                for k in range(low, high + 1):
-                    cell[main] = k
-                    if not surface[cell[0], cell[1], cell[2]] and touches_cell(corners, normal, cell):
-                        surface[cell[0], cell[1], cell[2]] = True
+        _mark_between(corners, normal, first, last, surface)
+
+
+@njit(nogil=True)
+def _mark_between(corners, normal, first, last, surface):
+    """Marks the cells between first and last, (3,) each, that a triangle in units of cells touches.
+
+    Column by column along the axis that the triangle's plane crosses most steeply: there few cells are near it.
+    """
+    main = 0
+    for k in range(1, 3):
+        if abs(normal[k]) > abs(normal[main]):
+            main = k
+    one, two = (main + 1) % 3, (main + 2) % 3
+    flat = abs(normal[main]) < 1e-12
+    cell = np.empty(3, dtype=np.int64)
+    for i in range(first[one], last[one] + 1):
+        for j in range(first[two], last[two] + 1):
+            low, high = first[main], last[main]
+            if not flat:
+                rise = -(
+                    normal[one] * (i + 0.5 - corners[0, one]) + normal[two] * (j + 0.5 - corners[0, two])
+                )
+                middle = corners[0, main] + rise / normal[main]
+                spread = 0.5 * (abs(normal[one]) + abs(normal[two])) / abs(normal[main]) + 1e-6
+                low = max(low, math.floor(middle - spread))
+                high = min(high, math.floor(middle + spread))
+            cell[one], cell[two] = i, j
+            for k in range(low, high + 1):
+                cell[main] = k
+                if not surface[cell[0], cell[1], cell[2]] and touches_cell(corners, normal, cell):
+                    surface[cell[0], cell[1], cell[2]] = True
 
 
 @njit(cache=True, nogil=True)

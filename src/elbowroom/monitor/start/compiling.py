@@ -60,52 +60,66 @@ def run_jobs(
         tell: called with a job's name and "begun", "done" or "failed", from any thread.
         command: of a process that does jobs as `kernel_jobs` does.
     """
-    waiting, unfinished = list(jobs), {job.name for job in jobs}
-    change = Condition()
+    queue = _Queue(jobs)
     processes: list[subprocess.Popen[str]] = []
 
-    def next_job() -> Job | None:
-        with change:
-            while waiting:
-                for job in waiting:
-                    if job.after not in unfinished:
-                        waiting.remove(job)
-                        return job
-                change.wait()
-            return None
-
     def work() -> None:
-        process = subprocess.Popen(
-            command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            text=True,
-            bufsize=1,
-        )
+        process = _worker(command)
         processes.append(process)
         alive = True
-        while (job := next_job()) is not None:
+        while (job := queue.next()) is not None:
             if alive:
                 tell(job.name, "begun")
                 alive = _done_by(process, job)
             tell(job.name, "done" if alive else "failed")
-            with change:
-                unfinished.discard(job.name)
-                change.notify_all()
+            queue.finished(job)
         process.communicate()
 
-    pool = ThreadPoolExecutor(min(workers, len(jobs)))
+    many = min(workers, len(jobs))
+    pool = ThreadPoolExecutor(many)
     try:
-        for future in [pool.submit(work) for _ in range(min(workers, len(jobs)))]:
+        for future in [pool.submit(work) for _ in range(many)]:
             future.result()
     finally:
-        with change:
-            waiting.clear()
-            change.notify_all()
+        queue.close()
         for process in processes:
             process.kill()
         pool.shutdown()
+
+
+class _Queue:
+    """Jobs that wait, for several threads: each is given once, as soon as what it comes after is finished."""
+
+    def __init__(self, jobs: Sequence[Job]) -> None:
+        self._waiting, self._unfinished = list(jobs), {job.name for job in jobs}
+        self._change = Condition()
+
+    def next(self) -> Job | None:
+        """The next one; waits while all that are left come after another. None: there are no more."""
+        with self._change:
+            while self._waiting:
+                for job in self._waiting:
+                    if job.after not in self._unfinished:
+                        self._waiting.remove(job)
+                        return job
+                self._change.wait()
+            return None
+
+    def finished(self, job: Job) -> None:
+        with self._change:
+            self._unfinished.discard(job.name)
+            self._change.notify_all()
+
+    def close(self) -> None:
+        """Gives no more."""
+        with self._change:
+            self._waiting.clear()
+            self._change.notify_all()
+
+
+def _worker(command: Sequence[str]) -> "subprocess.Popen[str]":
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, text=True, bufsize=1)
 
 
 def _done_by(process: "subprocess.Popen[str]", job: Job) -> bool:

@@ -6,7 +6,7 @@ from elbowroom.geometry import DepthCamera, Intrinsics
 from elbowroom.machine.probe import probe
 from elbowroom.monitor.health.drift.reference import CameraReference, lens_of
 from elbowroom.monitor.health.drift.watch import Watch
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, Snapshot
 
 
 def warm_up_watch() -> None:
@@ -30,4 +30,4 @@ def warm_up_watch() -> None:
     watch = Watch([camera], [wall], probe())
     for stamp in range(2):
         depth = np.full((24, 32), 2.0, dtype=np.float32)
-        watch.hear([DepthFrame("one", stamp, depth)], {"slide": 0.0}, stamp)
+        watch.hear(Snapshot((DepthFrame("one", stamp, depth),), {"slide": 0.0}, now_ns=stamp))

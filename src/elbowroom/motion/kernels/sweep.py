@@ -7,6 +7,7 @@ import numpy as np
 from numba import njit
 
 from elbowroom.geometry.kernels.bits import bit_of, word_of
+from elbowroom.geometry.kernels.rigid import moved
 from elbowroom.machine.kernels.body import SLIDES, Tree, place_links
 from elbowroom.motion.kernels.triangles import triangle_meets_box
 from elbowroom.motion.kernels.volume import cell_of, counted, gap, leaves, meets_block, meets_voxel
@@ -34,15 +35,6 @@ class Course(NamedTuple):
     positions: np.ndarray
 
 
-class Way(NamedTuple):
-    """What moves, and where to: the tree, where it stands, joint positions along the motion, its length in travel."""
-
-    tree: Tree
-    world_from_base: np.ndarray
-    course: Course
-    length: float
-
-
 class Skin(NamedTuple):
     """A machine's surface in its links' frames: samples, sorted by cluster, and triangles.
 
@@ -63,9 +55,51 @@ class Skin(NamedTuple):
     patch_start: np.ndarray
 
 
+class Mover(NamedTuple):
+    """A machine on its way: its tree and where its base stands, (4, 4), its skin, where it goes, and the most that each
+    cluster of the skin moves per unit of travel, (clusters,)."""
+
+    tree: Tree
+    world_from_base: np.ndarray
+    skin: Skin
+    course: Course
+    speeds: np.ndarray
+
+
+class Patch(NamedTuple):
+    """The triangles about a sample: where its link is, by how much they are grown [m], of which skin and sample."""
+
+    world_from_link: np.ndarray
+    grown: float
+    skin: Skin
+    sample: int
+
+
+class Halvings(NamedTuple):
+    """How often an interval is cut in half: so often while clusters are asked, and at most."""
+
+    of_clusters: int
+    most: int
+
+
+class Asked(NamedTuple):
+    """What is left to ask at each depth of cutting: a row each.
+
+    Fields:
+        clusters: row d is asked at depth d, int32.
+        samples: row d is asked d depths deeper than the last of the clusters, int32; row 0 is not used.
+        counts: how many are left after each depth, int64.
+    """
+
+    clusters: np.ndarray
+    samples: np.ndarray
+    counts: np.ndarray
+
+
 @njit
-def place_at(tree, world_from_base, course, travel, world_from_link):
-    """Fills world_from_link (1, links, 4, 4) for one place along a course."""
+def place_at(mover, travel, world_from_links):
+    """Fills world_from_links (1, links, 4, 4) for one place along a mover's course."""
+    course = mover.course
     last = course.travel.size - 2
     knot = 0
     while knot < last and travel > course.travel[knot + 1]:
@@ -75,16 +109,13 @@ def place_at(tree, world_from_base, course, travel, world_from_link):
     for column in range(positions.shape[1]):
         start, stop = course.positions[knot, column], course.positions[knot + 1, column]
         positions[0, column] = start + share * (stop - start)
-    place_links(tree, world_from_base, positions, world_from_link)
+    place_links(mover.tree, mover.world_from_base, positions, world_from_links)
 
 
 @njit(inline="always")
-def _carried(transform, point):
+def _carried(world_from_link, point):
     """A point of a link in the world."""
-    x = transform[0, 0] * point[0] + transform[0, 1] * point[1] + transform[0, 2] * point[2] + transform[0, 3]
-    y = transform[1, 0] * point[0] + transform[1, 1] * point[1] + transform[1, 2] * point[2] + transform[1, 3]
-    z = transform[2, 0] * point[0] + transform[2, 1] * point[1] + transform[2, 2] * point[2] + transform[2, 3]
-    return x, y, z
+    return moved(world_from_link, point[0], point[1], point[2])
 
 
 @njit(inline="always")
@@ -139,77 +170,80 @@ def _distance_to_axis(world_from_joint, axis_in_joint, x, y, z):
 
 
 @njit
-def _near_clusters(placed, skin, speeds, half, volume, cells, asked, near):
+def _near_clusters(placed, mover, half, volume, asked, near):
     """The clusters among `asked` that may meet a block within half an interval either way; how many."""
+    skin, speeds = mover.skin, mover.speeds
     link, centre, radius, cover = skin.link, skin.centre, skin.radius, skin.cover
-    words, cubes = volume.words, volume.cubes
+    words, cubes, lattice = volume.words, volume.cubes, volume.lattice
     count = 0
     for n in range(asked.size):
         cluster = asked[n]
         x, y, z = _placed(placed, link[cluster], centre, cluster)
         r = radius[cluster] + cover + speeds[cluster] * half + ROUNDING_M
-        if not meets_block(words, cubes, cells, x, y, z, r):
+        if not meets_block(words, cubes, lattice, x, y, z, r):
             continue
-        if r > EXACT_UP_TO * cells.edge or meets_voxel(words, cells, x, y, z, r):
+        if r > EXACT_UP_TO * lattice.edge or meets_voxel(words, lattice, x, y, z, r):
             near[count] = cluster
             count += 1
     return count
 
 
 @njit
-def _near_samples(placed, skin, speeds, half, volume, cells, asked, near):
+def _near_samples(placed, mover, half, volume, asked, near):
     """The same for samples."""
+    skin, speeds = mover.skin, mover.speeds
     link, points, cluster_of, cover = skin.link, skin.points, skin.cluster_of, skin.cover
-    words = volume.words
+    words, lattice = volume.words, volume.lattice
     count = 0
     for n in range(asked.size):
         sample = asked[n]
         cluster = cluster_of[sample]
         x, y, z = _placed(placed, link[cluster], points, sample)
-        if meets_voxel(words, cells, x, y, z, cover + speeds[cluster] * half + ROUNDING_M):
+        if meets_voxel(words, lattice, x, y, z, cover + speeds[cluster] * half + ROUNDING_M):
             near[count] = sample
             count += 1
     return count
 
 
 @njit
-def _near_members(placed, skin, speeds, half, volume, cells, clusters, near):
+def _near_members(placed, mover, half, volume, clusters, near):
     """The same for all samples of some clusters.
 
     A ball smaller than a voxel meets none but the eight voxels about the corner nearest to its centre: one look at
     what is known of that corner settles most of them.
     """
+    skin, speeds = mover.skin, mover.speeds
     link, points, start, stop, cover = skin.link, skin.points, skin.start, skin.stop, skin.cover
-    words, corners = volume.words, volume.corners
+    words, corners, lattice = volume.words, volume.corners, volume.lattice
     at = np.empty((3, TOGETHER), dtype=np.int32)
     count = 0
     for cluster in clusters:
         r = cover + speeds[cluster] * half + ROUNDING_M
-        small = r < QUICK_BELOW * cells.edge
+        small = r < QUICK_BELOW * lattice.edge
         for first in range(start[cluster], stop[cluster], TOGETHER):
             last = min(first + TOGETHER, stop[cluster])
             if small:
-                _corners_of(placed, link[cluster], points, first, last, cells, at)
+                _corners_of(placed, link[cluster], points, first, last, lattice, at)
             for sample in range(first, last):
                 n = sample - first
                 if small and at[0, n] >= 0:
-                    word = word_of(at[0, n], at[1, n], at[2, n], cells.cubes_y, cells.cubes_z)
+                    word = word_of(at[0, n], at[1, n], at[2, n], lattice.cubes_y, lattice.cubes_z)
                     if not corners[word] & bit_of(at[0, n], at[1, n], at[2, n]):
                         continue
                 x, y, z = _placed(placed, link[cluster], points, sample)
-                if meets_voxel(words, cells, x, y, z, r):
+                if meets_voxel(words, lattice, x, y, z, r):
                     near[count] = sample
                     count += 1
     return count
 
 
 @njit(error_model="numpy")
-def _corners_of(placed, link, points, first, last, cells, at):
+def _corners_of(placed, link, points, first, last, lattice, at):
     """The voxels' corners nearest to a link's points: (3, points) int32, -1 for one on the grid's border or beyond."""
-    scale = 1.0 / cells.edge
+    scale = 1.0 / lattice.edge
     for axis in range(3):
-        corner = cells.x0 if axis == 0 else cells.y0 if axis == 1 else cells.z0
-        end = np.float64(cells.nx if axis == 0 else cells.ny if axis == 1 else cells.nz)
+        corner = lattice.x0 if axis == 0 else lattice.y0 if axis == 1 else lattice.z0
+        end = np.float64(lattice.nx if axis == 0 else lattice.ny if axis == 1 else lattice.nz)
         a, b = placed[link, axis, 0] * scale, placed[link, axis, 1] * scale
         c, d = placed[link, axis, 2] * scale, (placed[link, axis, 3] - corner) * scale + 0.5
         for n in range(last - first):
@@ -223,22 +257,24 @@ def _corners_of(placed, link, points, first, last, cells, at):
 
 
 @njit
-def _leaves_patch(transform, skin, sample, grown, cells):
-    """Whether a corner of a sample's patch comes within `grown` of leaving the grid."""
-    for n in range(skin.patch_start[sample], skin.patch_start[sample + 1]):
+def _leaves_patch(patch, lattice):
+    """Whether a corner of a patch, grown, leaves the grid."""
+    skin = patch.skin
+    for n in range(skin.patch_start[patch.sample], skin.patch_start[patch.sample + 1]):
         for corner in range(3):
-            x, y, z = _carried(transform, skin.triangles[skin.patches[n], corner])
-            if leaves(x, y, z, grown, cells):
+            x, y, z = _carried(patch.world_from_link, skin.triangles[skin.patches[n], corner])
+            if leaves(x, y, z, patch.grown, lattice):
                 return True
     return False
 
 
 @njit
-def _meets_patch(transform, skin, sample, x, y, z, half_edge, corners):
-    """Whether a sample's patch meets a cube; `corners` (3, 3) is scratch."""
-    for n in range(skin.patch_start[sample], skin.patch_start[sample + 1]):
+def _meets_patch(patch, x, y, z, half_edge, corners):
+    """Whether a patch, as it is, meets a cube; `corners` (3, 3) is scratch."""
+    skin = patch.skin
+    for n in range(skin.patch_start[patch.sample], skin.patch_start[patch.sample + 1]):
         for corner in range(3):
-            a, b, c = _carried(transform, skin.triangles[skin.patches[n], corner])
+            a, b, c = _carried(patch.world_from_link, skin.triangles[skin.patches[n], corner])
             corners[corner, 0], corners[corner, 1], corners[corner, 2] = a, b, c
         if triangle_meets_box(corners, x, y, z, half_edge):
             return True
@@ -258,107 +294,136 @@ def _kind(volume, word, bit):
 
 
 @njit
-def touched_block(placed, skin, speeds, half, volume, cells, samples, place):
+def touched_block(placed, mover, half, volume, samples, place):
     """The most cautious block that samples' patches meet, grown by their movement: what, by which cluster.
 
     Exact but for that growth: triangles against voxels. Fills `place` (3,) with the voxel's centre, or the
     sample whose patch leaves the grid [m].
     """
+    skin, lattice = mover.skin, volume.lattice
     found, by = NOTHING, -1
     corners = np.empty((3, 3))
     for sample in samples:
         cluster = skin.cluster_of[sample]
-        transform = placed[skin.link[cluster]]
-        x, y, z = _carried(transform, skin.points[sample])
-        grown = speeds[cluster] * half + ROUNDING_M
+        world_from_link = placed[skin.link[cluster]]
+        x, y, z = _carried(world_from_link, skin.points[sample])
+        grown = mover.speeds[cluster] * half + ROUNDING_M
+        patch = Patch(world_from_link, grown, skin, sample)
         r = skin.cover + grown
-        if leaves(x, y, z, r, cells) and _leaves_patch(transform, skin, sample, grown, cells):
+        if leaves(x, y, z, r, lattice) and _leaves_patch(patch, lattice):
             if found > OUTSIDE:
                 found, by = OUTSIDE, cluster
                 place[0], place[1], place[2] = x, y, z
             continue
-        u, v, w, s = counted(x, y, z, r, cells)
-        for i in range(cell_of(u - s, cells.nx), cell_of(u + s, cells.nx) + 1):
-            du = gap(u, i * 1.0, i + 1.0)
-            for j in range(cell_of(v - s, cells.ny), cell_of(v + s, cells.ny) + 1):
-                dv = gap(v, j * 1.0, j + 1.0)
-                for k in range(cell_of(w - s, cells.nz), cell_of(w + s, cells.nz) + 1):
-                    dw = gap(w, k * 1.0, k + 1.0)
-                    word, bit = word_of(i, j, k, cells.cubes_y, cells.cubes_z), bit_of(i, j, k)
-                    if not volume.words[word] & bit or du * du + dv * dv + dw * dw > s * s:
-                        continue
-                    kind = _kind(volume, word, bit)
-                    if kind >= found:
-                        continue
-                    a = cells.x0 + (i + 0.5) * cells.edge
-                    b = cells.y0 + (j + 0.5) * cells.edge
-                    c = cells.z0 + (k + 0.5) * cells.edge
-                    if _meets_patch(transform, skin, sample, a, b, c, cells.edge / 2 + grown, corners):
-                        found, by = kind, cluster
-                        place[0], place[1], place[2] = a, b, c
+        kind = _touched_by(patch, counted(x, y, z, r, lattice), volume, found, place, corners)
+        if kind < found:
+            found, by = kind, cluster
         if found == SURFACE:
             break
     return found, by
 
 
-@njit(cache=True, nogil=True)
-def first_block(way, skin, speeds, moving, volume, cells, halvings):
-    """The first of 2^n equal intervals of a way in which the machine meets a block.
-
-    An interval is tested at its middle, every ball grown by the most that it moves in half of it (`speeds`,
-    per cluster, times half its length). Where no ball meets a block the interval is free; else its halves are
-    looked at, the earlier one first, with the balls that are left: clusters down to `sample_depth` halvings,
-    samples from there, and in the shortest intervals the samples' triangles.
+@njit
+def _touched_by(patch, ball, volume, found, place, corners):
+    """The most cautious block that a patch meets, if it is more cautious than what was found; else that.
 
     Args:
-        way: `Way`.
-        skin: `Skin`.
-        speeds: of each cluster, the most that it moves per unit of travel.
-        moving: the clusters that move.
-        volume, cells: what is blocked, and its grid.
-        halvings: how many for clusters, and how many in all, n.
+        ball: about the patch, centre and radius counted in voxels.
+        place: (3,), written where there is such a block: its centre [m].
+        corners: (3, 3), scratch.
+    """
+    lattice = volume.lattice
+    u, v, w, s = ball
+    for i in range(cell_of(u - s, lattice.nx), cell_of(u + s, lattice.nx) + 1):
+        du = gap(u, i * 1.0, i + 1.0)
+        for j in range(cell_of(v - s, lattice.ny), cell_of(v + s, lattice.ny) + 1):
+            dv = gap(v, j * 1.0, j + 1.0)
+            for k in range(cell_of(w - s, lattice.nz), cell_of(w + s, lattice.nz) + 1):
+                dw = gap(w, k * 1.0, k + 1.0)
+                word, bit = word_of(i, j, k, lattice.cubes_y, lattice.cubes_z), bit_of(i, j, k)
+                if not volume.words[word] & bit or du * du + dv * dv + dw * dw > s * s:
+                    continue
+                kind = _kind(volume, word, bit)
+                if kind >= found:
+                    continue
+                x, y, z = (
+                    lattice.x0 + (i + 0.5) * lattice.edge,
+                    lattice.y0 + (j + 0.5) * lattice.edge,
+                    lattice.z0 + (k + 0.5) * lattice.edge,
+                )
+                if _meets_patch(patch, x, y, z, lattice.edge / 2 + patch.grown, corners):
+                    found = kind
+                    place[0], place[1], place[2] = x, y, z
+    return found
+
+
+@njit(cache=True, nogil=True)
+def first_block(mover, length, moving, volume, halvings):
+    """The first of 2^halvings.most equal intervals of [0, length] in which the machine meets a block.
+
+    An interval is tested at its middle, every ball grown by the most that it moves in half of it (its cluster's
+    speed times half its length). Where no ball meets a block the interval is free; else its halves are looked at,
+    the earlier one first, with the balls that are left: clusters down to `halvings.of_clusters`, samples from
+    there, and in the shortest intervals the samples' triangles.
+
+    Args:
+        mover: what moves.
+        length: travel that is looked at, at most the course's.
+        moving: the clusters that move, (n,) int32.
+        volume: what is blocked.
+        halvings: how often intervals are cut.
 
     Returns:
         The interval's index, -1 for none; what the block is, the cluster that meets it, and where (3,) [m].
     """
-    tree, world_from_base, course, length = way
-    sample_depth, depth_limit = halvings
-    total = 0
-    for cluster in moving:
-        total += skin.stop[cluster] - skin.start[cluster]
-    clusters = np.empty((sample_depth + 2, moving.size), dtype=np.int32)
-    samples = np.empty((depth_limit - sample_depth + 2, total), dtype=np.int32)
-    counts = np.zeros(depth_limit + 1, dtype=np.int64)
-    placed = np.empty((1, tree.parent.size, 4, 4))
+    asked = _all_of(mover.skin, moving, halvings)
+    placed = np.empty((1, mover.tree.parent.size, 4, 4))
     place = np.zeros(3)
-    for n in range(moving.size):
-        clusters[0, n] = moving[n]
     depth, index = 0, 0
     while True:
         half = length / 2.0 ** (depth + 1)
-        place_at(tree, world_from_base, course, (2 * index + 1) * half, placed)
-        row = depth - sample_depth
-        before = moving.size if depth == 0 else counts[depth - 1]
-        if row <= 0:
-            asked, near = clusters[depth, :before], clusters[depth + 1]
-            left = _near_clusters(placed[0], skin, speeds, half, volume, cells, asked, near)
-            if row == 0:
-                left = _near_members(placed[0], skin, speeds, half, volume, cells, near[:left], samples[1])
-        else:
-            asked, near = samples[row, :before], samples[row + 1]
-            left = _near_samples(placed[0], skin, speeds, half, volume, cells, asked, near)
-        if left > 0 and depth == depth_limit:
-            kind, by = touched_block(
-                placed[0], skin, speeds, half, volume, cells, samples[row + 1, :left], place
-            )
+        place_at(mover, (2 * index + 1) * half, placed)
+        left = _ask(placed[0], mover, half, volume, asked, depth, halvings)
+        if left > 0 and depth == halvings.most:
+            samples = asked.samples[depth - halvings.of_clusters + 1, :left]
+            kind, by = touched_block(placed[0], mover, half, volume, samples, place)
             if kind != NOTHING:
                 return index, kind, by, place
         elif left > 0:
-            counts[depth] = left
+            asked.counts[depth] = left
             depth, index = depth + 1, index * 2
             continue
+        # on to the later half of the interval that has one which was not looked at
         while index & 1:
             depth, index = depth - 1, index >> 1
         if depth == 0:
             return -1, NOTHING, -1, place
         index += 1
+
+
+@njit
+def _all_of(skin, moving, halvings):
+    """What is asked first, all clusters that move, and room for what is left of them."""
+    total = 0
+    for cluster in moving:
+        total += skin.stop[cluster] - skin.start[cluster]
+    clusters = np.empty((halvings.of_clusters + 2, moving.size), dtype=np.int32)
+    samples = np.empty((halvings.most - halvings.of_clusters + 2, total), dtype=np.int32)
+    for n in range(moving.size):
+        clusters[0, n] = moving[n]
+    return Asked(clusters, samples, np.zeros(halvings.most + 1, dtype=np.int64))
+
+
+@njit
+def _ask(placed, mover, half, volume, asked, depth, halvings):
+    """How many of the clusters or samples asked at a depth may meet a block: they are what the next depth asks."""
+    row = depth - halvings.of_clusters
+    before = asked.clusters.shape[1] if depth == 0 else asked.counts[depth - 1]
+    if row > 0:
+        samples = asked.samples
+        return _near_samples(placed, mover, half, volume, samples[row, :before], samples[row + 1])
+    near = asked.clusters[depth + 1]
+    left = _near_clusters(placed, mover, half, volume, asked.clusters[depth, :before], near)
+    if row == 0:
+        left = _near_members(placed, mover, half, volume, near[:left], asked.samples[1])
+    return left

@@ -118,7 +118,16 @@ def price_bound(model: Model, share: float, until: float) -> float:
 
 
 def share_bound(model: Model, budget: float, until: float) -> float:
-    """No layout of at most this price has a greater share of valid points; arguments as of `price_bound`."""
+    """No layout of at most this price has a greater share of valid points.
+
+    Args:
+        model: candidates and points.
+        budget: greatest price of all that is new.
+        until: when time is up, as `time.perf_counter` counts [s].
+
+    Returns:
+        The share, 0 to 1; 1 if there was no time.
+    """
     points = hard_points(model)
     price = model.price.copy()
     price[list(model.kept)] = 0.0

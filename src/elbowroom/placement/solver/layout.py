@@ -64,19 +64,23 @@ class Layout:
         """Of all that is chosen and not there already."""
         return float(sum(self.model.price[c] for c in self.chosen if c not in self.model.kept))
 
-    def update(self, points: NDArray[np.int64] | None = None) -> None:
-        """Counts again, at some points or all."""
-        asked = np.arange(self.model.points) if points is None else points
-        kernels.apart_of_points(self._sights, np.array(self.chosen, dtype=np.int64), asked, self.apart)
+    @property
+    def _chosen(self) -> NDArray[np.int64]:
+        return np.array(self.chosen, dtype=np.int64)
 
     @property
     def _sights(self) -> kernels.Sights:
-        """The model as kernels take it."""
-        model = self.model
-        angle = math.radians(model.requirement.angle_deg)
-        return kernels.Sights(
-            model.sees, model.azimuth, model.place_of, angle, TIE_RAD, model.requirement.views
-        )
+        return kernels.Sights(self.model.sees, self.model.azimuth, self.model.place_of)
+
+    @property
+    def _rule(self) -> kernels.Apart:
+        requirement = self.model.requirement
+        return kernels.Apart(math.radians(requirement.angle_deg), TIE_RAD, requirement.views)
+
+    def update(self, points: NDArray[np.int64] | None = None) -> None:
+        """Counts again, at some points or all."""
+        asked = np.arange(self.model.points) if points is None else points
+        kernels.apart_of_points(self._sights, self._chosen, self._rule, asked, self.apart)
 
     def without(self, members: Sequence[int]) -> "Layout":
         """The layout without some of its candidates."""
@@ -96,10 +100,8 @@ class Layout:
         """What each candidate would add to the sum of worths, shape (candidates,); -1 where its place is taken."""
         model = self.model
         gain = np.zeros(model.candidates)
-        open_ = np.flatnonzero(self.apart < model.requirement.views)
-        kernels.gains(
-            self._sights, np.array(self.chosen, dtype=np.int64), open_, self.apart, self.worth, gain
-        )
+        asked = np.flatnonzero(self.apart < model.requirement.views)
+        kernels.gains(self._sights, self._chosen, self._rule, asked, self.apart, self.worth, gain)
         if self.chosen:
             gain[np.isin(model.place_of, model.place_of[self.chosen])] = -1.0
         return gain
@@ -107,5 +109,5 @@ class Layout:
     def losses(self) -> NDArray[np.float64]:
         """What the sum of worths would lose without each member, shape (len(chosen),)."""
         loss = np.zeros(len(self.chosen))
-        kernels.losses(self._sights, np.array(self.chosen, dtype=np.int64), self.apart, self.worth, loss)
+        kernels.losses(self._sights, self._chosen, self._rule, self.apart, self.worth, loss)
         return loss

@@ -4,7 +4,7 @@ Nothing here is shared with `placement.verification`, which projects through the
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
+from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.lens import distorted, usable_radius
 from elbowroom.placement.requirement import Requirement
@@ -73,7 +74,7 @@ def build_model(
     requirement: Requirement,
     *,
     kept: Sequence[int] = (),
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Model:
     """Casts one ray from each place to each point, and asks of each candidate whether it lies in its field of view.
 

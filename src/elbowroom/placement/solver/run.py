@@ -2,11 +2,12 @@
 
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from elbowroom.files.progress import Progress
 from elbowroom.geometry.parallel import default_threads, spread
 from elbowroom.placement.solver.layout import Layout
 from elbowroom.placement.solver.model import Model
@@ -50,7 +51,7 @@ def cheapest(
     *,
     first: Sequence[int] = (),
     seed: int = 1,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> Layout:
     """The cheapest layout that is found with this share of valid points.
 
@@ -99,9 +100,18 @@ def fullest(
     course: Course,
     *,
     seed: int = 1,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> Layout:
-    """The layout with most valid points that is found for at most this price; arguments as of `cheapest`."""
+    """The layout with most valid points that is found for at most this price.
+
+    Args:
+        model: candidates and points.
+        budget: greatest price of all that is new.
+        until: when time is up, as `time.perf_counter` counts [s].
+        course: better layouts on the way are noted here.
+        seed: of all random choices.
+        progress: called with what is being done.
+    """
     rng = np.random.default_rng(seed)
     progress("choosing by CP-SAT on a few points")
     exact = _exact(model, rng, until, course, budget=budget) or ()
@@ -132,11 +142,18 @@ def in_scenes(
     course: Course,
     *,
     seed: int = 1,
-    progress: Callable[[str], None],
+    progress: Progress,
 ) -> SceneLayout:
     """The cheapest layout with a share of the free space of scenes, or with None the one that finds most for a price.
 
-    The other arguments are as of `cheapest`.
+    Args:
+        model: candidates, and what each sees in the scenes.
+        share: of the free space that is wanted, 0 to 1; None: as much as can be.
+        budget: greatest price of all that is new.
+        until: when time is up, as `time.perf_counter` counts [s].
+        course: better layouts on the way are noted here.
+        seed: of all random choices.
+        progress: called with what is being done.
     """
     rng = np.random.default_rng(seed)
     wanted = 1.0 if share is None else share

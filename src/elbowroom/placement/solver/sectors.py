@@ -5,7 +5,7 @@ views that are pairwise at least the angle apart. That is sufficient, not necess
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,34 +56,10 @@ def sector_layout(
     inside = _inside(model)
     if inside is None:
         return None
-    views = model.requirement.views
     problem = cp.CpModel()
-    chosen = [problem.new_bool_var(f"c{c}") for c in range(model.candidates)]
-    for c in model.kept:
-        problem.add(chosen[c] == 1)
-    for place in np.unique(model.place_of):
-        here = np.flatnonzero(model.place_of == place)
-        if len(here) > 1:
-            problem.add_at_most_one([chosen[c] for c in here])
-    valid = []
-    for p in range(model.points):
-        turns = []
-        for turn in range(ROTATIONS):
-            sectors = [
-                np.flatnonzero(model.sees[:, p].astype(bool) & inside[turn][sector][model.place_of, p])
-                for sector in range(views)
-            ]
-            if all(len(some) for some in sectors):
-                met = problem.new_bool_var("")
-                for some in sectors:
-                    problem.add_bool_or([chosen[c] for c in some]).only_enforce_if(met)
-                turns.append(met)
-        if turns:
-            point = problem.new_bool_var("")
-            problem.add_bool_or([*turns, point.negated()])
-            # follows from the sectors; it is what the solver's linear relaxation works with
-            problem.add(sum(chosen[c] for c in np.flatnonzero(model.sees[:, p])) >= views * point)
-            valid.append(point)
+    chosen = _choices(model, problem)
+    valid = _valid_points(model, inside, problem, chosen)
+    # CP-SAT counts in whole numbers: prices in thousandths of the greatest
     scale = 1000 / max(float(model.price.max()), 1e-9)
     price = sum(
         round(float(model.price[c]) * scale) * chosen[c]
@@ -104,12 +80,49 @@ def sector_layout(
     solver.parameters.max_time_in_seconds = seconds
     solver.parameters.num_workers = threads
     solver.parameters.random_seed = seed
-    status = solver.solve(problem)
-    if status not in (cp.OPTIMAL, cp.FEASIBLE):
+    if solver.solve(problem) not in (cp.OPTIMAL, cp.FEASIBLE):
         return None
     members = [c for c in range(model.candidates) if solver.value(chosen[c])]
     bound = solver.best_objective_bound
     return SectorChoice(members, bound / scale if budget is None else bound / model.points)
+
+
+def _choices(model: Model, problem: Any) -> list[Any]:
+    """A variable for each candidate: kept ones are chosen, of each place one at most."""
+    chosen = [problem.new_bool_var(f"c{c}") for c in range(model.candidates)]
+    for c in model.kept:
+        problem.add(chosen[c] == 1)
+    for place in np.unique(model.place_of):
+        here = np.flatnonzero(model.place_of == place)
+        if len(here) > 1:
+            problem.add_at_most_one([chosen[c] for c in here])
+    return chosen
+
+
+def _valid_points(
+    model: Model, inside: list[list[NDArray[np.bool_]]], problem: Any, chosen: list[Any]
+) -> list[Any]:
+    """A variable for each point that can be valid: it needs a view in each sector of one of the rotations."""
+    views, valid = model.requirement.views, []
+    for p in range(model.points):
+        turns = []
+        for turn in range(ROTATIONS):
+            sectors = [
+                np.flatnonzero(model.sees[:, p].astype(bool) & inside[turn][sector][model.place_of, p])
+                for sector in range(views)
+            ]
+            if all(len(some) for some in sectors):
+                met = problem.new_bool_var("")
+                for some in sectors:
+                    problem.add_bool_or([chosen[c] for c in some]).only_enforce_if(met)
+                turns.append(met)
+        if turns:
+            point = problem.new_bool_var("")
+            problem.add_bool_or([*turns, point.negated()])
+            # follows from the sectors; it is what the solver's linear relaxation works with
+            problem.add(sum(chosen[c] for c in np.flatnonzero(model.sees[:, p])) >= views * point)
+            valid.append(point)
+    return valid
 
 
 def _inside(model: Model) -> list[list[NDArray[np.bool_]]] | None:

@@ -1,1 +1,1 @@
-"""Pyramid, footprint test, pixel test and counting in compiled loops."""
+"""Texels, pyramid, footprint test, pixel test and counting in compiled loops."""

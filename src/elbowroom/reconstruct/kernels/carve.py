@@ -8,55 +8,35 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numba.cpython.unsafe.numbers import trailing_zeros
 
-from elbowroom.geometry.kernels.bits import uncounted
-from elbowroom.reconstruct.kernels.box import ALL, BLANK, FLOATS, INTS, SPLIT
-from elbowroom.reconstruct.kernels.look import ask, contested, measured_at_centre, sort_out
-from elbowroom.reconstruct.kernels.pixel import PIXEL_FLOATS, settle_word
+from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
+from elbowroom.reconstruct.kernels.box import ALL, LANES
+from elbowroom.reconstruct.kernels.look import Look, ask, contested, measured_at_centre, sort_out
+from elbowroom.reconstruct.kernels.pixel import VOXEL, settle_word
+from elbowroom.reconstruct.kernels.place import blocks_of, cube_at, voxels_of
 from elbowroom.reconstruct.kernels.planes import (
-    BLIND,
     DISPUTED,
     NOTHING,
     PLANES,
     SURFACE,
     THREE,
-    count_through,
     make_canonical,
-    tally,
+    note_disputed,
+    note_through,
 )
-
-
-class Said(NamedTuple):
-    """What is asked, and where the answers go; of all words at once, each kernel writes those of its own cubes.
-
-    inside (words,) uint64: the voxels that are asked. fine (words,) bool: blocks that get the pixel test where windows
-    do not settle them. complete: whether all cameras are asked of every voxel, and counted. planes (PLANES, words)
-    uint64, zeros on entry. through_count, dispute_count: (words, 64) uint8 where complete, else of no size.
-    """
-
-    inside: np.ndarray
-    fine: np.ndarray
-    complete: bool
-    planes: np.ndarray
-    through_count: np.ndarray
-    dispute_count: np.ndarray
 
 
 class Scratch(NamedTuple):
     """Memory of one kernel.
 
-    floats, ints, flags and its view as words: of `kernels.box`; pixel: of `kernels.pixel`. By camera of a cube:
-    through, mixed (n,): blocks that it sees through, and those that must be asked voxel by voxel; undecided (n,):
-    blocks with voxels left for the pixel test; unsettled, stopped (n, 64): which voxels, and which of these it surely
-    does not see through.
+    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.pixel`; in arrays, or nothing would hold their
+    memory. By camera of a cube: through, mixed (n,): blocks that it sees through, and those that must be asked voxel by
+    voxel; undecided (n,): blocks with voxels left for the pixel test; unsettled, stopped (n, 64): which voxels, and
+    which of these it surely does not see through.
     """
 
-    floats: np.ndarray
-    ints: np.ndarray
-    flags: np.ndarray
-    flag_words: np.ndarray
-    pixel: np.ndarray
+    lanes: np.ndarray
+    voxel: np.ndarray
     through: np.ndarray
     mixed: np.ndarray
     undecided: np.ndarray
@@ -65,186 +45,129 @@ class Scratch(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def carve_cubes(cubes, lattice, inside, views, fine, complete, planes, through_count, dispute_count):
+def carve_cubes(cubes, lattice, views, answers):
     """Carves some 16-voxel cubes; each writes only its own 64 words.
 
     Args:
         cubes: (n,) indices of cubes.
         lattice: the grid.
         views: all cameras.
-        inside, fine, complete, planes, through_count, dispute_count: see `Said`.
+        answers: what is asked of them, and where the answers go.
     """
-    cameras = views.numbers.shape[0]
-    flags = np.empty(192, dtype=np.uint8)
+    cameras = views.cameras.size
     scratch = Scratch(
-        np.empty(FLOATS, dtype=np.float32),
-        np.empty(INTS, dtype=np.int32),
-        flags,
-        flags.view(np.uint64),
-        np.empty(PIXEL_FLOATS, dtype=np.float64),
+        np.empty(1, LANES),
+        np.empty(1, VOXEL),
         np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
         np.empty((cameras, 64), dtype=np.uint64),
         np.empty((cameras, 64), dtype=np.uint64),
     )
-    said = Said(inside, fine, complete, planes, through_count, dispute_count)
-    edge = lattice.edge
-    for cube in cubes:
-        x = lattice.x0 + (cube // (lattice.cubes_y * lattice.cubes_z)) * 16 * edge
-        y = lattice.y0 + ((cube // lattice.cubes_z) % lattice.cubes_y) * 16 * edge
-        z = lattice.z0 + (cube % lattice.cubes_z) * 16 * edge
-        _ask_blocks(cube, x, y, z, edge, views, said, scratch)
+    for number in cubes:
+        cube = cube_at(lattice, number)
+        _ask_blocks(cube, views, answers, scratch)
         # camera by camera, so that the part of its image that the cube covers stays in the cache
         for c in range(cameras):
-            _ask_voxels(cube, c, x, y, z, edge, views, said, scratch)
+            _ask_voxels(cube, c, views, answers, scratch)
         # first those that may see through: where three do, the others need not be asked, nor where there is a surface
         for turn in range(2):
             for c in range(cameras):
-                _ask_pixels(cube, c, turn, x, y, z, edge, views, said, scratch)
-        for word in range(cube * 64, cube * 64 + 64):
-            if not complete:
-                make_canonical(planes, word)
+                _ask_pixels(cube, c, turn, views, answers, scratch)
+        for word in range(cube.word, cube.word + 64):
+            if not answers.complete:
+                make_canonical(answers.planes, word)
             for plane in range(PLANES):
-                planes[plane, word] &= inside[word]
+                answers.planes[plane, word] &= answers.asked[word]
 
 
 @uncounted(cache=True)
-def _ask_blocks(cube, x, y, z, edge, views, said, scratch):
-    """Asks all cameras of the 64 blocks of a cube whose least corner is (x, y, z), and counts who sees through."""
-    floats, ints, flags, flag_words = scratch.floats, scratch.ints, scratch.flags, scratch.flag_words
-    through, mixed, inside, planes = scratch.through, scratch.mixed, said.inside, said.planes
-    block = 4.0 * edge
-    # not literals: numba would compile all that `ask` calls once for each of them
-    of_blocks, keep = np.int64(1), np.bool_(True)
+def _ask_blocks(cube, views, answers, scratch):
+    """Asks all cameras of the 64 blocks of a cube, and counts who sees through."""
+    through, mixed = scratch.through, scratch.mixed
+    blocks = blocks_of(cube)
+    # not a literal: numba would compile all that `ask` calls once more
+    keep_partly = np.bool_(True)
     for c in range(through.size):
-        through[c], mixed[c], _, _ = ask(
-            views.numbers, views.levels, views.offset, views.windows, c, of_blocks,
-            x + 0.5 * block, y + 0.5 * block, z + 0.5 * block, block, keep, floats, ints, flags, flag_words,
-        )  # fmt: skip
+        look = ask(views.cameras[c], views.windows, blocks, keep_partly, scratch.lanes[0])
+        through[c], mixed[c] = look.through, look.unsure
     for lane in range(64):
-        word = cube * 64 + lane
+        word = cube.word + lane
         here = np.uint64(1) << np.uint64(lane)
-        if not inside[word]:
+        if not answers.asked[word]:
             continue
         for c in range(through.size):
             if through[c] & here:
-                count_through(planes, word, ALL)
-                if said.complete:
-                    tally(said.through_count, word, ALL)
+                note_through(answers, word, ALL)
 
 
 @uncounted(cache=True)
-def _ask_voxels(cube, c, x, y, z, edge, views, said, scratch):
+def _ask_voxels(cube, c, views, answers, scratch):
     """Asks one camera of the voxels of those blocks that it neither sees through nor says nothing of."""
-    numbers, levels, offset, windows = views.numbers, views.levels, views.offset, views.windows
-    floats, ints, flags, flag_words = scratch.floats, scratch.ints, scratch.flags, scratch.flag_words
-    inside, fine, complete, planes = said.inside, said.fine, said.complete, said.planes
-    of_voxels = np.int64(0)
+    camera = views.cameras[c]
     blocks, undecided = scratch.mixed[c], NOTHING
     while blocks:
-        lane = np.int64(trailing_zeros(blocks))
+        lane = lowest_bit(blocks)
         here = np.uint64(1) << np.uint64(lane)
         blocks &= ~here
-        word = cube * 64 + lane
-        open_voxels = inside[word] if complete else inside[word] & ~planes[THREE, word]
+        word = cube.word + lane
+        open_voxels = answers.asked[word]
+        if not answers.complete:
+            open_voxels &= ~answers.planes[THREE, word]
         if not open_voxels:
             continue
-        bx = x + ((lane >> 4) * 4 + 0.5) * edge
-        by = y + (((lane >> 2) & 3) * 4 + 0.5) * edge
-        bz = z + ((lane & 3) * 4 + 0.5) * edge
-        seen, unsure, partly, reach = ask(
-            numbers, levels, offset, windows, c, of_voxels, bx, by, bz, edge, fine[word],
-            floats, ints, flags, flag_words,
-        )  # fmt: skip
-        seen &= open_voxels
-        unsure &= open_voxels
-        count_through(planes, word, seen)
-        if complete:
-            tally(said.through_count, word, seen)
+        look = ask(camera, views.windows, voxels_of(cube, lane), answers.fine[word], scratch.lanes[0])
+        note_through(answers, word, look.through & open_voxels)
+        unsure = look.unsure & open_voxels
         if not unsure:
             continue
-        if numbers[c, BLANK] != 0.0:
-            planes[DISPUTED, word] |= unsure
-            planes[BLIND, word] |= unsure
-            if complete:
-                tally(said.dispute_count, word, unsure)
-        elif fine[word]:
+        if camera.blank:
+            note_disputed(answers, word, unsure, NOTHING, unsure)
+        elif answers.fine[word]:
             undecided |= here
-            _sort_out(c, lane, word, unsure, partly, edge, views, said, scratch)
+            surface, stopped = NOTHING, NOTHING
+            if not look.partly:
+                surface, stopped = sort_out(camera, views.texels, cube.edge, unsure, scratch.lanes[0])
+                note_disputed(answers, word, surface, surface, NOTHING)
+            scratch.stopped[c, lane] = stopped
+            scratch.unsettled[c, lane] = unsure & ~surface
         else:
-            _dispute(c, word, unsure, partly, reach, views, said, scratch)
+            left = Look(look.through, unsure, look.partly, look.reach)
+            _dispute(camera, word, left, views.texels, answers, scratch.lanes[0])
     scratch.undecided[c] = undecided
 
 
 @uncounted(cache=True)
-def _sort_out(c, lane, word, unsure, partly, edge, views, said, scratch):
-    """Leaves a block's unsure voxels to the pixel test, but those that one look at the middle pixel settles."""
-    surface, stopped = NOTHING, NOTHING
-    if not partly:
-        surface, stopped = sort_out(
-            views.numbers, c, edge, views.texel_first[c], views.trust_texels, views.doubt_texels,
-            unsure, scratch.floats,
-        )  # fmt: skip
-        said.planes[DISPUTED, word] |= surface
-        said.planes[SURFACE, word] |= surface
-        if said.complete:
-            tally(said.dispute_count, word, surface)
-    scratch.stopped[c, lane] = stopped
-    scratch.unsettled[c, lane] = unsure & ~surface
-
-
-@uncounted(cache=True)
-def _dispute(c, word, unsure, partly, reach, views, said, scratch):
+def _dispute(camera, word, look, texels, answers, lanes):
     """Without the pixel test, a voxel that windows do not settle is disputed, if by pixels that are not explained."""
-    planes, disputed = said.planes, unsure
-    if views.numbers[c, SPLIT] != 0.0:
+    planes, disputed = answers.planes, look.unsure
+    if camera.explained:
         # one dispute is enough, unless they are counted
-        asked = unsure if said.complete else unsure & ~planes[DISPUTED, word]
-        disputed = contested(
-            views.numbers, c, views.tile_first[c], views.doubt_tiles, views.doubt_squares,
-            asked, partly, reach, scratch.floats,
-        )  # fmt: skip
-    surface, blind = measured_at_centre(
-        views.numbers, c, views.texel_first[c], views.doubt_texels, views.tile_first[c], views.doubt_tiles,
-        unsure, planes[SURFACE, word], partly, scratch.floats, scratch.ints, scratch.flags, scratch.flag_words,
-    )  # fmt: skip
-    planes[DISPUTED, word] |= disputed
-    planes[SURFACE, word] |= surface
-    planes[BLIND, word] |= blind
-    if said.complete:
-        tally(said.dispute_count, word, disputed)
+        asked = disputed if answers.complete else disputed & ~planes[DISPUTED, word]
+        disputed = contested(camera, texels, asked, look, lanes)
+    surface, blind = measured_at_centre(camera, texels, look, planes[SURFACE, word], lanes)
+    note_disputed(answers, word, disputed, surface, blind)
 
 
 @uncounted(cache=True)
-def _ask_pixels(cube, c, turn, x, y, z, edge, views, said, scratch):
+def _ask_pixels(cube, c, turn, views, answers, scratch):
     """Asks one camera pixel by pixel of voxels left to that: in turn 0 those it may see through, then others."""
-    complete, planes = said.complete, said.planes
+    planes = answers.planes
     blocks = scratch.undecided[c]
     while blocks:
-        lane = np.int64(trailing_zeros(blocks))
+        lane = lowest_bit(blocks)
         blocks &= ~(np.uint64(1) << np.uint64(lane))
-        word = cube * 64 + lane
+        word = cube.word + lane
         stopped = scratch.stopped[c, lane]
         rest = scratch.unsettled[c, lane] & (~stopped if turn == 0 else stopped)
-        if not complete:
+        if not answers.complete:
             rest &= ~planes[THREE, word]
             if turn == 1:
                 rest &= ~planes[SURFACE, word]
         if not rest:
             continue
         seen, disputed, surface, blind = settle_word(
-            views.numbers, c, views.trust_texels, views.doubt_texels, views.texel_first[c],
-            views.trust_tiles, views.doubt_tiles, views.tile_first[c], rest,
-            x + ((lane >> 4) * 4 + 0.5) * edge,
-            y + (((lane >> 2) & 3) * 4 + 0.5) * edge,
-            z + ((lane & 3) * 4 + 0.5) * edge,
-            edge, scratch.pixel,
-        )  # fmt: skip
-        planes[SURFACE, word] |= surface
-        planes[BLIND, word] |= blind
-        planes[DISPUTED, word] |= disputed
-        count_through(planes, word, seen)
-        if complete:
-            tally(said.through_count, word, seen)
-            tally(said.dispute_count, word, disputed)
+            views.cameras[c], views.texels, rest, voxels_of(cube, lane), scratch.voxel[0]
+        )
+        note_disputed(answers, word, disputed, surface, blind)
+        note_through(answers, word, seen)

@@ -1,133 +1,127 @@
 """One look of a camera at the 64 children of a cube: through, unsure, and what is known of those that are unsure."""
 
-import numpy as np
-from numba.cpython.unsafe.numbers import trailing_zeros
+from typing import NamedTuple
 
-from elbowroom.geometry.kernels.bits import uncounted
+import numpy as np
+from numba import njit
+
+from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
 from elbowroom.reconstruct.kernels.box import (
-    COSINE,
     CROSSING,
-    FAR,
-    GREATEST,
-    HALF_EXTENT,
     INSIDE,
-    LOW_GREATEST,
-    LOW_LEAST,
-    NEAR,
     OUTSIDE,
-    QUANTUM,
-    RADIAL,
-    SIZE,
-    STATE,
-    TEXEL,
-    U,
-    V,
     bits_of,
     bound_inside,
     bound_partly,
     decide_inside,
     decide_partly,
     look_up,
-    place_cube,
+    place_boxes,
 )
 from elbowroom.reconstruct.kernels.planes import NOTHING
-from elbowroom.reconstruct.kernels.pyramid import NEUTRAL, NO_RETURN, both_least
+from elbowroom.reconstruct.kernels.pyramid import both_least
+from elbowroom.reconstruct.kernels.texels import NEUTRAL, NO_RETURN
 
 ROUNDING_M = 2e-5
 """More than float32 can err in the depth of a voxel [m]."""
 
 
+class Look(NamedTuple):
+    """What a camera says of 64 boxes: words of those that it sees through and of those that it is unsure of, whether
+    their cube lies partly outside the image, and how many pixels a box reaches to every side of its centre pixel.
+    """
+
+    through: np.uint64
+    unsure: np.uint64
+    partly: bool
+    reach: int
+
+
 @uncounted(cache=True)
-def ask(
-    numbers, levels, offset, windows, c, scale, x, y, z, edge, keep_partly, floats, ints, flags, flag_words
-):
-    """Words (through, unsure) of the 64 children of a cube, whether the cube lies partly outside the image, and the
-    children's reach in pixels."""
-    px, py, pz, state = place_cube(numbers, c, scale, x, y, z, edge)
-    if state == OUTSIDE:
-        return NOTHING, NOTHING, False, 0
+def ask(camera, windows, boxes, keep_partly, lanes):
+    """Looks at the 64 children of a cube.
+
+    Args:
+        camera, windows: its record, and the windows of all.
+        boxes: the children.
+        keep_partly: whether the camera is unsure, too, of a box that it sees through as far as that is in view.
+        lanes: scratch; `measured_at_centre`, `sort_out` and `contested` go on from it.
+    """
+    through, unsure, reach = NOTHING, NOTHING, 0
+    first, state = place_boxes(camera, boxes)
     if state == INSIDE:
-        reach = bound_inside(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
-        look_up(windows, numbers[c, QUANTUM], floats, ints)
-        through, unsure = decide_inside(floats, flags, flag_words)
-        return through, unsure, False, reach
-    reach = bound_partly(numbers, levels, offset, c, scale, px, py, pz, floats, ints)
-    look_up(windows, numbers[c, QUANTUM], floats, ints)
-    through, unsure, cut = decide_partly(floats, flags, flag_words)
-    return through, (unsure | cut) if keep_partly else unsure, True, reach
+        reach = bound_inside(camera, boxes.scale, first, lanes)
+        look_up(windows, camera.quantum, lanes)
+        through, unsure = decide_inside(lanes)
+    elif state != OUTSIDE:
+        reach = bound_partly(camera, boxes.scale, first, lanes)
+        look_up(windows, camera.quantum, lanes)
+        through, unsure, cut = decide_partly(lanes)
+        if keep_partly:
+            unsure |= cut
+    return Look(through, unsure, state != INSIDE and state != OUTSIDE, reach)
 
 
 @uncounted(cache=True)
-def _may_be_measured(numbers, c, tile_first, doubt_tiles, floats, ints, flags, flag_words):
+def _may_be_measured(camera, doubt_tiles, lanes):
     """The boxes between whose depth bounds something may be measured in the tile of their centre's pixel.
 
     Tiles stay in the cache, pixels do not: this saves most looks at single pixels.
     """
-    across = (np.int32(numbers[c, SIZE]) + np.int32(3)) >> np.int32(2)
-    tiles = doubt_tiles[tile_first:]
+    across = (np.int32(camera.width) + np.int32(3)) >> np.int32(2)
+    tiles = doubt_tiles[camera.first_tile :]
     for lane in range(64):
-        row, column = np.int32(floats[V + lane]), np.int32(floats[U + lane])
-        ints[TEXEL + lane] = (row >> np.int32(2)) * across + (column >> np.int32(2))
+        row, column = np.int32(lanes.v[lane]), np.int32(lanes.u[lane])
+        lanes.texel[lane] = (row >> np.int32(2)) * across + (column >> np.int32(2))
     for lane in range(64):
-        tile = tiles[np.uint32(ints[TEXEL + lane])]
-        ints[LOW_LEAST + lane] = np.int32(tile >> np.uint32(16))
-        ints[LOW_GREATEST + lane] = np.int32(NO_RETURN) - np.int32(tile & np.uint32(0xFFFF))
+        tile = tiles[np.uint32(lanes.texel[lane])]
+        lanes.least_quanta[lane] = np.int32(tile >> np.uint32(16))
+        lanes.greatest_quanta[lane] = np.int32(NO_RETURN) - np.int32(tile & np.uint32(0xFFFF))
     # a quantum is a power of two, so these products are exact
-    quantum = np.float32(numbers[c, QUANTUM])
+    quantum = np.float32(camera.quantum)
     for lane in range(64):
-        least = np.float32(ints[LOW_LEAST + lane]) * quantum
-        greatest = np.float32(ints[LOW_GREATEST + lane]) * quantum
-        beyond_all = (greatest < floats[NEAR + lane]) & (ints[LOW_GREATEST + lane] != np.int32(NO_RETURN))
-        flags[lane] = (not beyond_all) & (least <= floats[FAR + lane])
-        flags[64 + lane] = floats[GREATEST + lane] == np.float32(np.inf)
-        flags[128 + lane] = floats[STATE + lane] != CROSSING
-    return bits_of(flag_words, 0), bits_of(flag_words, 1), bits_of(flag_words, 2)
+        least = np.float32(lanes.least_quanta[lane]) * quantum
+        greatest = np.float32(lanes.greatest_quanta[lane]) * quantum
+        beyond_all = (greatest < lanes.near[lane]) & (lanes.greatest_quanta[lane] != np.int32(NO_RETURN))
+        lanes.marks[0, lane] = (not beyond_all) & (least <= lanes.far[lane])
+        lanes.marks[1, lane] = lanes.greatest[lane] == np.float32(np.inf)
+        lanes.marks[2, lane] = lanes.state[lane] != CROSSING
+    return bits_of(lanes, 0), bits_of(lanes, 1), bits_of(lanes, 2)
+
+
+@njit(inline="always")
+def _centre_pixel(camera, lanes, lane):
+    """Where the texel of the pixel lies that a lane's centre projects to."""
+    return camera.first_texel + int(lanes.v[lane]) * camera.width + int(lanes.u[lane])
 
 
 @uncounted(cache=True)
-def measured_at_centre(
-    numbers,
-    c,
-    first,
-    doubt_texels,
-    tile_first,
-    doubt_tiles,
-    unsure,
-    known,
-    partly,
-    floats,
-    ints,
-    flags,
-    flag_words,
-):
+def measured_at_centre(camera, texels, look, known, lanes):
     """Which unsure boxes hold the measured point of their centre's pixel, and which have pixels without a return.
 
     Of `known` boxes it need not be told whether they are a surface.
     """
-    surface = NOTHING
-    width = int(numbers[c, SIZE])
-    quantum = numbers[c, QUANTUM]
-    rest, lost, in_front = _may_be_measured(
-        numbers, c, tile_first, doubt_tiles, floats, ints, flags, flag_words
-    )
-    if partly:
+    surface, unsure = NOTHING, look.unsure
+    quantum = camera.quantum
+    rest, lost, in_front = _may_be_measured(camera, texels.doubt_tiles, lanes)
+    if look.partly:
         unsure &= in_front
     rest &= unsure & ~known
     # without branches, so that the looks of many lanes are under way at once
     while rest:
-        lane = np.int64(trailing_zeros(rest))
+        lane = lowest_bit(rest)
         rest &= rest - np.uint64(1)
-        texel = doubt_texels[first + int(floats[V + lane]) * width + int(floats[U + lane])]
+        texel = texels.doubt_texels[_centre_pixel(camera, lanes, lane)]
         greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
         depth = greatest * quantum
-        holds = (floats[NEAR + lane] <= depth) & (depth <= floats[FAR + lane])
+        holds = (lanes.near[lane] <= depth) & (depth <= lanes.far[lane])
         holds &= (texel != NEUTRAL) & (greatest != np.uint32(NO_RETURN))
         surface |= np.uint64(holds) << np.uint64(lane)
     return surface, lost & unsure
 
 
 @uncounted(cache=True)
-def sort_out(numbers, c, scale_edge, first, trust_texels, doubt_texels, unsure, floats):
+def sort_out(camera, texels, edge, unsure, lanes):
     """What one look at the middle pixel settles of unsure voxels: words (surely a surface, surely not through).
 
     The ray through a voxel's centre lies in the cone of the pixel that the centre projects to, and runs inside the
@@ -135,25 +129,23 @@ def sort_out(numbers, c, scale_edge, first, trust_texels, doubt_texels, unsure, 
     before the centre keeps it from saying *through*, whatever the other pixels hold. All voxels lie wholly in view.
     """
     surface, stopped = NOTHING, NOTHING
-    width = int(numbers[c, SIZE])
-    quantum = numbers[c, QUANTUM]
-    radial = numbers[c, RADIAL] != 0.0
-    extent = numbers[c, HALF_EXTENT + 3] if radial else numbers[c, HALF_EXTENT + 2]
-    inner = 0.5 * scale_edge * (1.0 if radial else numbers[c, COSINE])
+    quantum = camera.quantum
+    # how far the near and far bounds lie from the centre, and how far at least the ray runs inside
+    extent = camera.half_diagonal[0] if camera.radial else camera.half_extent[0, 2]
+    inner = 0.5 * edge * (1.0 if camera.radial else camera.least_cosine)
     rest = unsure
     while rest:
-        lane = np.int64(trailing_zeros(rest))
+        lane = lowest_bit(rest)
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
-        at = 0.5 * (np.float64(floats[NEAR + lane]) + np.float64(floats[FAR + lane]))
-        margin = (
-            0.5 * (np.float64(floats[FAR + lane]) - np.float64(floats[NEAR + lane])) - extent - ROUNDING_M
-        )
-        pixel = first + int(floats[V + lane]) * width + int(floats[U + lane])
-        if not (trust_texels[pixel] >> np.uint32(16)) * quantum < at + margin - ROUNDING_M:
+        near, far = np.float64(lanes.near[lane]), np.float64(lanes.far[lane])
+        at = 0.5 * (near + far)
+        margin = 0.5 * (far - near) - extent - ROUNDING_M
+        pixel = _centre_pixel(camera, lanes, lane)
+        if not (texels.trust_texels[pixel] >> np.uint32(16)) * quantum < at + margin - ROUNDING_M:
             continue
         stopped |= bit
-        texel = doubt_texels[pixel]
+        texel = texels.doubt_texels[pixel]
         greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
         if texel == NEUTRAL or greatest == NO_RETURN:
             continue
@@ -163,49 +155,58 @@ def sort_out(numbers, c, scale_edge, first, trust_texels, doubt_texels, unsure, 
 
 
 @uncounted(cache=True)
-def contested(numbers, c, tile_first, doubt_tiles, doubt_squares, unsure, partly, reach, floats):
-    """Of the unsure boxes those that unexplained pixels dispute.
+def contested(camera, texels, asked, look, lanes):
+    """Of the boxes that are asked those that unexplained pixels dispute.
 
-    Asked are all tiles that hold a pixel within `reach` of a box's centre pixel.
+    Looked at are all tiles that hold a pixel within `look.reach` of a box's centre pixel.
     """
-    disputed = NOTHING
-    width, height = int(numbers[c, SIZE]), int(numbers[c, SIZE + 1])
+    disputed, reach = NOTHING, look.reach
+    width, height = camera.width, camera.height
     across = (width + 3) >> 2
-    quantum = np.float32(numbers[c, QUANTUM])
-    rest = unsure
+    quantum = np.float32(camera.quantum)
+    rest = asked
     while rest:
-        lane = np.int64(trailing_zeros(rest))
+        lane = lowest_bit(rest)
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
-        if partly and floats[STATE + lane] == CROSSING:
+        if look.partly and lanes.state[lane] == CROSSING:
             disputed |= bit
             continue
-        u, v = int(floats[U + lane]), int(floats[V + lane])
-        first, last = max(u - reach, 0) >> 2, min(u + reach, width - 1) >> 2
+        u, v = int(lanes.u[lane]), int(lanes.v[lane])
+        left, right = max(u - reach, 0) >> 2, min(u + reach, width - 1) >> 2
         top, bottom = max(v - reach, 0) >> 2, min(v + reach, height - 1) >> 2
-        both = least_of_tiles(doubt_tiles, doubt_squares, tile_first, across, top, bottom, first, last)
+        both = least_of_tiles(texels, camera.first_tile, across, (top, bottom, left, right))
         greatest = np.uint32(NO_RETURN) - (both & np.uint32(0xFFFF))
-        past = np.float32(both >> np.uint32(16)) * quantum > floats[FAR + lane]
-        hidden = greatest < NO_RETURN and np.float32(greatest) * quantum < floats[NEAR + lane]
+        past = np.float32(both >> np.uint32(16)) * quantum > lanes.far[lane]
+        hidden = greatest < NO_RETURN and np.float32(greatest) * quantum < lanes.near[lane]
         if not (past or hidden):
             disputed |= bit
     return disputed
 
 
 @uncounted(cache=True)
-def least_of_tiles(tiles, squares, tile_first, across, top, bottom, first, last):
-    """The least of a rectangle of tiles: of the squares that cover it, which may overlap."""
+def least_of_tiles(texels, first_tile, across, rectangle):
+    """The least of a rectangle of tiles of doubt: of the squares that cover it, which may overlap.
+
+    Args:
+        texels: of all cameras, with squares.
+        first_tile, across: where a camera's tiles begin, and how many are in a row.
+        rectangle: first and last row, first and last column.
+    """
+    top, bottom, left, right = rectangle
     both = NEUTRAL
-    narrow = min(bottom - top, last - first) + 1
+    narrow = min(bottom - top, right - left) + 1
     level = (narrow >= 2) + (narrow >= 4) + (narrow >= 8)
     edge = 1 << level
     row = top
     while row <= bottom:
-        begin = tile_first + min(row, bottom - edge + 1) * across
-        column = first
-        while column <= last:
-            tile = begin + min(column, last - edge + 1)
-            both = both_least(both, squares[level - 1, tile] if level else tiles[tile])
+        begin = first_tile + min(row, bottom - edge + 1) * across
+        column = left
+        while column <= right:
+            tile = begin + min(column, right - edge + 1)
+            both = both_least(
+                both, texels.doubt_squares[level - 1, tile] if level else texels.doubt_tiles[tile]
+            )
             column += edge
         row += edge
     return both

@@ -4,41 +4,71 @@ A pixel's cone holds the directions (x, y, 1) with u within 0.5 + lateral of its
 direction moves by d_a(u, v), linear in u and v. With the voxel's faces at low_a and high_a from the camera's centre,
 the cone has left the voxel at depth t once t * d_a is beyond the far face for some axis, has not reached it while
 t * d_a is before the near face for some axis, and misses it if it passes a silhouette edge on the outer side.
+
+What stands in inner loops is inlined by LLVM (`forceinline`): a call would cost more than the arithmetic.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numba.cpython.unsafe.numbers import trailing_zeros
 
-from elbowroom.geometry.kernels.bits import uncounted
-from elbowroom.reconstruct.kernels.box import (
-    CENTRE,
-    LATERAL,
-    LENS,
-    MARGIN,
-    PLANE_EPS,
-    QUANTUM,
-    RADIAL,
-    SIZE,
-    TURN,
-)
-from elbowroom.reconstruct.kernels.pyramid import NEUTRAL, NO_RETURN
+from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
+from elbowroom.geometry.kernels.noise import margin_at
+from elbowroom.geometry.kernels.pinhole import pixel_of
+from elbowroom.geometry.kernels.rigid import moved
+from elbowroom.reconstruct.kernels.box import PLANE_EPS
+from elbowroom.reconstruct.kernels.place import box_in
+from elbowroom.reconstruct.kernels.texels import NEUTRAL, NO_RETURN
 
-THROUGH, DISPUTES, IS_SURFACE, IS_BLIND = 1, 2, 4, 8
-PIXEL_FLOATS = 64
-# rows of the scratch array: d_a = D0 + D1 u + D2 v, its half width, faces; then silhouette lines
-D0, D1, D2, DW, LOW, HIGH, LINES = 0, 3, 6, 9, 12, 15, 18
+THROUGH, DISPUTES, IS_SURFACE, IS_BLIND, BLOCKED = 1, 2, 4, 8, 16
+"""Answers. BLOCKED is said within this file alone: some pixel is not free beyond the voxel."""
+
+VOXEL = np.dtype((np.record, [("low", "f8", 3), ("high", "f8", 3), ("lines", "i8"), ("line", "f8", (6, 4))]))
+"""Scratch memory for one voxel and camera: its faces, as seen from the camera's centre [m], and silhouette lines.
+
+A pixel is beyond a line, outside the voxel, where line[0] + line[1] u + line[2] v + line[3] < 0; the last is the line's
+half width over a widened pixel.
+"""
+
+
+class Pixels(NamedTuple):
+    """The pixels whose widened cones may meet a voxel, ends included, and whether the voxel is all in view."""
+
+    left: int
+    right: int
+    top: int
+    bottom: int
+    whole: bool
+
+
+class Depths(NamedTuple):
+    """Where a voxel lies along its rays: the margin of depth [m]; what is free from here on [quanta] is free beyond
+    the voxel; what is measured up to there [quanta] is before it."""
+
+    margin: float
+    clear_from: np.uint32
+    hidden_to: np.uint32
+
+
+class Pixel(NamedTuple):
+    """One pixel: its column and row, up to where it is free [quanta], and the texel of what it measured."""
+
+    u: int
+    v: int
+    free_to: np.uint32
+    measured: np.uint32
 
 
 @uncounted(cache=True, error_model="numpy")
-def _silhouette(b, c, s, count):
+def _silhouette(b, c, rays, voxel):
     """Adds the two lines that bound the voxel as seen along the third axis; none if the camera is within its shadow.
 
     In the plane of axes b and c the voxel is a rectangle; the directions that meet it lie between two of its corners.
     """
-    low_b, high_b, low_c, high_c = s[LOW + b], s[HIGH + b], s[LOW + c], s[HIGH + c]
+    low_b, high_b, low_c, high_c = voxel.low[b], voxel.high[b], voxel.low[c], voxel.high[c]
     if low_b <= 0.0 <= high_b and low_c <= 0.0 <= high_c:
-        return count
+        return
     # the extreme corners, counter-clockwise from `first` to `second` as seen from the origin
     if low_b > 0.0:
         first_b, first_c = (high_b, low_c) if low_c > 0.0 else (low_b, low_c)
@@ -54,246 +84,291 @@ def _silhouette(b, c, s, count):
         # inside where cross(first, d) >= 0 and cross(d, second) >= 0
         pb = first_b if corner == 0 else -second_b
         pc = first_c if corner == 0 else -second_c
-        for row in range(3):
-            s[LINES + 4 * count + row] = pb * s[3 * row + c] - pc * s[3 * row + b]
-        count += 1
-    return count
+        for n in range(3):
+            voxel.line[voxel.lines, n] = pb * rays[n, c] - pc * rays[n, b]
+        voxel.lines += 1
 
 
 @uncounted(cache=True, error_model="numpy")
-def _prepare(numbers, c, x, y, z, edge, s):
-    """Fills the scratch array for one voxel and camera; returns the number of silhouette lines."""
-    half = 0.5 * edge
-    wide = 0.5 + numbers[c, LATERAL]
-    for n in range(12):
-        s[n] = numbers[c, TURN + n]
+def _prepare(camera, box, voxel):
+    """Fills the scratch record for one voxel and camera."""
+    half = 0.5 * box.edge
+    wide = 0.5 + camera.lateral_px
     for a in range(3):
-        middle = (x if a == 0 else (y if a == 1 else z)) - numbers[c, CENTRE + a]
-        s[LOW + a] = middle - half
-        s[HIGH + a] = middle + half
+        middle = (box.x if a == 0 else (box.y if a == 1 else box.z)) - camera.centre_in_world[a]
+        voxel.low[a] = middle - half
+        voxel.high[a] = middle + half
+    voxel.lines = 0
     # not literals: numba would compile it once for each of them
     first, second, third = np.int64(0), np.int64(1), np.int64(2)
-    count = _silhouette(first, second, s, first)
-    count = _silhouette(second, third, s, count)
-    count = _silhouette(third, first, s, count)
-    for line in range(count):
-        at = LINES + 4 * line
-        s[at + 3] = (abs(s[at + 1]) + abs(s[at + 2])) * wide
-    return count
+    _silhouette(first, second, camera.ray, voxel)
+    _silhouette(second, third, camera.ray, voxel)
+    _silhouette(third, first, camera.ray, voxel)
+    for n in range(voxel.lines):
+        voxel.line[n, 3] = (abs(voxel.line[n, 1]) + abs(voxel.line[n, 2])) * wide
 
 
-@njit(cache=True, nogil=True, forceinline=True)
-def _misses(s, count, u, v):
-    for line in range(count):
-        at = LINES + 4 * line
-        if s[at] + s[at + 1] * u + s[at + 2] * v + s[at + 3] < 0.0:
+@uncounted(cache=True, forceinline=True)
+def _misses(voxel, u, v):
+    """Whether a pixel's cone passes the voxel."""
+    for n in range(voxel.lines):
+        line = voxel.line[n]
+        if line[0] + line[1] * u + line[2] * v + line[3] < 0.0:
             return True
     return False
 
 
-@njit(cache=True, nogil=True, forceinline=True)
-def _has_left(s, u, v, t):
+@uncounted(cache=True, forceinline=True)
+def _has_left(camera, voxel, pixel, t):
     """Whether all of the pixel's cone is beyond the voxel from depth t on."""
     for a in range(3):
-        d = s[D0 + a] + s[D1 + a] * u + s[D2 + a] * v
-        low, high = d - s[DW + a], d + s[DW + a]
-        if low >= 0.0 and t * low > s[HIGH + a]:
+        d = camera.ray[0, a] + camera.ray[1, a] * pixel.u + camera.ray[2, a] * pixel.v
+        low, high = d - camera.ray_half_width[a], d + camera.ray_half_width[a]
+        if low >= 0.0 and t * low > voxel.high[a]:
             return True
-        if high <= 0.0 and t * high < s[LOW + a]:
+        if high <= 0.0 and t * high < voxel.low[a]:
             return True
     return False
 
 
-@njit(cache=True, nogil=True, forceinline=True)
-def _not_reached(s, u, v, t):
+@uncounted(cache=True, forceinline=True)
+def _not_reached(camera, voxel, pixel, t):
     """Whether no part of the pixel's cone has reached the voxel up to depth t."""
     for a in range(3):
-        d = s[D0 + a] + s[D1 + a] * u + s[D2 + a] * v
-        if max(t * (d + s[DW + a]), 0.0) < s[LOW + a]:
+        d = camera.ray[0, a] + camera.ray[1, a] * pixel.u + camera.ray[2, a] * pixel.v
+        if max(t * (d + camera.ray_half_width[a]), 0.0) < voxel.low[a]:
             return True
-        if min(t * (d - s[DW + a]), 0.0) > s[HIGH + a]:
+        if min(t * (d - camera.ray_half_width[a]), 0.0) > voxel.high[a]:
             return True
     return False
 
 
-@njit(cache=True, nogil=True, inline="always")
-def _says_nothing(doubtful, clear_from, hidden_to):
+@njit(inline="always")
+def _greatest(texel):
+    """Greatest depth of a texel [quanta]."""
+    return np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
+
+
+@njit(inline="always")
+def _says_nothing(measured, depths):
     """Whether measured bounds lie wholly behind a voxel, or wholly before it, or are `NEUTRAL`: no dispute."""
-    return (
-        doubtful >> np.uint32(16) >= clear_from
-        or np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF)) <= hidden_to
-    )
+    return measured >> np.uint32(16) >= depths.clear_from or _greatest(measured) <= depths.hidden_to
 
 
 @uncounted(cache=True)
-def _bounds(texels, first, width, ua, ub, va, vb):
-    """Least and greatest depth over at least a rectangle of texels, ends included, in quanta; eight at a time.
+def _bounds(texels, first, width, pixels):
+    """Least and greatest depth over at least a rectangle of texels, in quanta; eight at a time.
 
     Rows of fewer than eight texels are not bounded.
+
+    Args:
+        texels: of all cameras.
+        first, width: where this one's begin, and how many are in a row.
+        pixels: the rectangle; of tiles, if the texels are tiles.
     """
     if width < 8:
         return np.uint32(0), np.uint32(NO_RETURN)
     mask = np.uint32(0xFFFF)
     least, low = NEUTRAL, mask
-    u = min(ua, width - 8)
+    u = min(pixels.left, width - 8)
     while True:
-        for v in range(va, vb + 1):
+        for v in range(pixels.top, pixels.bottom + 1):
             at = first + v * width + u
             for n in range(8):
                 least = min(least, texels[at + n])
                 low = min(low, texels[at + n] & mask)
-        if u + 7 >= ub:
+        if u + 7 >= pixels.right:
             break
         u = min(u + 8, width - 8)
     return least >> np.uint32(16), np.uint32(NO_RETURN) - low
 
 
-@uncounted(cache=True, error_model="numpy")
-def settle_voxel(numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile_first, x, y, z, edge, s):
-    """What camera c says of the voxel around (x, y, z): a sum of THROUGH or DISPUTES, IS_SURFACE, IS_BLIND; or 0.
-
-    `first` and `tile_first` are where the camera's pixels and tiles begin; `s` is a scratch array of PIXEL_FLOATS.
-    """
-    width, height = int(numbers[c, SIZE]), int(numbers[c, SIZE + 1])
-    tiles_across = (width + 3) >> 2
-    fx, fy = numbers[c, LENS], numbers[c, LENS + 1]
-    ox, oy = numbers[c, LENS + 2], numbers[c, LENS + 3]
-    lateral = numbers[c, LATERAL]
-    half = 0.5 * edge
-    px = numbers[c, 0] * x + numbers[c, 1] * y + numbers[c, 2] * z + numbers[c, 3]
-    py = numbers[c, 4] * x + numbers[c, 5] * y + numbers[c, 6] * z + numbers[c, 7]
-    pz = numbers[c, 8] * x + numbers[c, 9] * y + numbers[c, 10] * z + numbers[c, 11]
-    reach_z = half * (abs(numbers[c, 8]) + abs(numbers[c, 9]) + abs(numbers[c, 10]))
-    near, far = pz - reach_z, pz + reach_z
-    if far <= 0.0:
-        return 0
-    if near <= PLANE_EPS:
-        return DISPUTES
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _outline(camera, middle, half):
+    """Least and greatest column, least and greatest row of a voxel's corners; its middle in camera axes."""
+    m = camera.camera_from_world
+    px, py, pz = middle
     u0, u1, v0, v1 = 1e9, -1e9, 1e9, -1e9
     for corner in range(8):
         i = half if corner & 1 else -half
         j = half if corner & 2 else -half
         k = half if corner & 4 else -half
-        qx = px + numbers[c, 0] * i + numbers[c, 1] * j + numbers[c, 2] * k
-        qy = py + numbers[c, 4] * i + numbers[c, 5] * j + numbers[c, 6] * k
-        qz = pz + numbers[c, 8] * i + numbers[c, 9] * j + numbers[c, 10] * k
+        qx = px + m[0, 0] * i + m[0, 1] * j + m[0, 2] * k
+        qy = py + m[1, 0] * i + m[1, 1] * j + m[1, 2] * k
+        qz = pz + m[2, 0] * i + m[2, 1] * j + m[2, 2] * k
         per_z = 1.0 / qz
-        u, v = fx * qx * per_z + ox, fy * qy * per_z + oy
+        u, v = camera.fx * qx * per_z + camera.cx, camera.fy * qy * per_z + camera.cy
         u0, u1, v0, v1 = min(u0, u), max(u1, u), min(v0, v), max(v1, v)
-    wide = 0.5 + lateral
+    return u0, u1, v0, v1
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _pixels_within(camera, outline):
+    """The pixels whose widened cones may meet what has this outline; none of them: left is beyond right."""
+    u0, u1, v0, v1 = outline
+    lateral = camera.lateral_px
+    last_u, last_v, wide = camera.width - 1.0, camera.height - 1.0, 0.5 + lateral
     whole = (
         np.floor(u0 - lateral) >= 0.0
-        and np.ceil(u1 + lateral) <= width - 1.0
+        and np.ceil(u1 + lateral) <= last_u
         and np.floor(v0 - lateral) >= 0.0
-        and np.ceil(v1 + lateral) <= height - 1.0
+        and np.ceil(v1 + lateral) <= last_v
     )
-    if u1 + wide < 0.0 or u0 - wide > width - 1.0 or v1 + wide < 0.0 or v0 - wide > height - 1.0:
-        return 0
-    ua, ub = int(np.ceil(max(u0 - wide, 0.0))), int(np.floor(min(u1 + wide, width - 1.0)))
-    va, vb = int(np.ceil(max(v0 - wide, 0.0))), int(np.floor(min(v1 + wide, height - 1.0)))
-    radial = numbers[c, RADIAL] != 0.0
-    if radial:
+    outside = u1 + wide < 0.0 or u0 - wide > last_u or v1 + wide < 0.0 or v0 - wide > last_v
+    # far outside, numbers may be too great to be whole ones
+    u0, u1, v0, v1 = (1.0, 0.0, 1.0, 0.0) if outside else (u0 - wide, u1 + wide, v0 - wide, v1 + wide)
+    return Pixels(
+        int(np.ceil(max(u0, 0.0))),
+        int(np.floor(min(u1, last_u))),
+        int(np.ceil(max(v0, 0.0))),
+        int(np.floor(min(v1, last_v))),
+        whole,
+    )
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _depths_of(camera, middle, edge, reach_z):
+    """Where a voxel lies along its rays; `reach_z`: from its middle along the optical axis."""
+    px, py, pz = middle
+    near, far = pz - reach_z, pz + reach_z
+    if camera.radial:
         distance = np.sqrt(px * px + py * py + pz * pz)
         near, far = distance - 0.8660255 * edge, distance + 0.8660255 * edge
-    beyond = max(far - numbers[c, MARGIN + 4], 0.0)
-    margin = (
-        numbers[c, MARGIN]
-        + far * (numbers[c, MARGIN + 1] + far * numbers[c, MARGIN + 2])
-        + numbers[c, MARGIN + 3] * beyond * beyond
+    margin = margin_at(camera.margin, far)
+    # two quanta: that by which texels are rounded, and one for the rounding here
+    return Depths(
+        margin,
+        np.uint32(min((far + margin) / camera.quantum + 2.0, 65535.0)),
+        np.uint32(max((near - margin) / camera.quantum - 2.0, 0.0)),
     )
-    quantum = numbers[c, QUANTUM]
-    clear_from = np.uint32(min((far + margin) / quantum + 2.0, 65535.0))
-    hidden_to = np.uint32(max((near - margin) / quantum - 2.0, 0.0))
-    if ub - ua < 8:
-        least, most = _bounds(trust, first, width, ua, ub, va, vb)
-    else:
-        least, most = _bounds(trust_tiles, tile_first, tiles_across, ua >> 2, ub >> 2, va >> 2, vb >> 2)
-    if least >= clear_from:
-        return THROUGH if whole else 0
-    if most <= hidden_to:
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _bounds_about(camera, texels, pixels):
+    """Least and greatest depth of what pixels free, in quanta: over all of them, or over the tiles that hold them."""
+    if pixels.right - pixels.left < 8:
+        return _bounds(texels.trust_texels, camera.first_texel, camera.width, pixels)
+    tiles = Pixels(pixels.left >> 2, pixels.right >> 2, pixels.top >> 2, pixels.bottom >> 2, pixels.whole)
+    return _bounds(texels.trust_tiles, camera.first_tile, (camera.width + 3) >> 2, tiles)
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _steepness(camera, u, v):
+    """Of the directions in a pixel's cone, the least and the greatest ratio of the camera's depth to planar depth."""
+    steep_near, steep_far = 1.0, 1.0
+    if camera.radial:
+        wide = 0.5 + camera.lateral_px
+        xn, yn = abs(u - camera.cx) / camera.fx, abs(v - camera.cy) / camera.fy
+        wx, wy = wide / camera.fx, wide / camera.fy
+        steep_far = np.sqrt(1.0 + (xn + wx) * (xn + wx) + (yn + wy) * (yn + wy))
+        xl, yl = max(xn - wx, 0.0), max(yn - wy, 0.0)
+        steep_near = np.sqrt(1.0 + xl * xl + yl * yl)
+    return steep_near, steep_far
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _ask_pixel(camera, depths, voxel, pixel):
+    """What one pixel whose cone meets the voxel says of it: 0, or BLOCKED with what else it says."""
+    quantum, margin = camera.quantum, depths.margin
+    steep_near, steep_far = _steepness(camera, pixel.u, pixel.v)
+    if _has_left(camera, voxel, pixel, (pixel.free_to * quantum - margin) / steep_far):
         return 0
-    lines = _prepare(numbers, c, x, y, z, edge, s)
-    blocked = False
+    if _says_nothing(pixel.measured, depths):
+        return BLOCKED
+    greatest = _greatest(pixel.measured)
+    if greatest == NO_RETURN:
+        return BLOCKED | DISPUTES | IS_BLIND
+    least = pixel.measured >> np.uint32(16)
+    if _not_reached(camera, voxel, pixel, (greatest * quantum + margin) / steep_near):
+        return BLOCKED
+    if _has_left(camera, voxel, pixel, (least * quantum - margin) / steep_far):
+        return BLOCKED
+    return BLOCKED | DISPUTES | IS_SURFACE
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _ask_pixels(camera, texels, pixels, depths, voxel):
+    """What pixels say of a voxel one by one: a sum of answers; 0: all are free beyond it."""
     answer = 0
-    for tv in range(va >> 2, (vb >> 2) + 1):
-        for tu in range(ua >> 2, (ub >> 2) + 1):
+    across = (camera.width + 3) >> 2
+    for tv in range(pixels.top >> 2, (pixels.bottom >> 2) + 1):
+        for tu in range(pixels.left >> 2, (pixels.right >> 2) + 1):
             # 4 x 4 pixels at once, where none of them can add anything
-            tile = tile_first + tv * tiles_across + tu
-            if trust_tiles[tile] >> np.uint32(16) >= clear_from:
+            tile = camera.first_tile + tv * across + tu
+            if texels.trust_tiles[tile] >> np.uint32(16) >= depths.clear_from:
                 continue
-            if blocked and _says_nothing(doubt_tiles[tile], clear_from, hidden_to):
+            if answer & BLOCKED and _says_nothing(texels.doubt_tiles[tile], depths):
                 continue
-            for v in range(max(va, 4 * tv), min(vb, 4 * tv + 3) + 1):
-                row = first + v * width
-                for u in range(max(ua, 4 * tu), min(ub, 4 * tu + 3) + 1):
-                    trusted = trust[row + u] >> np.uint32(16)
-                    if trusted >= clear_from:
+            for v in range(max(pixels.top, 4 * tv), min(pixels.bottom, 4 * tv + 3) + 1):
+                row = camera.first_texel + v * camera.width
+                for u in range(max(pixels.left, 4 * tu), min(pixels.right, 4 * tu + 3) + 1):
+                    free_to = texels.trust_texels[row + u] >> np.uint32(16)
+                    if free_to >= depths.clear_from:
                         continue
-                    doubtful = doubt[row + u]
-                    greatest = np.uint32(NO_RETURN) - (doubtful & np.uint32(0xFFFF))
-                    if blocked and (
-                        _says_nothing(doubtful, clear_from, hidden_to)
-                        or (answer & IS_BLIND and greatest == NO_RETURN)
+                    measured = texels.doubt_texels[row + u]
+                    # one that can add nothing to what is known already
+                    if answer & BLOCKED and (
+                        _says_nothing(measured, depths)
+                        or (answer & IS_BLIND and _greatest(measured) == NO_RETURN)
                     ):
-                        continue  # it can add nothing to what is known already
-                    if _misses(s, lines, u, v):
                         continue
-                    steep_near, steep_far = 1.0, 1.0
-                    if radial:
-                        # of the directions in the cone, the least and the greatest ratio of radial to planar depth
-                        xn, yn = abs(u - ox) / fx, abs(v - oy) / fy
-                        wx, wy = wide / fx, wide / fy
-                        steep_far = np.sqrt(1.0 + (xn + wx) * (xn + wx) + (yn + wy) * (yn + wy))
-                        xl, yl = max(xn - wx, 0.0), max(yn - wy, 0.0)
-                        steep_near = np.sqrt(1.0 + xl * xl + yl * yl)
-                    if _has_left(s, u, v, (trusted * quantum - margin) / steep_far):
+                    if _misses(voxel, u, v):
                         continue
-                    blocked = True
-                    if _says_nothing(doubtful, clear_from, hidden_to):
-                        continue
-                    if greatest == NO_RETURN:
-                        answer |= DISPUTES | IS_BLIND
-                        continue
-                    least = doubtful >> np.uint32(16)
-                    if _not_reached(s, u, v, (greatest * quantum + margin) / steep_near):
-                        continue
-                    if _has_left(s, u, v, (least * quantum - margin) / steep_far):
-                        continue
-                    return DISPUTES | IS_SURFACE
-    if not blocked:
-        return THROUGH if whole else 0
+                    answer |= _ask_pixel(camera, depths, voxel, Pixel(u, v, free_to, measured))
+                    if answer & IS_SURFACE:
+                        return BLOCKED | DISPUTES | IS_SURFACE
     return answer
 
 
 @uncounted(cache=True, error_model="numpy")
-def settle_word(
-    numbers, c, trust, doubt, first, trust_tiles, doubt_tiles, tile_first, voxels, x, y, z, edge, s
-):
-    """What camera c says of the set voxels of a block: words (through, disputed, surface, blind).
+def settle_voxel(camera, texels, box, voxel):
+    """What a camera says of a voxel: a sum of THROUGH or DISPUTES, IS_SURFACE, IS_BLIND; or 0.
 
-    (x, y, z) is the centre of the block's voxel (0, 0, 0), `s` a scratch array of PIXEL_FLOATS.
+    Args:
+        camera: its record.
+        texels: of all cameras.
+        box: the voxel.
+        voxel: scratch.
+    """
+    m, half = camera.camera_from_world, 0.5 * box.edge
+    middle = moved(m, box.x, box.y, box.z)
+    reach_z = half * (abs(m[2, 0]) + abs(m[2, 1]) + abs(m[2, 2]))
+    if middle[2] + reach_z <= 0.0:
+        return 0
+    if middle[2] - reach_z <= PLANE_EPS:
+        return DISPUTES
+    pixels = _pixels_within(camera, _outline(camera, middle, half))
+    if pixels.left > pixels.right:
+        return 0
+    free = THROUGH if pixels.whole else 0
+    # what bounds over all pixels settle: most voxels
+    depths = _depths_of(camera, middle, box.edge, reach_z)
+    least, most = _bounds_about(camera, texels, pixels)
+    if least >= depths.clear_from:
+        return free
+    if most <= depths.hidden_to:
+        return 0
+    _prepare(camera, box, voxel)
+    answer = _ask_pixels(camera, texels, pixels, depths, voxel)
+    return answer & ~BLOCKED if answer else free
+
+
+@uncounted(cache=True, error_model="numpy")
+def settle_word(camera, texels, voxels, boxes, voxel):
+    """What a camera says of the set voxels of a block: words (through, disputed, surface, blind).
+
+    Args:
+        camera, texels, voxel: as of `settle_voxel`.
+        voxels: those that are asked, a word.
+        boxes: all voxels of the block.
     """
     through, disputed, surface, blind = np.uint64(0), np.uint64(0), np.uint64(0), np.uint64(0)
     rest = voxels
     while rest:
-        lane = np.int64(trailing_zeros(rest))
+        lane = lowest_bit(rest)
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
-        answer = settle_voxel(
-            numbers,
-            c,
-            trust,
-            doubt,
-            first,
-            trust_tiles,
-            doubt_tiles,
-            tile_first,
-            x + (lane >> 4) * edge,
-            y + ((lane >> 2) & 3) * edge,
-            z + (lane & 3) * edge,
-            edge,
-            s,
-        )
+        answer = settle_voxel(camera, texels, box_in(boxes, lane), voxel)
         if answer & THROUGH:
             through |= bit
         if answer & DISPUTES:
@@ -306,35 +381,27 @@ def settle_word(
 
 
 @uncounted(cache=True, error_model="numpy")
-def settle_centre(numbers, c, first, doubt, x, y, z, edge):
+def settle_centre(camera, doubt_texels, box):
     """The thesis' depth test (section 3.1): the voxel's centre against the one pixel that it projects to."""
-    px = numbers[c, 0] * x + numbers[c, 1] * y + numbers[c, 2] * z + numbers[c, 3]
-    py = numbers[c, 4] * x + numbers[c, 5] * y + numbers[c, 6] * z + numbers[c, 7]
-    pz = numbers[c, 8] * x + numbers[c, 9] * y + numbers[c, 10] * z + numbers[c, 11]
+    px, py, pz = moved(camera.camera_from_world, box.x, box.y, box.z)
     if pz <= PLANE_EPS:
         return 0
-    u = np.floor(numbers[c, LENS] * px / pz + numbers[c, LENS + 2] + 0.5)
-    v = np.floor(numbers[c, LENS + 1] * py / pz + numbers[c, LENS + 3] + 0.5)
-    if not (u >= 0.0 and u < numbers[c, SIZE] and v >= 0.0 and v < numbers[c, SIZE + 1]):
+    column, line = pixel_of(camera, px, py, pz)
+    u, v = np.floor(column + 0.5), np.floor(line + 0.5)
+    if not (u >= 0.0 and u < camera.width and v >= 0.0 and v < camera.height):
         return 0
-    texel = doubt[first + int(v) * int(numbers[c, SIZE]) + int(u)]
+    texel = doubt_texels[camera.first_texel + int(v) * camera.width + int(u)]
     if texel == NEUTRAL:
         return 0
-    least = texel >> np.uint32(16)
-    greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
+    least, greatest = texel >> np.uint32(16), _greatest(texel)
     if greatest == NO_RETURN:
         return DISPUTES | IS_BLIND
-    at = np.sqrt(px * px + py * py + pz * pz) if numbers[c, RADIAL] != 0.0 else pz
-    beyond = max(at - numbers[c, MARGIN + 4], 0.0)
-    margin = (
-        numbers[c, MARGIN]
-        + at * (numbers[c, MARGIN + 1] + at * numbers[c, MARGIN + 2])
-        + numbers[c, MARGIN + 3] * beyond * beyond
-    )
+    at = np.sqrt(px * px + py * py + pz * pz) if camera.radial else pz
+    margin, quantum = margin_at(camera.margin, at), camera.quantum
     # texels round by a quantum or two to the safe side; the plain comparison undoes that
-    measured = (greatest - 1) * numbers[c, QUANTUM]
-    if measured > at + margin and least * numbers[c, QUANTUM] + 4 * numbers[c, QUANTUM] > at + margin:
+    measured = (greatest - 1) * quantum
+    if measured > at + margin and least * quantum + 4 * quantum > at + margin:
         return THROUGH
-    if measured + margin >= at - 0.5 * edge:
+    if measured + margin >= at - 0.5 * box.edge:
         return DISPUTES | IS_SURFACE
     return 0

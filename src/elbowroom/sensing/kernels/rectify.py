@@ -5,17 +5,19 @@ from numba import njit
 
 
 @njit(cache=True, nogil=True)
-def bounds_of_contributors(raw, first_u, last_u, first_v, last_v, shallowest, deepest, least, greatest):
+def bounds_of_contributors(raw, contributors, shallowest, deepest, least, greatest):
     """Per pinhole pixel the nearest and farthest raw pixel of a rectangle; 0 in both unless all are valid.
 
     Args:
         raw: shape (h, w), float32 [m].
-        first_u, last_u, first_v, last_v: shape (h, w), int16; first_u below 0 marks a pixel without
-            contributors.
+        contributors: first_u, last_u, first_v and last_v by pinhole pixel, shape (h, w), int16; first_u below 0
+            marks a pixel without.
         shallowest, deepest: range in which a depth is a return [m].
         least, greatest: shape (h, w), float32 [m]; written.
     """
     height, width = raw.shape
+    first_u, last_u = contributors.first_u, contributors.last_u
+    first_v, last_v = contributors.first_v, contributors.last_v
     for v in range(height):
         for u in range(width):
             least[v, u] = 0.0

@@ -5,6 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.noise import sigma
+from elbowroom.geometry.kernels.pinhole import radial_over_planar
+from elbowroom.geometry.kernels.rigid import moved, turned_back
+
 EDGE_STEP_M = 0.05
 """A step in depth of this makes an edge [m]."""
 NEAREST_M = 1e-4
@@ -48,20 +52,20 @@ def gather_rays(boxes, world_from_solid, camera_from_world, rays, depth):
     for v in range(rows_used[0], rows_used[1]):
         for u in range(columns_used[0], columns_used[1]):
             if may_meet[v, u]:
-                x, y = float(rays.x[v, u]), float(rays.y[v, u])
-                for axis in range(3):
-                    turned[n, axis] = m[0, axis] * x + m[1, axis] * y + m[2, axis]
+                turned[n, 0], turned[n, 1], turned[n, 2] = turned_back(
+                    m, float(rays.x[v, u]), float(rays.y[v, u]), 1.0
+                )
                 known[n] = depth[v, u]
                 pixels[n] = v * width + u
                 n += 1
-    origin = np.empty(3, np.float32)
-    for axis in range(3):
-        origin[axis] = -(m[0, axis] * m[0, 3] + m[1, axis] * m[1, 3] + m[2, axis] * m[2, 3])
+    x, y, z = turned_back(m, m[0, 3], m[1, 3], m[2, 3])
+    origin = np.array((-x, -y, -z), np.float32)
     return origin, pixels, turned, known
 
 
 @njit(cache=True, nogil=True)
 def _camera_from_solid(world_from_solid, camera_from_world):
+    """The product of the two, three rows of it."""
     m = np.empty((3, 4))
     for row in range(3):
         for column in range(4):
@@ -74,17 +78,16 @@ def _camera_from_solid(world_from_solid, camera_from_world):
 @njit(cache=True, nogil=True)
 def _rectangle(bounds, camera_from_solid, x_range, y_range):
     """First and one past the last row and column that a box may meet; all if it reaches behind the camera."""
-    m = camera_from_solid
     low_x, high_x, low_y, high_y = np.inf, -np.inf, np.inf, -np.inf
     behind = 0
     for corner in range(8):
-        x, y, z = bounds[corner & 1, 0], bounds[(corner >> 1) & 1, 1], bounds[corner >> 2, 2]
-        depth = m[2, 0] * x + m[2, 1] * y + m[2, 2] * z + m[2, 3]
-        if depth < NEAREST_M:
+        x, y, z = moved(
+            camera_from_solid, bounds[corner & 1, 0], bounds[(corner >> 1) & 1, 1], bounds[corner >> 2, 2]
+        )
+        if z < NEAREST_M:
             behind += 1
             continue
-        right = (m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3]) / depth
-        down = (m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3]) / depth
+        right, down = x / z, y / z
         low_x, high_x = min(low_x, right), max(high_x, right)
         low_y, high_y = min(low_y, down), max(high_y, down)
     if behind == 8:
@@ -190,8 +193,7 @@ def disturb(depth, dark, rays, normal, uniform, sensor, out):
                 z = near + (uniform[v, u] >> np.uint32(16)) / 65536.0 * (far - near)
             if sensor.radial:
                 z *= _length(rays, v, u)
-            beyond = max(z - sensor.offset, 0.0)
-            z += normal[v, u] * (sensor.constant + sensor.linear * z + sensor.quadratic * beyond * beyond)
+            z += normal[v, u] * sigma(sensor, z)
             if z > 0.0 and sensor.least <= z <= sensor.greatest:
                 out[v, u] = z
 
@@ -223,8 +225,7 @@ def _neighbourhood(depth, v, u):
 @njit(cache=True, nogil=True)
 def _length(rays, v, u):
     """Radial over planar depth of a pixel."""
-    x, y = float(rays.x[v, u]), float(rays.y[v, u])
-    return np.sqrt(1.0 + x * x + y * y)
+    return radial_over_planar(float(rays.x[v, u]), float(rays.y[v, u]))
 
 
 @njit(cache=True, nogil=True)

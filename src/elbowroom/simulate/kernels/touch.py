@@ -1,9 +1,18 @@
 """Which voxels a closed mesh touches: triangle-box test for the surface, winding number for the inside."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+
+
+class Boxes(NamedTuple):
+    """The boxes of an array's voxels: least corner of the first, (3,), edge, and half the edge of each box [m]."""
+
+    lower: np.ndarray
+    edge: float
+    half: float
 
 
 @njit(cache=True, nogil=True)
@@ -19,68 +28,79 @@ def touch_surface(triangles, lower, edge, shrink, touched, mark=1):
         touched: bool or whole numbers, shape (nx, ny, nz), 0 where not marked; written.
         mark: what is written.
     """
-    half = 0.5 * edge - shrink
-    size = touched.shape
-    first = np.empty(3, np.int64)
-    last = np.empty(3, np.int64)
-    at = np.empty(3, np.int64)
-    normal = np.empty(3)
-    corners = np.empty((3, 3))
+    boxes = Boxes(lower, edge, 0.5 * edge - shrink)
+    first, last = np.empty(3, np.int64), np.empty(3, np.int64)
     for t in range(triangles.shape[0]):
-        outside = False
-        for axis in range(3):
-            a = (triangles[t, 0, axis] - lower[axis]) / edge
-            b = (triangles[t, 1, axis] - lower[axis]) / edge
-            c = (triangles[t, 2, axis] - lower[axis]) / edge
-            low, high = math.floor(min(a, b, c)) - 1.0, math.floor(max(a, b, c)) + 1.0
-            if not (low < size[axis] and high >= 0.0):
-                outside = True
-                break
-            first[axis] = int(max(low, 0.0))
-            last[axis] = int(min(high, size[axis] - 1.0))
-        if outside:
-            continue
-        _normal(triangles[t], normal)
-        # the axis that the plane crosses most steeply: along it each column of voxels meets a short piece
-        main = 0
-        if abs(normal[1]) > abs(normal[main]):
-            main = 1
-        if abs(normal[2]) > abs(normal[main]):
-            main = 2
-        second, third = (main + 1) % 3, (main + 2) % 3
-        steep = abs(normal[main])
-        if steep == 0.0:
-            second_slope = third_slope = spread = 0.0
-        else:
-            second_slope, third_slope = normal[second] / normal[main], normal[third] / normal[main]
-            spread = half * (1.0 + abs(second_slope) + abs(third_slope)) + 1e-9
-        for p in range(first[second], last[second] + 1):
-            centre_p = lower[second] + (p + 0.5) * edge
-            for q in range(first[third], last[third] + 1):
-                centre_q = lower[third] + (q + 0.5) * edge
-                begin, end = first[main], last[main]
-                if steep > 0.0:
-                    height = (
-                        triangles[t, 0, main]
-                        - second_slope * (centre_p - triangles[t, 0, second])
-                        - third_slope * (centre_q - triangles[t, 0, third])
-                    )
-                    low = math.ceil((height - spread - lower[main]) / edge - 0.5)
-                    high = math.floor((height + spread - lower[main]) / edge - 0.5)
-                    if not (low <= end and high >= begin):
-                        continue
-                    begin, end = max(begin, int(low)), min(end, int(high))
-                at[second], at[third] = p, q
-                for r in range(begin, end + 1):
-                    at[main] = r
-                    if touched[at[0], at[1], at[2]]:
-                        continue
-                    for axis in range(3):
-                        centre = lower[axis] + (at[axis] + 0.5) * edge
-                        for corner in range(3):
-                            corners[corner, axis] = triangles[t, corner, axis] - centre
-                    if triangle_meets_box(corners, half):
-                        touched[at[0], at[1], at[2]] = mark
+        if _range_of(triangles[t], boxes, touched.shape, first, last):
+            _touch_between(triangles[t], boxes, first, last, touched, mark)
+
+
+@njit(cache=True, nogil=True)
+def _range_of(triangle, boxes, size, first, last):
+    """Writes the first and last voxel along each axis that a triangle may meet; whether there is one."""
+    for axis in range(3):
+        a = (triangle[0, axis] - boxes.lower[axis]) / boxes.edge
+        b = (triangle[1, axis] - boxes.lower[axis]) / boxes.edge
+        c = (triangle[2, axis] - boxes.lower[axis]) / boxes.edge
+        low, high = math.floor(min(a, b, c)) - 1.0, math.floor(max(a, b, c)) + 1.0
+        if not (low < size[axis] and high >= 0.0):
+            return False
+        first[axis] = int(max(low, 0.0))
+        last[axis] = int(min(high, size[axis] - 1.0))
+    return True
+
+
+@njit(cache=True, nogil=True)
+def _touch_between(triangle, boxes, first, last, touched, mark):
+    """Marks the voxels between first and last, (3,) each, whose open box a triangle meets.
+
+    Column by column along the axis that the plane crosses most steeply: there each meets a short piece of it.
+    """
+    lower, edge, half = boxes.lower, boxes.edge, boxes.half
+    normal = _normal(triangle)
+    main = 0
+    if abs(normal[1]) > abs(normal[main]):
+        main = 1
+    if abs(normal[2]) > abs(normal[main]):
+        main = 2
+    second, third = (main + 1) % 3, (main + 2) % 3
+    second_slope = third_slope = spread = 0.0
+    steep = abs(normal[main]) > 0.0
+    if steep:
+        second_slope, third_slope = normal[second] / normal[main], normal[third] / normal[main]
+        spread = half * (1.0 + abs(second_slope) + abs(third_slope)) + 1e-9
+    at, corners = np.empty(3, np.int64), np.empty((3, 3))
+    for p in range(first[second], last[second] + 1):
+        centre_p = lower[second] + (p + 0.5) * edge
+        for q in range(first[third], last[third] + 1):
+            centre_q = lower[third] + (q + 0.5) * edge
+            begin, end = first[main], last[main]
+            if steep:
+                height = (
+                    triangle[0, main]
+                    - second_slope * (centre_p - triangle[0, second])
+                    - third_slope * (centre_q - triangle[0, third])
+                )
+                low = math.ceil((height - spread - lower[main]) / edge - 0.5)
+                high = math.floor((height + spread - lower[main]) / edge - 0.5)
+                if not (low <= end and high >= begin):
+                    continue
+                begin, end = max(begin, int(low)), min(end, int(high))
+            at[second], at[third] = p, q
+            for r in range(begin, end + 1):
+                at[main] = r
+                if not touched[at[0], at[1], at[2]] and _meets(triangle, boxes, at, corners):
+                    touched[at[0], at[1], at[2]] = mark
+
+
+@njit(cache=True, nogil=True)
+def _meets(triangle, boxes, at, corners):
+    """Whether a triangle meets the open box of a voxel, `at` (3,); `corners` (3, 3) is scratch."""
+    for axis in range(3):
+        centre = boxes.lower[axis] + (at[axis] + 0.5) * boxes.edge
+        for corner in range(3):
+            corners[corner, axis] = triangle[corner, axis] - centre
+    return triangle_meets_box(corners, boxes.half)
 
 
 @njit(cache=True, nogil=True)
@@ -125,7 +145,8 @@ def triangle_meets_box(corners, half):
 
 
 @njit(cache=True, nogil=True)
-def _normal(triangle, normal):
+def _normal(triangle):
+    """Normal of a triangle's plane, as long as twice its area."""
     ux, uy, uz = (
         triangle[1, 0] - triangle[0, 0],
         triangle[1, 1] - triangle[0, 1],
@@ -136,7 +157,7 @@ def _normal(triangle, normal):
         triangle[2, 1] - triangle[0, 1],
         triangle[2, 2] - triangle[0, 2],
     )
-    normal[0], normal[1], normal[2] = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
 
 
 @njit(cache=True, nogil=True)
@@ -156,38 +177,7 @@ def fill_inside(triangles, lower, edge, touched):
     nx, ny, nz = touched.shape
     winding = np.zeros((nx, ny, nz), np.int16)
     for t in range(triangles.shape[0]):
-        ax, ay, az = triangles[t, 0, 0], triangles[t, 0, 1], triangles[t, 0, 2]
-        bx, by, bz = triangles[t, 1, 0], triangles[t, 1, 1], triangles[t, 1, 2]
-        cx, cy, cz = triangles[t, 2, 0], triangles[t, 2, 1], triangles[t, 2, 2]
-        low_i = max(math.ceil((min(ax, bx, cx) - lower[0]) / edge - 0.5) - 1.0, 0.0)
-        high_i = min(math.floor((max(ax, bx, cx) - lower[0]) / edge - 0.5) + 1.0, nx - 1.0)
-        low_j = max(math.ceil((min(ay, by, cy) - lower[1]) / edge - 0.5) - 1.0, 0.0)
-        high_j = min(math.floor((max(ay, by, cy) - lower[1]) / edge - 0.5) + 1.0, ny - 1.0)
-        if not (low_i <= high_i and low_j <= high_j):
-            continue
-        area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-        for i in range(int(low_i), int(high_i) + 1):
-            x = lower[0] + (i + 0.5) * edge
-            for j in range(int(low_j), int(high_j) + 1):
-                y = lower[1] + (j + 0.5) * edge
-                # a ray crosses the triangle if it crosses its outline an odd number of times, seen along z
-                turns = (
-                    _crossing(ax, ay, bx, by, x, y)
-                    + _crossing(bx, by, cx, cy, x, y)
-                    + _crossing(cx, cy, ax, ay, x, y)
-                )
-                if turns == 0:
-                    continue
-                # plane: heights of the corners weighted by the areas opposite to them
-                z = az
-                if area != 0.0:
-                    weight_b = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area
-                    weight_c = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area
-                    z += weight_b * (bz - az) + weight_c * (cz - az)
-                z = min(max(z, min(az, bz, cz)), max(az, bz, cz))
-                above = math.ceil((z - lower[2]) / edge - 0.5)
-                if above < nz:
-                    winding[i, j, int(max(above, 0.0))] -= turns
+        _wind(triangles[t], lower, edge, winding)
     for i in range(nx):
         for j in range(ny):
             total = 0
@@ -195,6 +185,51 @@ def fill_inside(triangles, lower, edge, touched):
                 total += winding[i, j, k]
                 if total != 0:
                     touched[i, j, k] = True
+
+
+@njit(cache=True, nogil=True)
+def _wind(triangle, lower, edge, winding):
+    """Adds to each column of centres that pierces a triangle, at the first centre above, how often and which way."""
+    nx, ny, nz = winding.shape
+    ax, ay = triangle[0, 0], triangle[0, 1]
+    bx, by = triangle[1, 0], triangle[1, 1]
+    cx, cy = triangle[2, 0], triangle[2, 1]
+    low_i = max(math.ceil((min(ax, bx, cx) - lower[0]) / edge - 0.5) - 1.0, 0.0)
+    high_i = min(math.floor((max(ax, bx, cx) - lower[0]) / edge - 0.5) + 1.0, nx - 1.0)
+    low_j = max(math.ceil((min(ay, by, cy) - lower[1]) / edge - 0.5) - 1.0, 0.0)
+    high_j = min(math.floor((max(ay, by, cy) - lower[1]) / edge - 0.5) + 1.0, ny - 1.0)
+    if not (low_i <= high_i and low_j <= high_j):
+        return
+    for i in range(int(low_i), int(high_i) + 1):
+        x = lower[0] + (i + 0.5) * edge
+        for j in range(int(low_j), int(high_j) + 1):
+            y = lower[1] + (j + 0.5) * edge
+            # a ray crosses the triangle if it crosses its outline an odd number of times, seen along z
+            turns = (
+                _crossing(ax, ay, bx, by, x, y)
+                + _crossing(bx, by, cx, cy, x, y)
+                + _crossing(cx, cy, ax, ay, x, y)
+            )
+            if turns == 0:
+                continue
+            above = math.ceil((_height(triangle, x, y) - lower[2]) / edge - 0.5)
+            if above < nz:
+                winding[i, j, int(max(above, 0.0))] -= turns
+
+
+@njit(cache=True, nogil=True)
+def _height(triangle, x, y):
+    """Height of a triangle at (x, y): those of its corners weighted by the areas opposite to them."""
+    ax, ay, az = triangle[0, 0], triangle[0, 1], triangle[0, 2]
+    bx, by, bz = triangle[1, 0], triangle[1, 1], triangle[1, 2]
+    cx, cy, cz = triangle[2, 0], triangle[2, 1], triangle[2, 2]
+    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    z = az
+    if area != 0.0:
+        weight_b = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area
+        weight_c = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area
+        z += weight_b * (bz - az) + weight_c * (cz - az)
+    return min(max(z, min(az, bz, cz)), max(az, bz, cz))
 
 
 @njit(cache=True, nogil=True)

@@ -70,7 +70,18 @@ def shaded(
     lamp_m: tuple[float, float, float] = (-1.2, -2.6, 5.0),
     smooth: int = 2,
 ) -> Image.Image:
-    """A picture of triangles, shape (n, 3, 3) [m], each of one linear colour, shape (n, 3)."""
+    """A picture of triangles.
+
+    Args:
+        triangles: shape (n, 3, 3), world frame [m].
+        colours: linear, 0 to 1, one a triangle, shape (n, 3).
+        view: from where.
+        lamp_m: place of the lamp that casts shadows, world frame [m].
+        smooth: rays per side of a pixel.
+
+    Returns:
+        RGB, view.width x view.height.
+    """
     scene = EmbreeScene()
     faces = np.arange(3 * len(triangles), dtype=np.int32).reshape(-1, 3)
     TriangleMesh(scene, triangles.reshape(-1, 3).astype(np.float32), faces)

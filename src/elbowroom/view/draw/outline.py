@@ -9,7 +9,16 @@ from elbowroom.machine import Machine
 
 
 def cut_lines(triangles: NDArray[np.float64], normal: int, at_m: float) -> NDArray[np.float64]:
-    """Where triangles cross the plane: segments, shape (m, 2, 3), world frame [m]."""
+    """Where triangles cross a plane across an axis.
+
+    Args:
+        triangles: shape (n, 3, 3), world frame [m].
+        normal: the axis, 0 to 2.
+        at_m: where on it [m].
+
+    Returns:
+        Segments, shape (m, 2, 3), world frame [m].
+    """
     height = triangles[:, :, normal] - at_m
     height = np.where(height == 0, 1e-12, height)
     above = (height > 0).sum(axis=1)

@@ -89,7 +89,12 @@ class Plot:
             self.picture.paste(colour, (self.left_px, self.top_px), cover)
 
     def draw_segments(self, segments_m: NDArray[np.float64], colour: Colour, width_px: int) -> None:
-        """Draws lines, shape (n, 2, 2) [m], clipped to the area."""
+        """Draws lines, clipped to the area.
+
+        Args:
+            segments_m: their ends, shape (n, 2, 2), in the plot's axes [m].
+            colour, width_px: of the lines.
+        """
         width, height = self.size_px
         mask = Image.new("L", (2 * width, 2 * height), 0)
         pen = ImageDraw.Draw(mask)

@@ -1,9 +1,12 @@
 """What a run of the monitor came to: rates, times, levels, faults."""
 
+import resource
+import sys
 import time
 from collections import Counter, deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from rich.console import Group, RenderableType
@@ -85,6 +88,23 @@ class RunLog:
         names = dict.fromkeys(name for stages in self.stages for name in stages)
         return {name: float(np.median([s[name] for s in self.stages if name in s])) for name in names}
 
+    def row(self) -> dict[str, Any]:
+        """The run as the row of kind "summary", after all others; with the most memory that this process has taken."""
+        row: dict[str, Any] = {
+            "kind": "summary",
+            "cycles": self.cycles,
+            "rate_hz": self.whole_rate_hz,
+            "faults": self.faults.total(),
+            "watched": self.is_watched,
+            "stop_reasons": list(self.stops.values()),
+        }
+        for name, values in (("cycle", self.cycle_ms), ("source", self.source_ms)):
+            for statistic, share in (("median", 50), ("p99", 99), ("max", 100)):
+                row[f"{name}_{statistic}_ms"] = float(np.percentile(values, share)) if values else None
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        row["peak_rss_mb"] = peak / (1e6 if sys.platform == "darwin" else 1e3)
+        return row
+
     def recent(self, values: Sequence[float]) -> float:
         """Median of the latest of some values; NaN if there are none."""
         latest = list(values)[-RECENT:]
@@ -96,40 +116,50 @@ class RunLog:
         head = Text(f"{self.cycles} cycles in {seconds:.1f} s, {self.whole_rate_hz:.1f} Hz", style="bold")
         if self.cycles == 0:
             return Group(head, Text("no verdict was given"))
+        lines: list[RenderableType] = [
+            head,
+            self._times(),
+            Text(),
+            self._shares(),
+            Text(),
+            *self._said_at_the_end(),
+        ]
+        return Group(*lines, Text(NOT_CERTIFIED, "dim"))
+
+    def _times(self) -> Table:
         times = Table("", "median", "99 %", "worst", box=None, pad_edge=False, header_style="dim")
-        for name, values in (
-            ("cycle", self.cycle_ms),
-            ("frame age", self.age_ms),
-            (self.source, self.source_ms),
-        ):
+        rows = (("cycle", self.cycle_ms), ("frame age", self.age_ms), (self.source, self.source_ms))
+        for name, values in rows:
             if values:
                 p50, p99, worst = np.percentile(values, (50, 99, 100))
                 times.add_row(name, f"{p50:.1f} ms", f"{p99:.1f} ms", f"{worst:.1f} ms")
+        return times
+
+    def _shares(self) -> Table:
+        """How often each motion was at each level."""
         shares = Table("movement", *LEVEL_WORDS.values(), box=None, pad_edge=False, header_style="dim")
         for name, counts in self.levels.items():
             total = counts.total()
             shares.add_row(
                 name, *(f"{counts[level] / total:.0%}" if counts[level] else "-" for level in Level)
             )
-        lines: list[RenderableType] = [head, times, Text(), shares, Text()]
+        return shares
+
+    def _said_at_the_end(self) -> Iterator[Text]:
+        """What failed, what was stopped, and what was not looked after."""
         if self.faults:
             fault, times_seen = self.faults.most_common(1)[0]
             count = self.faults.total()
-            lines.append(
-                Text(f"{count} cycles failed and said stop; most often ({times_seen}): {fault}", "bold red")
-            )
-        lines += [Text(f"Every motion was stopped: {reason}", "bold red") for reason in self.stops.values()]
+            yield Text(f"{count} cycles failed and said stop; most often ({times_seen}): {fault}", "bold red")
+        for reason in self.stops.values():
+            yield Text(f"Every motion was stopped: {reason}", "bold red")
         if self.stops:
-            lines.append(
-                Text("Look at it; commission again if it stays where it is. Starting again clears the stop.")
+            yield Text(
+                "Look at it; commission again if it stays where it is. Starting again clears the stop."
             )
         if not self.is_watched:
-            lines.append(
-                Text("Cameras were not watched: one that is knocked would not have been noticed.", "dim")
-            )
+            yield Text("Cameras were not watched: one that is knocked would not have been noticed.", "dim")
         elif not self.stops:
-            lines.append(Text("No camera moved, and the machine was where its joints said."))
+            yield Text("No camera moved, and the machine was where its joints said.")
         if self.unchecked_links:
-            lines.append(Text(f"Not checked, by the site's word: {', '.join(self.unchecked_links)}"))
-        lines.append(Text(NOT_CERTIFIED, "dim"))
-        return Group(*lines)
+            yield Text(f"Not checked, by the site's word: {', '.join(self.unchecked_links)}")

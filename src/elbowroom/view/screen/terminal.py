@@ -1,4 +1,4 @@
-"""The live view: a row for each joint and direction, and how fast and how fresh the answers are."""
+"""The face on the terminal: a row for each joint and direction, and how fast and how fresh the answers are."""
 
 import time
 from collections.abc import Sequence
@@ -11,10 +11,11 @@ from rich.rule import Rule
 from rich.table import Table
 from rich.text import Text
 
-from elbowroom.monitor import CycleResult
+from elbowroom.monitor import CycleResult, Pass
 from elbowroom.motion import Cause, Level, Motion, Verdict
+from elbowroom.sources import Room
 from elbowroom.view.screen.run_log import RunLog
-from elbowroom.view.screen.watched import Watched
+from elbowroom.view.screen.watched import Watched, watched_of
 from elbowroom.view.screen.words import (
     CAUSE_WORDS,
     LEVEL_WORDS,
@@ -51,13 +52,14 @@ class TerminalView:
     As a context, it stops the screen at its end.
 
     Args:
-        watched: what the run watches.
         console: where to show it; None: standard output.
     """
 
-    def __init__(self, watched: Watched, console: Console | None = None) -> None:
-        self.watched = watched
-        self.log = RunLog(watched.source, watched.unchecked_links)
+    watched: Watched
+    """What the run watches; there from its beginning on."""
+
+    def __init__(self, console: Console | None = None) -> None:
+        self.log = RunLog()
         self.console = console or Console()
         # a screen of its own: what the keyboard echoes there does not stay behind
         live = (
@@ -75,9 +77,13 @@ class TerminalView:
     ) -> None:
         self.stop()
 
-    def start(self) -> None:
-        """Begins the screen and the time that rates are counted over."""
-        self.log.start_s = time.perf_counter()
+    def begin(self, room: Room) -> None:
+        """Begins the screen, and the time that rates are counted over."""
+        self.open(watched_of(room))
+
+    def open(self, watched: Watched) -> None:
+        """As `begin`, by what its head says."""
+        self.watched, self.log = watched, RunLog(watched.source, watched.unchecked_links)
         if self._live is not None:
             self._live.start()
         else:
@@ -90,14 +96,10 @@ class TerminalView:
             if self._last_screen is not None:
                 self.console.print(self._last_screen)
 
-    def show(self, result: CycleResult, source_ms: float) -> None:
-        """Notes a pass and, if it is time, shows it.
-
-        Args:
-            result: of the pass.
-            source_ms: what the simulator or the reader of files took to bring its frames [ms].
-        """
-        self.log.add(result, source_ms)
+    def show(self, done: Pass) -> None:
+        """Notes a pass and, if it is time, shows it."""
+        result = done.result
+        self.log.add(result, done.source_ms)
         now = time.perf_counter()
         if now - self._last_shown_s < (REFRESH_S if self._live is not None else PLAIN_EVERY_S):
             return
@@ -108,9 +110,14 @@ class TerminalView:
         else:
             self.console.print(self.line(result), soft_wrap=True, highlight=False, markup=False)
 
-    def print_summary(self) -> None:
-        """Prints what the run came to."""
+    def end(self) -> None:
+        """Ends the screen and prints what the run came to."""
+        self.stop()
         self.console.print(self.log.summary())
+
+    def note(self, text: str) -> None:
+        """Prints a line that the user should know before it starts."""
+        self.console.print(f"note: {text}", highlight=False, soft_wrap=True)
 
     def screen(self, result: CycleResult) -> RenderableType:
         """All of the live screen for one pass."""
@@ -124,13 +131,7 @@ class TerminalView:
             Text(),
             Text(health_text(result.health), "dim"),
         ]
-        if result.health is not None:
-            lines += [
-                Text(f" Stop: {reason}. Stays until the monitor is started again. ", STYLES[Level.STOP])
-                for reason in result.health.stops.values()
-            ]
-        if result.fault is not None:
-            lines.append(Text(f" Stop, since the cycle failed: {result.fault} ", STYLES[Level.STOP]))
+        lines += [Text(f" {line} ", STYLES[Level.STOP]) for line in _stops(result)]
         if self.watched.unchecked_links:
             lines.append(
                 Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
@@ -199,6 +200,13 @@ class TerminalView:
             Text("joint limit" if at_limit else CAUSE_WORDS[verdict.cause]),
             Text(place_text(verdict), "dim"),
         ]
+
+
+def _stops(result: CycleResult) -> list[str]:
+    """Why every motion is stop, a line each."""
+    found = () if result.health is None else result.health.stops.values()
+    lines = [f"Stop: {reason}. Stays until the monitor is started again." for reason in found]
+    return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
 
 
 def _looked_at(verdict: Verdict) -> float:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from elbowroom.geometry import VoxelGrid
+from elbowroom.sources import Room
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,3 +34,13 @@ class Watched:
         size = " x ".join(f"{n * self.grid.voxel_size_m:.1f}" for n in self.grid.shape)
         voxels = f"{size} m in {self.grid.size:,} voxels of {self.grid.voxel_size_m * 100:g} cm"
         return f"{voxels}, {self.cameras}, rule {self.rule}, detail {self.detail}"
+
+
+def watched_of(room: Room) -> Watched:
+    """What the head of the screen says of a room."""
+    sizes = sorted({f"{camera.width}x{camera.height}" for camera in room.cameras})
+    cameras = f"{len(room.cameras)} camera{'s' * (len(room.cameras) > 1)} {', '.join(sizes)}"
+    unchecked = room.machine.unchecked_links if room.machine else ()
+    return Watched(
+        room.site.name, room.grid, cameras, room.terms.rule, room.terms.detail, room.source.name, unchecked
+    )

@@ -22,6 +22,8 @@ CAUSE_WORDS: dict[Cause, str] = {
     Cause.OUTSIDE_GRID: "outside the grid",
     Cause.UNSEEN: "unseen",
     Cause.NONE: "",
+    Cause.FAULT: "fault",
+    Cause.WATCH: "watch",
 }
 
 

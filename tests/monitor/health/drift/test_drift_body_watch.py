@@ -8,7 +8,7 @@ from elbowroom.machine.rasterise import rasterise
 from elbowroom.monitor import Watch
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.watch import BODY
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, Snapshot
 from reference import machine_twins
 from reference.watch_twins import camera_at, knocked, walls
 
@@ -41,14 +41,16 @@ def frames(arm, cameras, joints, stamp):
 def references(arm):
     room = Commissioning(CAMERAS, arm, 6)
     for number in range(6):
-        room.add(frames(arm, CAMERAS, AT_REST, number), AT_REST)
+        room.add(Snapshot.taken(frames(arm, CAMERAS, AT_REST, number), AT_REST))
     return room.references()
 
 
 def run(arm, references, truly, cameras=CAMERAS, moments=72):
     watch = Watch(CAMERAS, references, arm)
     for k in range(moments):
-        health = watch.hear(frames(arm, cameras, truly, k * 33_000_000), AT_REST, k * 33_000_000)
+        health = watch.hear(
+            Snapshot.taken(frames(arm, cameras, truly, k * 33_000_000), AT_REST, k * 33_000_000)
+        )
     return health
 
 

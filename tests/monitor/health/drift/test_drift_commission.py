@@ -10,9 +10,9 @@ from elbowroom.machine.rasterise import rasterise
 from elbowroom.monitor import Watch
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.flat_spots import flat_spots
-from elbowroom.sensing import rectified
+from elbowroom.sensing import Snapshot, rectified
 from elbowroom.sensing.rays import pixel_rays
-from elbowroom.simulate import InterventionRoom, render, wall_cameras
+from elbowroom.simulate import InterventionRoom, Optics, render, wall_cameras
 from elbowroom.simulate.knock import Knock
 
 DISTORTION = (-0.12, 0.03, 0.001, -0.001, 0.0)
@@ -21,7 +21,7 @@ DISTORTION = (-0.12, 0.03, 0.001, -0.001, 0.0)
 @pytest.fixture(scope="module")
 def distorted():
     """Two cameras with barrel distortion in the room with its machine, and their references."""
-    straight = wall_cameras(2, 2.4, 160, 120, hfov_deg=70)
+    straight = wall_cameras(2, 2.4, 160, 120, optics=Optics(hfov_deg=70))
     cameras = [
         replace(c, intrinsics=replace(c.intrinsics, distortion=DISTORTION), max_depth_m=8.0) for c in straight
     ]
@@ -29,7 +29,7 @@ def distorted():
     commissioning = Commissioning(cameras, room.machine, 5)
     for number in range(5):
         moment = room.at(3.0 * number)
-        commissioning.add(render(cameras, moment, seed=number), moment.joints)
+        commissioning.add(Snapshot.taken(render(cameras, moment, seed=number), moment.joints))
     return room, cameras, commissioning.references()
 
 
@@ -66,7 +66,7 @@ def test_a_distorted_camera_that_is_knocked_is_named_and_the_machine_is_not(dist
     truly[number] = Knock("", (0, float(np.radians(1.0)), 0)).camera(cameras[number])
     for k in range(60):
         moment = room.at(20 + k / 30)
-        health = watch.hear(render(truly, moment), moment.joints, moment.stamp_ns)
+        health = watch.hear(Snapshot.taken(render(truly, moment), moment.joints, moment.stamp_ns))
     assert list(health.stops) == [cameras[number].name]
     assert watch.shift_of(cameras[number].name).turn_deg == pytest.approx(1.0, abs=0.15)
 

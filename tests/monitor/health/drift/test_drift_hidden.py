@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from elbowroom.monitor import Condition, Watch
 from elbowroom.monitor.health.drift.lasting import LIMITS_S, Lasting
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, Snapshot
 from reference.watch_twins import CAMERAS, NOISE_M, commissioned, frame
 
 SECOND = 1_000_000_000
@@ -23,7 +23,7 @@ def hear(watch, seconds, start_s=0.0, change=lambda image, k: image):
         stamp = round(start_s * SECOND) + k * PERIOD
         images = {**PLAIN, "low": change(PLAIN["low"], k)}
         frames = [DepthFrame(name, stamp, image) for name, image in images.items() if image is not None]
-        health = watch.hear(frames, None, stamp)
+        health = watch.hear(Snapshot.taken(frames, None, stamp))
     return health
 
 
@@ -93,7 +93,7 @@ def test_a_camera_that_repeats_one_frame_is_silent_too():
     for k in range(30):
         now = k * PERIOD
         others = [DepthFrame(name, now, image) for name, image in PLAIN.items() if name != "low"]
-        health = watch.hear([*others, stuck], None, now)
+        health = watch.hear(Snapshot.taken([*others, stuck], None, now))
     assert list(health.stops) == ["low"] and "no new image" in health.reason
 
 

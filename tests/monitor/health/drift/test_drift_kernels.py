@@ -30,15 +30,14 @@ def test_frames_are_averaged_as_by_hand(seed):
     n, pixels = 40, 64
     spots = spots_of(rng, n, pixels)
     memory = kernels.Memory(np.zeros(n), np.zeros(n), np.zeros(n, np.int64), np.zeros(n, np.int64))
-    counted = np.empty(4, np.int64)
     before = [(0.0, 0.0, 0)] * n
     for _ in range(12):
         image = np.zeros(pixels, np.float32)
         image[spots.pixel] = spots.depth + rng.normal(0, rng.choice([0.005, 0.05, 0.5]), n)
         image[rng.integers(0, pixels, 6)] = rng.choice([np.nan, np.inf, 0.0, -1.0, 0.2, 60.0], 6)
-        kernels.listen(image, spots, 0.3, 9.0, 0.2, memory, counted)
+        counts = kernels.listen(image, spots, kernels.Gate(0.3, 9.0, 0.2), memory)
         after, used, numbers = naive.listen(image, spots, 0.3, 9.0, 0.2, before)
-        assert counted.tolist() == numbers and memory.used[: counted[0]].tolist() == used
+        assert list(counts) == numbers and memory.used[: counts.within].tolist() == used
         for i, mean in enumerate(after):
             assert memory.frames[i] == (0 if mean is None else mean[2])
             if mean is not None:
@@ -53,12 +52,9 @@ def test_the_fitted_motion_is_that_of_matrices(seed, n):
     jacobian, sigma = rng.normal(size=(n + 3, 6)), rng.uniform(0.002, 0.03, n + 3)
     offset = jacobian @ rng.normal(0, 0.01, 6) + rng.normal(0, sigma) * rng.choice([1, 8], n + 3)
     used = np.sort(rng.permutation(n + 3)[:n])
-    motion, covariance, said = np.empty(6), np.empty((6, 6)), np.empty(4)
-    kernels.fit_motion(
-        jacobian, offset, sigma, used, kernels.Prior(0.1, 0.2), kernels.Fitted(motion, covariance, said)
-    )
+    motion, covariance, said = kernels.fit_motion(jacobian, offset, sigma, used, kernels.Prior(0.1, 0.2))
     if n == 0:
-        assert not motion.any() and not said.any()
+        assert not motion.any() and not any(said)
         assert np.diag(covariance) == pytest.approx([0.01] * 3 + [0.04] * 3)
         return
     wanted = naive.fit_motion(jacobian[used], offset[used], sigma[used], 0.1, 0.2)
@@ -87,7 +83,7 @@ def test_links_drawn_one_by_one_are_the_machine_and_the_nearest_link_shows(arm):
     placed = camera.camera_from_world @ arm.world_from_link_array(arm.positions(AT_REST)[None])[0]
     empty = canvas(camera.height, camera.width)
     composite, shown = np.ones((120, 160), np.float32), np.zeros((120, 160), np.int16)
-    body.draw_links(mesh, placed, view, *empty, composite, shown)
+    body.draw_links(mesh, placed, view, empty, body.Shown(composite, shown))
     whole = rasterise(arm, camera, AT_REST)
     assert ((composite > 0) == np.isfinite(whole)).all() and ((shown >= 0) == np.isfinite(whole)).all()
     assert 1 / composite[shown >= 0] == pytest.approx(whole[shown >= 0], rel=1e-5)

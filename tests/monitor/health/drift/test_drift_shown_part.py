@@ -5,6 +5,7 @@ import pytest
 
 from elbowroom.monitor import Condition, Tolerance, Watch
 from elbowroom.monitor.health.drift.shown_part import ShownPart
+from elbowroom.sensing import Snapshot
 from reference.watch_twins import NOISE_M, camera_at, commissioned, frame, knocked, walls
 
 TOLERANCE = Tolerance()
@@ -21,13 +22,13 @@ def heard(move_m, moments=60):
     for k in range(moments):
         truly = knocked(CORNER, (0, 0, 0), move_m) if k >= 12 else CORNER
         seen = frame(truly, k * 33_000_000, 0.001, np.random.default_rng(k))
-        health = watch.hear([seen], None, k * 33_000_000)
+        health = watch.hear(Snapshot.taken([seen], None, k * 33_000_000))
     return health, watch.shift_of("corner")
 
 
 def test_the_view_of_the_corner_does_not_show_one_direction_and_that_of_the_room_all():
     part = ShownPart.of(REFERENCE, TOLERANCE)
-    assert part is not None and part.names == ("move along y",) and len(part.across) == 1
+    assert part is not None and part.names == ("moving up and down",) and len(part.across) == 1
     hidden = np.linalg.pinv(part.across)[3:, 0]
     assert abs(hidden @ UP) / np.linalg.norm(hidden) > 0.99
     assert ShownPart.of(commissioned([OPEN], NOISE_M)[0], TOLERANCE) is None
@@ -44,7 +45,7 @@ def test_a_move_that_is_not_shown_leaves_the_image_as_it_is():
 def test_a_move_of_2_cm_along_y_is_named_by_the_part_that_is_shown(sign):
     health, shift = heard((0.0, sign * 0.02, 0.0))
     assert list(health.stops) == ["corner"]
-    assert "may be a part of it: its view does not show move along y" in health.reason
+    assert "may be a part of it: its view does not show moving up and down" in health.reason
     shown = np.array((0.0, sign * 0.02, 0.0)) - sign * 0.02 * UP[1] * UP
     assert shift.move_m == pytest.approx(shown, abs=0.001)
     assert 4 < shift.move_mm < 12
@@ -55,7 +56,7 @@ def test_a_camera_that_sees_all_is_not_named_for_so_little():
     watch = Watch([OPEN], references)
     for k in range(60):
         truly = knocked(OPEN, (0, 0, 0), (0.0, 0.0, 0.006))
-        health = watch.hear([frame(truly, k, 0.001, np.random.default_rng(k))], None, k)
+        health = watch.hear(Snapshot.taken([frame(truly, k, 0.001, np.random.default_rng(k))], None, k))
     assert health.reason is None
 
 
@@ -89,5 +90,5 @@ def _reference(camera, depth):
 
     room = Commissioning([camera], None, 6)
     for number in range(6):
-        room.add([frame(camera, number, 0.001, depth=depth)], None)
+        room.add(Snapshot.taken([frame(camera, number, 0.001, depth=depth)]))
     return room.reference_of(camera)

@@ -9,8 +9,9 @@ from elbowroom.errors import CalibrationError, InputError
 from elbowroom.geometry import parallel
 from elbowroom.monitor import Condition, Watch
 from elbowroom.monitor.health.drift.commission import Commissioning
-from elbowroom.monitor.health.drift.sequential import Tally, mean_run_length
-from elbowroom.sensing import DepthFrame
+from elbowroom.monitor.health.drift.sequential import Tally
+from elbowroom.sensing import DepthFrame, Snapshot
+from reference.watch_run_length import mean_run_length
 from reference.watch_twins import CAMERAS, NOISE_M, camera_at, commissioned, frame, knocked, walls
 
 MS = 1_000_000
@@ -22,7 +23,7 @@ def run(watch, cameras, start=0, moments=60, noise_m=NOISE_M, change=lambda fram
     for k in range(start, start + moments):
         stamp = k * 33 * MS
         frames = [change(frame(camera, stamp, noise_m, np.random.default_rng(k)), k) for camera in cameras]
-        health = watch.hear([f for f in frames if f is not None], None, stamp)
+        health = watch.hear(Snapshot.taken([f for f in frames if f is not None], None, stamp))
     return health
 
 
@@ -72,7 +73,7 @@ def test_what_was_found_stays_though_the_camera_comes_back_or_gives_nothing():
     watch = Watch(CAMERAS, REFERENCES)
     found = run(watch, [knocked(CAMERAS[0], (0, 1, 0)), *CAMERAS[1:]])
     assert run(watch, CAMERAS, 100, 60).stops == found.stops
-    assert watch.hear([], None, 10**12).stops == found.stops
+    assert watch.hear(Snapshot.taken([], None, 10**12)).stops == found.stops
     # only a watch that is made anew begins anew
     assert run(Watch(CAMERAS, REFERENCES), CAMERAS, 200, 20).reason is None
 
@@ -120,7 +121,7 @@ def test_a_frame_that_is_heard_twice_counts_once():
     watch = Watch(CAMERAS[:1], REFERENCES[:1])
     moved = frame(knocked(CAMERAS[0], (0, 1, 0)), 5, NOISE_M)
     for _ in range(100):
-        assert watch.hear([moved], None, 5).reason is None
+        assert watch.hear(Snapshot.taken([moved], None, 5)).reason is None
 
 
 def test_fewer_frames_find_less_but_never_something_else():
@@ -135,7 +136,7 @@ def test_fewer_frames_find_less_but_never_something_else():
 
 
 def watch_of_nothing():
-    return Watch(CAMERAS, REFERENCES).hear([], None, 0)
+    return Watch(CAMERAS, REFERENCES).hear(Snapshot.taken([], None, 0))
 
 
 def test_a_camera_that_sees_one_wall_says_which_motions_it_cannot_tell():
@@ -143,14 +144,18 @@ def test_a_camera_that_sees_one_wall_says_which_motions_it_cannot_tell():
     room = Commissioning([facing], None, 6)
     depth = np.full((60, 80), 3.3)
     for number in range(6):
-        room.add([frame(facing, number, NOISE_M, depth=depth)], None)
+        room.add(Snapshot.taken([frame(facing, number, NOISE_M, depth=depth)]))
     reference = room.reference_of(facing)
-    assert reference.unseen_motions(0.007, 0.008) == ("turn about z", "move along x", "move along y")
+    assert reference.unseen_motions(0.007, 0.008) == (
+        "rolling about its line of sight",
+        "moving sideways",
+        "moving up and down",
+    )
     # and what it cannot tell it does not claim
     sideways = frame(facing, 1, NOISE_M, depth=depth)
     watch = Watch([facing], [reference])
     for k in range(60):
-        health = watch.hear([DepthFrame("facing", k, sideways.depth_m)], None, k)
+        health = watch.hear(Snapshot.taken([DepthFrame("facing", k, sideways.depth_m)], None, k))
     assert health.reason is None
 
 
@@ -162,7 +167,7 @@ def test_what_a_person_hid_for_a_while_is_not_in_the_reference_as_a_person():
         if number < 3:
             depth[:, 20:40] = 1.0
         depth[:, 60:] = 1.5 + 0.1 * number
-        room.add([frame(camera, number, NOISE_M, depth=depth)], None)
+        room.add(Snapshot.taken([frame(camera, number, NOISE_M, depth=depth)]))
     reference = room.reference_of(camera)
     truth, column = walls(camera).ravel()[reference.pixel], reference.pixel % 80
     assert np.abs(reference.depth_m - truth).max() < 0.025
@@ -178,9 +183,9 @@ def test_commissioning_refuses_what_it_cannot_use():
     with pytest.raises(CalibrationError, match="gave 0 frames"):
         room.references()
     with pytest.raises(CalibrationError, match="another size"):
-        room.add([DepthFrame("north", 0, np.ones((2, 2), np.float32))], None)
+        room.add(Snapshot.taken([DepthFrame("north", 0, np.ones((2, 2), np.float32))]))
     for number in range(5):
-        room.add([frame(CAMERAS[0], number, depth=np.zeros((60, 80)))], None)
+        room.add(Snapshot.taken([frame(CAMERAS[0], number, depth=np.zeros((60, 80)))]))
     with pytest.raises(CalibrationError, match="0 flat spots"):
         room.reference_of(CAMERAS[0])
 
@@ -200,7 +205,9 @@ def test_references_of_another_site_are_refused():
 
 def test_a_frame_of_another_size_is_an_error_and_no_silence():
     with pytest.raises(InputError, match="2 x 2 pixels"):
-        Watch(CAMERAS, REFERENCES).hear([DepthFrame("north", 0, np.ones((2, 2), np.float32))], None, 0)
+        Watch(CAMERAS, REFERENCES).hear(
+            Snapshot.taken([DepthFrame("north", 0, np.ones((2, 2), np.float32))], None, 0)
+        )
 
 
 @settings(deadline=None)

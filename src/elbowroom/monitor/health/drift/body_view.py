@@ -10,7 +10,7 @@ from elbowroom.geometry.lens import distorted, usable_radius
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.draw import View
 from elbowroom.machine.rasterise import canvas, mesh_of, view_of
-from elbowroom.monitor.health.drift.kernels.body import Limits, Raw, draw_links, surface_spots
+from elbowroom.monitor.health.drift.kernels.body import Found, Raw, Shown, draw_links, surface_spots
 from elbowroom.monitor.health.drift.kernels.watch import LEAST_SIGMA_M
 
 WIDTH_PX = 160
@@ -55,6 +55,8 @@ class BodyView:
             camera.world_from_camera,
             Intrinsics(k.fx / step, k.fy / step, (k.cx - step // 2) / step, (k.cy - step // 2) / step),
             noise=camera.noise,
+            min_depth_m=camera.min_depth_m,
+            max_depth_m=camera.max_depth_m,
         )
         self.camera, self.machine = camera, machine
         self._view: View = view_of(pinhole)
@@ -64,12 +66,14 @@ class BodyView:
         u, v = np.round(u), np.round(v)
         inside = (u >= 0) & (u < camera.width) & (v >= 0) & (v < camera.height)
         inside &= radius <= (usable_radius(k, float(radius.max())) if k.is_distorted else np.inf)
-        self._raw_pixel = np.where(inside, v * camera.width + u, -1).astype(np.int64)
-        self._per_planar = np.sqrt(1 + radius**2) if camera.depth_kind == "radial" else np.ones_like(x)
+        self._raw = Raw(
+            np.where(inside, v * camera.width + u, -1).astype(np.int64),
+            np.sqrt(1 + radius**2) if camera.depth_kind == "radial" else np.ones_like(x),
+        )
         self._canvas = canvas(height, width)
-        self._composite = np.zeros((height, width), dtype=np.float32)
-        self._shown = np.zeros((height, width), dtype=np.int16)
-        self._link_of, self._numbers = np.zeros(MOST_SPOTS, dtype=np.int64), np.zeros((MOST_SPOTS, 8))
+        size = (height, width)
+        self._shown = Shown(np.zeros(size, dtype=np.float32), np.zeros(size, dtype=np.int16))
+        self._found = Found(np.zeros(MOST_SPOTS, dtype=np.int64), np.zeros((MOST_SPOTS, 8)))
 
     def look(self, depth_m: NDArray[np.float32], world_from_link: NDArray[np.float64]) -> BodySpots:
         """What the image shows of the machine.
@@ -79,13 +83,9 @@ class BodyView:
             world_from_link: where the joints say that the links are, shape (links, 4, 4).
         """
         camera_from_link = self.camera.camera_from_world @ world_from_link
-        draw_links(
-            mesh_of(self.machine), camera_from_link, self._view, *self._canvas, self._composite, self._shown
-        )
-        raw = Raw(depth_m.ravel(), self._raw_pixel, self._per_planar)
-        limits = Limits(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
-        n = surface_spots(self._view, self._composite, self._shown, raw, limits, self._link_of, self._numbers)
-        link, numbers = self._link_of[:n].copy(), self._numbers[:n]
+        draw_links(mesh_of(self.machine), camera_from_link, self._view, self._canvas, self._shown)
+        n = surface_spots(self._view, self._shown, depth_m.ravel(), self._raw, GATE_M, self._found)
+        link, numbers = self._found.link[:n].copy(), self._found.numbers[:n]
         link_from_camera = invert_rigid(camera_from_link)[link]
         rotation = link_from_camera[:, :3, :3]
         return BodySpots(

@@ -3,14 +3,13 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
-from elbowroom.monitor.health.drift.kernels.body import Limits
-from elbowroom.monitor.health.drift.kernels.watch import Fitted, Memory, Prior, Spots, judge_image
+from elbowroom.monitor.health.drift.fit import PRIOR, convinces
+from elbowroom.monitor.health.drift.kernels.watch import Counts, Fit, Gate, Memory, Spots, judge_image
 from elbowroom.monitor.health.drift.lasting import Lasting
-from elbowroom.monitor.health.drift.reference import MOVE_PRIOR_M, TURN_PRIOR_RAD, CameraReference
+from elbowroom.monitor.health.drift.reference import CameraReference
 from elbowroom.monitor.health.drift.sequential import Tally
 from elbowroom.monitor.health.drift.shift import Shift
 from elbowroom.monitor.health.drift.shown_part import ShownPart
@@ -23,11 +22,6 @@ SIGMAS = 3.0
 LEAST_SEEN = 60
 """So many spots must be in view for a frame to say anything."""
 LEAST_SEEN_SHARE = 0.15
-FOR_OVER_AGAINST = 5.0
-"""What speaks for a motion must outweigh so much what stands where it was: a table that is pushed moves no wall."""
-LEAST_FOR = 20.0
-LEAST_FIT = 0.5
-"""So much of what is in view must fit the motion."""
 FRAMES = 6
 """So many more frames must say that it moved than say, counted twice, that it did not."""
 CHANGED_FRAMES = 12
@@ -116,47 +110,46 @@ class CameraWatch:
 
     def _judge(self, frame: DepthFrame) -> CameraHealth:
         """What one frame says by itself."""
-        image, name = frame.depth_m, self.camera.name
-        if image.shape != (self.reference.height, self.reference.width):
+        self._require_size(frame)
+        (within, nearer, farther, lost), fit = self._listen(frame, self._memory)
+        total = len(self.reference.pixel)
+        fits = max(fit.support.fits_still, fit.support.fits_moved) * within
+        seen, hidden = fits / total, (nearer + lost) / total
+        shift = None
+        if lost >= COVERED_SHARE * total:
+            condition = Condition.BLIND
+        elif hidden >= COVERED_SHARE:
+            condition = Condition.COVERED
+        elif within + farther < max(LEAST_SEEN, LEAST_SEEN_SHARE * total):
+            condition = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.UNSURE
+        elif fits < CHANGED_FIT * (within + farther):
+            condition = Condition.CHANGED
+        else:
+            shift = self._shift(fit)
+            moved = convinces(fit.support) and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
+            still = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.STILL
+            condition = Condition.MOVED if moved else still
+        return CameraHealth(self.camera.name, condition, shift, seen, hidden)
+
+    def _require_size(self, frame: DepthFrame) -> None:
+        height, width = frame.depth_m.shape
+        if (height, width) != (self.reference.height, self.reference.width):
             raise InputError(
-                f"watch: frame of {name} is {image.shape[1]} x {image.shape[0]} pixels, its reference "
+                f"watch: frame of {self.camera.name} is {width} x {height} pixels, its reference "
                 f"{self.reference.width} x {self.reference.height}"
             )
-        counted, shift, said = self._listen(frame, self._memory)
-        within, nearer, farther, lost = (int(number) for number in counted)
-        total = len(self.reference.pixel)
-        speaks_for, against, fits_still, fits_moved = (float(share) for share in said)
-        fits = max(fits_still, fits_moved) * within
-        seen, hidden = fits / total, (nearer + lost) / total
-        if lost >= COVERED_SHARE * total:
-            return CameraHealth(name, Condition.BLIND, None, seen, hidden)
-        if hidden >= COVERED_SHARE:
-            return CameraHealth(name, Condition.COVERED, None, seen, hidden)
-        if within + farther < max(LEAST_SEEN, LEAST_SEEN_SHARE * total):
-            little = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.UNSURE
-            return CameraHealth(name, little, None, seen, hidden)
-        if fits < CHANGED_FIT * (within + farther):
-            return CameraHealth(name, Condition.CHANGED, None, seen, hidden)
-        moved = (
-            speaks_for > max(FOR_OVER_AGAINST * against, LEAST_FOR)
-            and fits_moved >= LEAST_FIT
-            and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
-        )
-        still = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.STILL
-        return CameraHealth(name, Condition.MOVED if moved else still, shift, seen, hidden)
 
-    def _listen(
-        self, frame: DepthFrame, memory: Memory
-    ) -> tuple[NDArray[np.int64], Shift, NDArray[np.float64]]:
-        """Adds a frame to a memory: numbers of spots, the shift that fits, and what speaks for it (`fit_motion`)."""
-        counted = np.empty(4, dtype=np.int64)
-        fitted = Fitted(np.empty(6), np.empty((6, 6)), np.empty(4))
-        limits = Limits(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
-        prior = Prior(TURN_PRIOR_RAD, MOVE_PRIOR_M)
-        judge_image(frame.depth_m.ravel(), self._spots, limits, prior, memory, counted, fitted)
-        motion, covariance, said = fitted
-        shift = Shift.of(motion, covariance) if self._part is None else self._part.shift(motion, covariance)
-        return counted, shift, said
+    def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[Counts, Fit]:
+        """Adds a frame to a memory: numbers of spots, and the motion that fits them."""
+        gate = Gate(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
+        counts, fit = judge_image(frame.depth_m.ravel(), self._spots, gate, PRIOR, memory)
+        return counts, fit
+
+    def _shift(self, fit: Fit) -> Shift:
+        """A fitted motion as far as the view shows it."""
+        if self._part is not None:
+            return self._part.shift(fit.motion, fit.covariance)
+        return Shift.of(fit.motion, fit.covariance)
 
     def _count(self, frame: DepthFrame, now: CameraHealth, stamp_ns: int) -> None:
         """Lets the tests hear what the frame said."""
@@ -172,7 +165,7 @@ class CameraWatch:
             self._since_moved.frames[:] = 0
         else:
             # the size is that of frames after the knock: the mean that found it holds some from before
-            _, shift, _ = self._listen(frame, self._since_moved)
+            shift = self._shift(self._listen(frame, self._since_moved)[1])
         name = self.camera.name
         if moved and shift is not None:
             self.shift = shift

@@ -1,6 +1,6 @@
 """Finds what stands still in front of the cameras: the reference that the watch compares with."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,7 +12,7 @@ from elbowroom.machine import Machine
 from elbowroom.machine.rasterise import rasterise
 from elbowroom.monitor.health.drift.flat_spots import flat_spots
 from elbowroom.monitor.health.drift.reference import CameraReference, lens_of
-from elbowroom.sensing import DepthFrame, rectified
+from elbowroom.sensing import Snapshot, rectified
 from elbowroom.sensing.rays import pixel_rays
 
 UNIT_M = 0.00025
@@ -64,20 +64,16 @@ class Commissioning:
             self._stacks[camera.name] = np.zeros(shape, dtype=np.uint16)
             self._counts[camera.name] = 0
 
-    def add(self, frames: Iterable[DepthFrame], joints: Mapping[str, float] | None) -> None:
-        """Adds one moment.
-
-        Args:
-            frames: at most one of each camera.
-            joints: of the machine, if there is one [m or rad].
+    def add(self, snapshot: Snapshot) -> None:
+        """Adds one moment; if there is a machine, with where it was.
 
         Raises:
             CalibrationError: a machine without joints, a frame of another size or of no camera, too many moments.
         """
         by_name = {camera.name: camera for camera in self.cameras}
-        if self.machine is not None and joints is None:
+        if self.machine is not None and snapshot.joints is None:
             raise CalibrationError("commission: a machine without joints; give its joint positions")
-        for frame in frames:
+        for frame in snapshot.frames:
             camera = by_name.get(frame.camera)
             if camera is None or frame.depth_m.shape != (camera.height, camera.width):
                 raise CalibrationError(
@@ -90,8 +86,8 @@ class Commissioning:
                 frame.depth_m <= camera.max_depth_m
             )
             usable &= frame.depth_m < 65535 * UNIT_M
-            if self.machine is not None and joints is not None:
-                usable &= ~_machine_pixels(self.machine, camera, joints)
+            if self.machine is not None:
+                usable &= ~_machine_pixels(self.machine, camera, snapshot.joints_at(camera.name) or {})
             depth = np.where(usable, frame.depth_m, 0) / UNIT_M
             self._stacks[camera.name][number] = np.round(depth).astype(np.uint16)
             self._counts[camera.name] += 1
@@ -107,31 +103,7 @@ class Commissioning:
             raise CalibrationError(
                 f"commission: camera {camera.name} gave {count} frames, at least 5 are needed; is it connected?"
             )
-        depth, scatter = _still(self._stacks[camera.name][:count])
-        rays = pixel_rays(camera)
-        x, y = rays.x.astype(np.float64), rays.y.astype(np.float64)
-        per_planar = np.sqrt(1 + x * x + y * y) if camera.depth_kind == "radial" else np.ones_like(x)
-        found = flat_spots(depth / per_planar, x, y, 1.25 * scatter / np.sqrt(count))
-        chosen = _spread_out(found.flat, found.normal)
-        if len(chosen) < LEAST_SPOTS:
-            raise CalibrationError(
-                f"commission: camera {camera.name} shows {len(chosen)} flat spots that stood still, at least "
-                f"{LEAST_SPOTS} are needed; clear its view of floor and walls, or take more frames"
-            )
-        at = np.unravel_index(chosen, depth.shape)
-        # the median of the frames at the very pixel carries its noise; the plane about it averages that out
-        return CameraReference(
-            camera=camera.name,
-            width=camera.width,
-            height=camera.height,
-            lens=lens_of(camera),
-            radial=camera.depth_kind == "radial",
-            pixel=chosen,
-            depth_m=(found.planar_m * per_planar)[at],
-            sigma_m=scatter[at],
-            ray=np.column_stack([x[at], y[at]]),
-            normal=found.normal[at],
-        )
+        return _reference(camera, self._stacks[camera.name][:count])
 
     def references(self) -> tuple[CameraReference, ...]:
         """Those of all cameras, in their order.
@@ -140,6 +112,35 @@ class Commissioning:
             CalibrationError: as `reference_of`.
         """
         return tuple(self.reference_of(camera) for camera in self.cameras)
+
+
+def _reference(camera: DepthCamera, stack: NDArray[np.uint16]) -> CameraReference:
+    """What stood still and is flat in some frames of a camera."""
+    depth, scatter = _still(stack)
+    rays = pixel_rays(camera)
+    x, y = rays.x.astype(np.float64), rays.y.astype(np.float64)
+    per_planar = np.sqrt(1 + x * x + y * y) if camera.depth_kind == "radial" else np.ones_like(x)
+    found = flat_spots(depth / per_planar, x, y, 1.25 * scatter / np.sqrt(len(stack)))
+    chosen = _spread_out(found.flat, found.normal)
+    if len(chosen) < LEAST_SPOTS:
+        raise CalibrationError(
+            f"commission: camera {camera.name} shows {len(chosen)} flat spots that stood still, at least "
+            f"{LEAST_SPOTS} are needed; clear its view of floor and walls, or take more frames"
+        )
+    at = np.unravel_index(chosen, depth.shape)
+    # the median of the frames at the very pixel carries its noise; the plane about it averages that out
+    return CameraReference(
+        camera=camera.name,
+        width=camera.width,
+        height=camera.height,
+        lens=lens_of(camera),
+        radial=camera.depth_kind == "radial",
+        pixel=chosen,
+        depth_m=(found.planar_m * per_planar)[at],
+        sigma_m=scatter[at],
+        ray=np.column_stack([x[at], y[at]]),
+        normal=found.normal[at],
+    )
 
 
 def _still(stack: NDArray[np.uint16]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

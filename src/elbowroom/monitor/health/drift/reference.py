@@ -2,18 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.twist import CAMERA_MOTIONS
+from elbowroom.monitor.health.drift.fit import PRIOR
 from elbowroom.monitor.health.drift.kernels.watch import LEAST_SIGMA_M, Spots
-
-AXES = ("turn about x", "turn about y", "turn about z", "move along x", "move along y", "move along z")
-"""Motions of a camera, in its own axes: x right, y down, z forward."""
-TURN_PRIOR_RAD = 0.1
-MOVE_PRIOR_M = 0.2
+from elbowroom.monitor.health.drift.tolerance import Tolerance
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,7 +96,7 @@ class CameraReference:
         where the spots do not show some direction, the prior's."""
         spots = self.spots()
         weighted = spots.jacobian / spots.sigma[:, None]
-        prior = np.diag([TURN_PRIOR_RAD**-2.0] * 3 + [MOVE_PRIOR_M**-2.0] * 3)
+        prior = np.diag([PRIOR.turn**-2.0] * 3 + [PRIOR.move**-2.0] * 3)
         return np.linalg.inv(weighted.T @ weighted + prior)
 
     def unseen_motions(self, turn_rad: float, move_m: float) -> tuple[str, ...]:
@@ -108,7 +107,24 @@ class CameraReference:
         """
         sigma = np.sqrt(np.diag(self.covariance()))
         limits = np.array([turn_rad] * 3 + [move_m] * 3) / 3
-        return tuple(name for name, s, limit in zip(AXES, sigma, limits, strict=True) if s > limit)
+        return tuple(name for name, s, limit in zip(CAMERA_MOTIONS, sigma, limits, strict=True) if s > limit)
+
+    def row(self, tolerance: Tolerance) -> dict[str, Any]:
+        """A row of kind "reference": what it shows, and which motions it does not show.
+
+        Args:
+            tolerance: by how much a camera may move.
+        """
+        sigma = np.sqrt(np.diag(self.covariance()))
+        return {
+            "kind": "reference",
+            "camera": self.camera,
+            "spots": len(self.pixel),
+            "range_m": [float(self.depth_m.min()), float(self.depth_m.max())],
+            "turn_sigma_deg": np.degrees(sigma[:3]).tolist(),
+            "move_sigma_mm": (1e3 * sigma[3:]).tolist(),
+            "not_shown": list(self.unseen_motions(tolerance.turn_rad, tolerance.move_m)),
+        }
 
     def require(self, camera: DepthCamera) -> None:
         """Checks that the reference is of this camera.

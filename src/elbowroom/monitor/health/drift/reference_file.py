@@ -57,6 +57,20 @@ def load_references(path: Path) -> tuple[CameraReference, ...]:
     except (zipfile.BadZipFile, KeyError, ValueError, OSError, EOFError) as error:
         what = " ".join(str(error).split())
         raise CalibrationError(f"{path}: no reference ({what}); commission the site again") from None
+    _require_fit(arrays, path)
+    counts = arrays["counts"]
+    ends = np.cumsum(counts)
+    try:
+        return tuple(
+            _reference(arrays, number, slice(end - count, end))
+            for number, (end, count) in enumerate(zip(ends, counts, strict=True))
+        )
+    except CalibrationError as error:
+        raise CalibrationError(f"{path}: {error}") from None
+
+
+def _require_fit(arrays: dict[str, np.ndarray], path: Path) -> None:
+    """Refuses another version, and arrays that do not fit each other."""
     if arrays["version"] != VERSION:
         raise CalibrationError(
             f"{path}: version {arrays['version']}, this program reads {VERSION}; commission again"
@@ -67,14 +81,6 @@ def load_references(path: Path) -> tuple[CameraReference, ...]:
     fits &= all(len(arrays[name]) == spots for name in SPOTS)
     if not fits or not 1 <= cameras <= MAX_CAMERAS or (counts < 0).any() or counts.sum() != spots:
         raise CalibrationError(f"{path}: its arrays do not fit each other; commission the site again")
-    ends = np.cumsum(counts)
-    try:
-        return tuple(
-            _reference(arrays, number, slice(ends[number] - counts[number], ends[number]))
-            for number in range(cameras)
-        )
-    except CalibrationError as error:
-        raise CalibrationError(f"{path}: {error}") from None
 
 
 def _array(archive: zipfile.ZipFile, name: str, path: Path) -> np.ndarray:

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from elbowroom.errors import InputError
 
 
@@ -35,23 +33,3 @@ class Tally:
     def decided(self) -> bool:
         """Whether enough frames said yes."""
         return self.score >= self.limit
-
-
-def mean_run_length(limit: int, share: float) -> float:
-    """Frames until a `Tally` decides, on average, if each says yes with one probability, whatever others say.
-
-    Exact: mean absorption time of its Markov chain. Frames of real rooms hang together, so this is no promise; it says
-    how rare wrong frames have to be.
-
-    Args:
-        limit: of the tally.
-        share: probability that a frame says yes, between 0 and 1, neither included.
-    """
-    if not 0 < share < 1:
-        raise InputError(f"mean_run_length: share is {share}, must be between 0 and 1")
-    # time from score s to s + 1, by where a no leads: t[s] = 1 + (1 - share) (t[down] + ... + t[s]), solved for t[s]
-    up = np.zeros(limit)
-    for s in range(limit):
-        down = max(s - 2, 0)
-        up[s] = (1 + (1 - share) * up[down:s].sum()) / share
-    return float(up.sum())

@@ -38,7 +38,14 @@ class Shift:
         steady: NDArray[np.float64] = STEADY_COVARIANCE,
         not_shown: tuple[str, ...] = (),
     ) -> "Shift":
-        """From the six numbers of the kernels, copied; never surer than what is steady in the reference."""
+        """From the six numbers of the kernels, copied; never surer than what is steady in the reference.
+
+        Args:
+            motion: turn [rad], move [m], shape (6,).
+            covariance: of it, shape (6, 6).
+            steady: what is added to that.
+            not_shown: as of the class.
+        """
         return cls(motion[:3].copy(), motion[3:].copy(), covariance + steady, not_shown)
 
     @property
@@ -62,7 +69,12 @@ class Shift:
         return float(_along(self.move_m, self.covariance[3:, 3:]) * 1e3)
 
     def exceeds(self, turn_rad: float, move_m: float, sigmas: float) -> bool:
-        """Whether it is larger than a tolerance in turn or in move, by so many sigmas."""
+        """Whether it is larger than a tolerance in turn or in move, by so many sigmas.
+
+        Args:
+            turn_rad, move_m: the tolerance.
+            sigmas: of the uncertainty along the shift.
+        """
         turn = np.linalg.norm(self.turn_rad) - sigmas * _along(self.turn_rad, self.covariance[:3, :3])
         move = np.linalg.norm(self.move_m) - sigmas * _along(self.move_m, self.covariance[3:, 3:])
         return bool(turn > turn_rad or move > move_m)

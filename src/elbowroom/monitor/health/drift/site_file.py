@@ -1,7 +1,6 @@
 """The site file of a commissioned room: the old one's text, with a key that names the reference."""
 
 import os
-import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -9,8 +8,7 @@ from elbowroom.errors import SiteError
 from elbowroom.files.atomic import whole_file
 from elbowroom.monitor import CameraReference, save_references
 from elbowroom.site import Site
-
-_OLD_KEY = re.compile(r"^watch:.*\n(?:[ \t]+.*\n|[ \t]*\n)*", re.MULTILINE)
+from elbowroom.site.written import refuse_own_file, written_with_key
 
 
 def write_commissioned(site: Site, references: Sequence[CameraReference], out: Path) -> tuple[Path, Path]:
@@ -29,10 +27,7 @@ def write_commissioned(site: Site, references: Sequence[CameraReference], out: P
         SiteError: the new file is the old one, or lies in another folder.
         InputError: the folder cannot be written to.
     """
-    if out.exists() and out.samefile(site.path):
-        raise SiteError(
-            f"{out}: is the site file itself; write the commissioned one beside it, under another name"
-        )
+    refuse_own_file(site, out)
     same_folder = os.path.realpath(out.parent) == os.path.realpath(site.path.parent)
     is_packaged = site.path == Site.simulated_room().path
     if not same_folder and not is_packaged:
@@ -43,14 +38,7 @@ def write_commissioned(site: Site, references: Sequence[CameraReference], out: P
     reference = out.with_name(f"{out.stem}.watch.npz")
     with whole_file(reference) as unfinished:
         save_references(references, unfinished)
-    text = _OLD_KEY.sub("", site.path.read_text(encoding="utf-8"))
     settings = site.entry.watch.model_dump(exclude_unset=True) if site.entry.watch is not None else {}
     settings["reference"] = reference.name
-    lines = "".join(f"  {key}: {value}\n" for key, value in settings.items())
-    with whole_file(out) as unfinished:
-        unfinished.write_text(
-            f"{text.rstrip()}\n\nwatch:                      # written by `elbowroom calibrate commission`\n{lines}",
-            encoding="utf-8",
-        )
-    Site.load(out)
+    written_with_key(site, "watch", settings, out, by="`elbowroom calibrate commission`")
     return out, reference

@@ -11,9 +11,8 @@ from elbowroom.monitor.health.drift.reference import CameraReference, require_re
 from elbowroom.monitor.health.drift.shift import Shift
 from elbowroom.monitor.health.drift.tolerance import Tolerance
 from elbowroom.monitor.health.health import CameraHealth, Condition, Health
-from elbowroom.sensing import DepthFrame, JointRecord
+from elbowroom.sensing import DepthFrame, Snapshot
 
-Joints = Mapping[str, float] | JointRecord
 BODY = "machine"
 """The key of what is wrong with the machine among `Health.stops`."""
 TURNS = 2
@@ -60,26 +59,21 @@ class Watch:
         """
         return {watch.camera.name: watch.shift for watch in self._watches}[camera]
 
-    def hear(self, frames: Sequence[DepthFrame], joints: Joints | None, now_ns: int) -> Health:
-        """Judges the newest frames.
-
-        Args:
-            frames: at most one of each camera.
-            joints: of the machine, or a record to be asked at each frame's time [m or rad].
-            now_ns: the time now [ns, the clock of the frames].
+    def hear(self, snapshot: Snapshot) -> Health:
+        """Judges the newest frames; where nothing has a time, nothing lasts.
 
         Raises:
             InputError: an image of another size, joints that are not possible.
         """
-        newest = {frame.camera: frame for frame in frames}
-        cameras = self._hear_cameras(newest, now_ns)
-        if self._body is not None and joints is not None:
+        newest = {frame.camera: frame for frame in snapshot.frames}
+        cameras = self._hear_cameras(newest, snapshot.now_ns or 0)
+        if self._body is not None and snapshot.joints is not None:
             still = {
                 health.camera
                 for health, watch in zip(cameras, self._watches, strict=True)
                 if health.condition is Condition.STILL and watch.stop is None
             }
-            joints_of = {name: _at(joints, newest[name]) for name in still}
+            joints_of = {name: snapshot.joints_at(name) or {} for name in still}
             self._body.hear(newest, joints_of, still)
         for watch in self._watches:
             if watch.stop is not None:
@@ -103,9 +97,3 @@ class Watch:
             for watch in self._watches
             for name in [watch.camera.name]
         )
-
-
-def _at(joints: Joints, frame: DepthFrame) -> Mapping[str, float]:
-    if not isinstance(joints, JointRecord):
-        return joints
-    return joints.at(frame.stamp_ns or 0)

@@ -6,47 +6,66 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.noise import sigma
+from elbowroom.geometry.kernels.pinhole import radial_over_planar
 from elbowroom.machine.kernels.draw import Mesh, draw
 
 BEND_M = 0.004
 """A spot is flat if its neighbours' depths leave it by no more than this."""
 LEAST_COSINE = 0.3
+"""Of the angle between ray and normal; what is grazed more says little."""
+
+
+class Shown(NamedTuple):
+    """What should be seen of the machine.
+
+    Fields:
+        inverse: inverse planar depth of its surface, shape (height, width), float32 [1/m], 0 where nothing is.
+        link: the link in front, shape (height, width), int16, -1 where none is.
+    """
+
+    inverse: np.ndarray
+    link: np.ndarray
 
 
 class Raw(NamedTuple):
-    """The raw image beside the drawn one.
+    """Where a camera's raw image sees what a pinhole view does.
 
-    image: flattened, float32 [m, the camera's kind]. pixel: (height, width) int64, place in `image` that sees the same;
-    -1: none does. per_planar: (height, width), depth of the camera's kind per planar depth.
+    Fields:
+        pixel: place in the flattened image, shape (height, width), int64; -1: none.
+        per_planar: depth of the camera's kind per planar depth, shape (height, width).
     """
 
-    image: np.ndarray
     pixel: np.ndarray
     per_planar: np.ndarray
 
 
-class Limits(NamedTuple):
-    """Which returns count: the camera's range, and how far off something else begins [m]."""
+class Found(NamedTuple):
+    """Spots of the machine's surface, at most m of them.
 
-    least: float
-    greatest: float
-    gate: float
+    Fields:
+        link: shape (m,), int64.
+        numbers: shape (m, 8): point and normal in the camera's frame, offset towards the camera along the normal,
+            sigma [m].
+    """
+
+    link: np.ndarray
+    numbers: np.ndarray
 
 
 @njit(cache=True, nogil=True)
-def draw_links(mesh, camera_from_link, view, inverse, first, last, composite, shown):
+def draw_links(mesh, camera_from_links, view, canvas, shown):
     """Draws each link by itself, and keeps which of them is in front.
 
     Args:
         mesh: all links.
-        camera_from_link: (links, 4, 4).
+        camera_from_links: (links, 4, 4).
         view: the camera; depth is planar whatever its kind.
-        inverse, first, last: an empty canvas, empty again afterwards.
-        composite: (height, width) float32, written: inverse planar depth [1/m], 0 where nothing is.
-        shown: (height, width) int16, written: the link, -1 where none is.
+        canvas: empty, and empty again afterwards.
+        shown: written.
     """
-    composite[:] = 0.0
-    shown[:] = -1
+    shown.inverse[:] = 0.0
+    shown.link[:] = -1
     for link in range(mesh.radius.size):
         one = Mesh(
             mesh.vertices,
@@ -57,75 +76,90 @@ def draw_links(mesh, camera_from_link, view, inverse, first, last, composite, sh
             mesh.radius[link : link + 1],
             mesh.closed[link : link + 1],
         )
-        draw(one, camera_from_link[link : link + 1], view, inverse, first, last)
+        draw(one, camera_from_links[link : link + 1], view, canvas)
         for v in range(view.height):
-            for u in range(first[v], last[v] + 1):
-                if inverse[v, u] > composite[v, u]:
-                    composite[v, u] = inverse[v, u]
-                    shown[v, u] = link
-                inverse[v, u] = 0.0
-            first[v], last[v] = view.width, -1
+            for u in range(canvas.first[v], canvas.last[v] + 1):
+                if canvas.inverse[v, u] > shown.inverse[v, u]:
+                    shown.inverse[v, u] = canvas.inverse[v, u]
+                    shown.link[v, u] = link
+                canvas.inverse[v, u] = 0.0
+            canvas.first[v], canvas.last[v] = view.width, -1
 
 
 @njit(cache=True, nogil=True)
-def surface_spots(view, composite, shown, raw, limits, link_of, numbers):
+def surface_spots(view, shown, image, raw, gate, found):
     """Spots where a link is flat over 3 x 3 pixels, and how far from the model's surface the image shows one.
 
     Args:
-        view, composite, shown: as of `draw_links`.
-        raw: `Raw`.
-        limits: `Limits`.
-        link_of: (m,) int64, written.
-        numbers: (m, 8), written: point and normal in the camera's frame, offset towards the camera along the normal,
-            sigma [m].
+        view: the camera that `shown` was drawn for.
+        shown: as of `draw_links`.
+        image: flattened, float32 [m, the camera's kind]; what is out of the view's range is no return.
+        raw: which of its pixels see the same.
+        gate: what is farther off is something else [m].
+        found: written.
 
     Returns:
         How many spots were written.
     """
-    image, raw_pixel, per_planar = raw
-    least, greatest, gate = limits
     n = 0
     # every other pixel of every other row: neighbours share what they are judged by
     for v in range(1, view.height - 1, 2):
-        y = (v - view.cy) / view.fy
         for u in range(1, view.width - 1, 2):
-            link = shown[v, u]
-            if link < 0 or raw_pixel[v, u] < 0:
+            pixel = raw.pixel[v, u]
+            if pixel < 0 or not _is_one_link(shown.link, u, v) or _bend(shown.inverse, u, v) > 2.0 * BEND_M:
                 continue
-            alone = True
-            for i in range(-1, 2):
-                for j in range(-1, 2):
-                    alone &= shown[v + i, u + j] == link
-            if not alone:
+            depth = float(image[pixel])
+            if not (depth > 0.0 and depth >= view.min_depth and depth <= view.max_depth and depth < np.inf):
                 continue
-            depth = float(image[raw_pixel[v, u]])
-            if not (depth > 0.0 and depth >= least and depth <= greatest and depth < np.inf):
+            z = 1.0 / shown.inverse[v, u]
+            x, y = (u - view.cx) / view.fx, (v - view.cy) / view.fy
+            nx, ny, nz, scale = _normal(view, shown.inverse, u, v, x, y)
+            if scale / radial_over_planar(x, y) < LEAST_COSINE:
                 continue
-            w = composite[v, u]
-            z = 1.0 / w
-            bend_u = composite[v, u + 1] + composite[v, u - 1] - 2.0 * w
-            bend_v = composite[v + 1, u] + composite[v - 1, u] - 2.0 * w
-            if (abs(bend_u) + abs(bend_v)) * z * z > 2.0 * BEND_M:
+            offset, spread = (z - depth / raw.per_planar[v, u]) * scale, sigma(view, z) * scale
+            if abs(offset) > gate + 3.0 * spread:
                 continue
-            x = (u - view.cx) / view.fx
-            along = 0.5 * (composite[v, u + 1] - composite[v, u - 1]) * view.fx
-            down = 0.5 * (composite[v + 1, u] - composite[v - 1, u]) * view.fy
-            at_axis = w - along * x - down * y
-            length = math.sqrt(along * along + down * down + at_axis * at_axis)
-            # per metre of planar depth: -(normal . (x, y, 1))
-            scale = w / length
-            if scale / math.sqrt(1.0 + x * x + y * y) < LEAST_COSINE:
-                continue
-            offset = (z - depth / per_planar[v, u]) * scale
-            beyond = max(z - view.offset, 0.0)
-            sigma = (view.constant + view.linear * z + view.quadratic * beyond * beyond) * scale
-            if abs(offset) > gate + 3.0 * sigma:
-                continue
-            if n == link_of.size:
+            if n == found.link.size:
                 return n
-            link_of[n] = link
+            found.link[n] = shown.link[v, u]
+            numbers = found.numbers
             numbers[n, 0], numbers[n, 1], numbers[n, 2] = x * z, y * z, z
-            numbers[n, 3], numbers[n, 4], numbers[n, 5] = -along / length, -down / length, -at_axis / length
-            numbers[n, 6], numbers[n, 7] = offset, sigma
+            numbers[n, 3], numbers[n, 4], numbers[n, 5] = nx, ny, nz
+            numbers[n, 6], numbers[n, 7] = offset, spread
             n += 1
     return n
+
+
+@njit(nogil=True)
+def _is_one_link(link, u, v):
+    """Whether a pixel and all eight about it show the same link."""
+    alone = link[v, u] >= 0
+    for i in range(-1, 2):
+        for j in range(-1, 2):
+            alone &= link[v + i, u + j] == link[v, u]
+    return alone
+
+
+@njit(nogil=True)
+def _bend(inverse, u, v):
+    """By how much depth leaves a plane from neighbour to neighbour, rows and columns together, twice over [m]."""
+    w = inverse[v, u]
+    z = 1.0 / w
+    bend_u = inverse[v, u + 1] + inverse[v, u - 1] - 2.0 * w
+    bend_v = inverse[v + 1, u] + inverse[v - 1, u] - 2.0 * w
+    return (abs(bend_u) + abs(bend_v)) * z * z
+
+
+@njit(nogil=True)
+def _normal(view, inverse, u, v, x, y):
+    """Normal of the surface in a pixel whose ray is (x, y, 1), towards the camera.
+
+    Inverse depth is linear over a plane's image, its slopes are the normal's. Beside it how far the surface goes along
+    its normal per metre of planar depth: -(normal . (x, y, 1)).
+    """
+    w = inverse[v, u]
+    along = 0.5 * (inverse[v, u + 1] - inverse[v, u - 1]) * view.fx
+    down = 0.5 * (inverse[v + 1, u] - inverse[v - 1, u]) * view.fy
+    at_axis = w - along * x - down * y
+    length = math.sqrt(along * along + down * down + at_axis * at_axis)
+    return -along / length, -down / length, -at_axis / length, w / length

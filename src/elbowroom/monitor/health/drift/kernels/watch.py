@@ -16,10 +16,6 @@ STRAY = 0.02
 FITS_SIGMAS = 3.0
 FITS_M = 0.008
 """A return fits if it lies so near to where it should."""
-FIT, NEARER, FARTHER, LOST = 0, 1, 2, 3
-"""Places of the numbers of spots that `listen` counts."""
-FOR, AGAINST, FITS_STILL, FITS_MOVED = 0, 1, 2, 3
-"""Places of what `fit_motion` says."""
 MEAN_OF = 8
 """Offsets are averaged over so many frames."""
 STEP_M, STEP_SIGMAS = 0.02, 4.0
@@ -62,71 +58,107 @@ class Memory(NamedTuple):
     used: np.ndarray
 
 
+class Gate(NamedTuple):
+    """What is believed: the camera's range, and how far an offset may be off besides four sigmas; beyond that it is
+    another thing's [m]."""
+
+    least: float
+    greatest: float
+    off: float
+
+
 class Prior(NamedTuple):
-    """Sigmas of a motion before anything was seen: turn [rad], move [m]."""
+    """How far a turn [rad] and a move [m] may be expected: sigmas."""
 
     turn: float
     move: float
 
 
-class Fitted(NamedTuple):
-    """What `fit_motion` writes.
+class Counts(NamedTuple):
+    """Numbers of spots within the gate, nearer, farther, without a return."""
+
+    within: int
+    nearer: int
+    farther: int
+    lost: int
+
+
+class Support(NamedTuple):
+    """What the spots say of a motion against standing still.
 
     Fields:
-        motion: shape (6,): turn [rad], move [m].
-        covariance: of it, shape (6, 6).
-        said: shape (4,): log-likelihood of the motion over that of standing still, added over spots that speak for it,
-            and over those that speak against it; shares of spots that fit without and with it (`FOR` and so on).
+        speaks_for, against: log-likelihood of the motion over that of standing still, added over the spots that speak
+            for it, and over those that speak against it.
+        fits_still, fits_moved: shares of the spots that fit without and with it.
     """
+
+    speaks_for: float
+    against: float
+    fits_still: float
+    fits_moved: float
+
+
+class Fit(NamedTuple):
+    """A small motion: turn [rad] and move [m], shape (6,), its covariance, shape (6, 6), and what supports it."""
 
     motion: np.ndarray
     covariance: np.ndarray
-    said: np.ndarray
+    support: Support
 
 
 @njit(cache=True, nogil=True)
-def listen(image, spots, least, greatest, gate, memory, counted):
+def listen(image, spots, gate, memory):
     """Offsets along the normals of what an image shows at its spots, averaged over the last frames.
 
     An offset that is far from the mean begins a new one, so the mean follows at once what steps.
 
     Args:
         image: flattened, float32 [m]; what is not a number above zero and in range is no return.
-        spots: `Spots`.
-        least, greatest: range of the camera [m].
-        gate: offsets beyond this and four sigmas are another thing's [m].
-        memory: `Memory`, written: offsets away from the camera are above zero.
-        counted: shape (4,) int64, written: numbers of spots within the gate, nearer, farther, without a return.
+        spots: where to look.
+        gate: what is believed.
+        memory: written: offsets away from the camera are above zero.
+
+    Returns:
+        `Counts`.
     """
-    counted[:] = 0
+    within, nearer, farther, lost = 0, 0, 0, 0
     for i in range(spots.pixel.size):
         depth = float(image[spots.pixel[i]])
-        if not (depth > 0.0 and depth >= least and depth <= greatest and depth < np.inf):
-            counted[LOST] += 1
+        if not (depth > 0.0 and depth >= gate.least and depth <= gate.greatest and depth < np.inf):
+            lost += 1
             memory.frames[i] = 0
             continue
         e = (depth - spots.depth[i]) * spots.scale[i]
-        sigma = spots.sigma[i]
-        reach = gate + 4.0 * sigma
-        if e < -reach or e > reach:
-            counted[NEARER if e < 0.0 else FARTHER] += 1
+        reach = gate.off + 4.0 * spots.sigma[i]
+        if e < -reach:
+            nearer += 1
             memory.frames[i] = 0
-            continue
-        count = memory.frames[i]
-        if count == 0 or abs(e - memory.offset[i]) > STEP_M + STEP_SIGMAS * sigma:
-            count = 1
-            memory.offset[i] = e
+        elif e > reach:
+            farther += 1
+            memory.frames[i] = 0
         else:
-            count = min(count + 1, MEAN_OF)
-            memory.offset[i] += (e - memory.offset[i]) / count
-        memory.frames[i] = count
-        memory.sigma[i] = max(sigma / math.sqrt(count), LEAST_SIGMA_M)
-        memory.used[counted[FIT]] = i
-        counted[FIT] += 1
+            _remember(memory, i, e, spots.sigma[i])
+            memory.used[within] = i
+            within += 1
+    return Counts(within, nearer, farther, lost)
+
+
+@njit(nogil=True)
+def _remember(memory, i, e, sigma):
+    """Adds an offset to the mean of its spot, or begins a new mean with it."""
+    count = memory.frames[i]
+    if count == 0 or abs(e - memory.offset[i]) > STEP_M + STEP_SIGMAS * sigma:
+        count = 1
+        memory.offset[i] = e
+    else:
+        count = min(count + 1, MEAN_OF)
+        memory.offset[i] += (e - memory.offset[i]) / count
+    memory.frames[i] = count
+    memory.sigma[i] = max(sigma / math.sqrt(count), LEAST_SIGMA_M)
 
 
 @njit(cache=True, nogil=True)
-def fit_motion(jacobian, offset, sigma, used, prior, fitted):
+def fit_motion(jacobian, offset, sigma, used, prior):
     """The small motion that explains most offsets, and what speaks for it against standing still.
 
     Geman-McClure loss whose width falls from step to step (graduated non-convexity: Yang, Antonante, Tzoumas, Carlone,
@@ -136,11 +168,12 @@ def fit_motion(jacobian, offset, sigma, used, prior, fitted):
         jacobian: shape (n, 6), offset per turn [m/rad] and per move.
         offset, sigma: shape (n,) [m].
         used: indices of those that count.
-        prior: `Prior`.
-        fitted: `Fitted`, written.
+        prior: of the motion.
+
+    Returns:
+        `Fit`.
     """
-    turn_sigma, move_sigma = prior
-    motion, covariance, said = fitted
+    motion, covariance = np.zeros(6), np.empty((6, 6))
     n = used.size
     # per spot: what it shows per turn and move, its offset, and the weight of the step; eight numbers for the processor
     rows = np.empty((n, 8))
@@ -150,14 +183,12 @@ def fit_motion(jacobian, offset, sigma, used, prior, fitted):
         rows[j, 6] = offset[used[j]]
     sums = np.empty((6, 8))
     rhs = np.empty(6)
-    for k in range(6):
-        motion[k] = 0.0
     for step in range(STEPS):
         width = WIDEST_M * (NARROWEST_M / WIDEST_M) ** (step / (STEPS - 1))
         _weights(rows, sigma, used, motion, width)
         _normal_equations(rows, sums)
         for k in range(6):
-            sums[k, k] += 1.0 / (turn_sigma if k < 3 else move_sigma) ** 2
+            sums[k, k] += 1.0 / (prior.turn if k < 3 else prior.move) ** 2
             rhs[k] = sums[k, 6]
         _factorise(sums)
         _solve(sums, rhs, motion)
@@ -165,7 +196,7 @@ def fit_motion(jacobian, offset, sigma, used, prior, fitted):
         for k in range(6):
             rhs[k] = 1.0 if k == m else 0.0
         _solve(sums, rhs, covariance[m])
-    _weigh(rows, sigma, used, motion, said)
+    return Fit(motion, covariance, _weigh(rows, sigma, used, motion))
 
 
 @njit(nogil=True)
@@ -237,7 +268,7 @@ def _solve(factor, rhs, solution):
 
 
 @njit(nogil=True)
-def _weigh(rows, sigma, used, motion, said):
+def _weigh(rows, sigma, used, motion):
     """What each spot says of the motion against standing still: Gaussian with a share of strays."""
     speaks_for, against, fits_still, fits_moved = 0.0, 0.0, 0, 0
     for j in range(rows.shape[0]):
@@ -257,14 +288,13 @@ def _weigh(rows, sigma, used, motion, said):
         near = FITS_M + FITS_SIGMAS * s
         fits_still += abs(e) <= near
         fits_moved += abs(r) <= near
-    said[FOR], said[AGAINST] = speaks_for, against
-    said[FITS_STILL] = fits_still / max(used.size, 1)
-    said[FITS_MOVED] = fits_moved / max(used.size, 1)
+    count = max(used.size, 1)
+    return Support(speaks_for, against, fits_still / count, fits_moved / count)
 
 
 @njit(cache=True, nogil=True)
-def judge_image(image, spots, limits, prior, memory, counted, fitted):
-    """`listen`, then `fit_motion` to the spots within the gate; their arguments."""
-    listen(image, spots, limits.least, limits.greatest, limits.gate, memory, counted)
-    used = memory.used[: counted[FIT]]
-    fit_motion(spots.jacobian, memory.offset, memory.sigma, used, prior, fitted)
+def judge_image(image, spots, gate, prior, memory):
+    """`listen`, then `fit_motion` to the spots within the gate: their arguments, and what both return."""
+    counts = listen(image, spots, gate, memory)
+    used = memory.used[: counts.within]
+    return counts, fit_motion(spots.jacobian, memory.offset, memory.sigma, used, prior)

@@ -1,0 +1,75 @@
+"""The runs of `elbowroom bench`: of the cycle, and of the start."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from elbowroom.cli.evaluate.measured import measured
+from elbowroom.cli.evaluate.shown import as_table, text, voxel, yes_or_no
+from elbowroom.evaluate.due import Row
+from elbowroom.evaluate.speed.bench import CASES, bench_rows
+from elbowroom.evaluate.speed.start import DUE, start_rows
+
+QUICK_ROUNDS = 5
+
+
+def run_bench_cycle(
+    quick: bool, cameras: int, size: str, threads: int | None, octomap: bool, json: Path | None
+) -> None:
+    """Carve and whole cycles of the simulated room.
+
+    Args:
+        quick: few rounds.
+        cameras, size, threads, octomap: as of `bench_rows`.
+        json: file for the rows.
+    """
+    cases = [replace(case, rounds=QUICK_ROUNDS) for case in CASES] if quick else list(CASES)
+    show = as_table(
+        {
+            "case": _case,
+            "voxel": voxel,
+            "detail": "{detail}",
+            "noise": yes_or_no("noise"),
+            "median": "{median_ms:.1f} ms",
+            "99 %": "{p99_ms:.1f} ms",
+            "worst": "{max_ms:.1f} ms",
+            "memory": lambda row: "" if row["peak_rss_mb"] is None else f"{row['peak_rss_mb']:.0f} MB",
+            "ratio": lambda row: "" if row["ratio"] is None else f"{row['ratio']:.2f}",
+        },
+        "ratio: median over that of a fixed reference kernel in the same process",
+    )
+    rows = bench_rows(cases, cameras=cameras, size=size, threads=threads, octomap=octomap)
+    measured("rows", rows, None, json, show)
+
+
+def _case(row: Row) -> str:
+    slower = row.get("times_slower_than_carve")
+    return str(row["case"]) + (f" ({slower:.0f} times carve)" if slower else "")
+
+
+def run_bench_start(quick: bool, against: Path | None, json: Path | None) -> None:
+    """A new process to its first answer.
+
+    Args:
+        quick: few rounds.
+        against: src of another checkout; None: this one alone.
+        json: file for the rows.
+    """
+
+    def due(row: Row) -> str:
+        return "".join(f"{due.for_row(row):.0f} ms" for due in DUE if due.of(row))
+
+    show = as_table(
+        {
+            "case": "{case}",
+            "median": "{median_ms:.0f} ms",
+            "99 %": "{p99_ms:.0f} ms",
+            "worst": "{max_ms:.0f} ms",
+            "processor": "{cpu_median_ms:.0f} ms",
+            "before": text("{:.0f} ms", "before_ms"),
+            "its processor": text("{:.0f} ms", "before_cpu_ms"),
+            "due": due,
+        },
+        "Kernels are compiled and kept before; the second call is in the same process.",
+    )
+    rows = start_rows(QUICK_ROUNDS, against) if quick else start_rows(against=against)
+    measured("cases", rows, None, json, show)

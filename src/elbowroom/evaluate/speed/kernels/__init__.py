@@ -1,0 +1,1 @@
+"""What computers are compared by."""

@@ -1,0 +1,29 @@
+"""What is known of cameras and machine beside what they see."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from elbowroom.monitor.health.health import Health
+from elbowroom.motion import Cause
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Known:
+    """What the checks came to at one moment.
+
+    Args:
+        health: of cameras and machine; None: nobody watches, or the checks failed.
+        fault: why nothing is known, one sentence; None: nothing failed.
+        stage_ms: time that each check took [ms].
+    """
+
+    health: Health | None = None
+    fault: str | None = None
+    stage_ms: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def stop_cause(self) -> Cause | None:
+        """Why every motion is stop: a fault, or what the watch found; None: neither."""
+        if self.fault is not None:
+            return Cause.FAULT
+        return Cause.WATCH if self.health is not None and self.health.reason is not None else None

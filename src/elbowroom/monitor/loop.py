@@ -1,0 +1,90 @@
+"""The loop of a run: snapshots in, verdicts out to every face. Whatever fails in it, every face is told to stop."""
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass
+
+from elbowroom.monitor.cycle import Cycle
+from elbowroom.monitor.face import Face, Pass
+from elbowroom.monitor.health.checks import Checks
+from elbowroom.monitor.result import CycleResult
+from elbowroom.sensing import Snapshot
+from elbowroom.sources import Room, Source
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Loop:
+    """What takes part in a run, faces apart.
+
+    Args:
+        room: whose source gives the snapshots.
+        checks: look after cameras and machine.
+        cycle: judges.
+        pace: called with each snapshot before it is judged, and may wait; None: nobody waits.
+    """
+
+    room: Room
+    checks: Checks
+    cycle: Cycle
+    pace: Callable[[Snapshot], None] | None = None
+
+    def run(self, faces: Sequence[Face], seconds: float | None = None) -> None:
+        """Judges one snapshot after the other until the time is over or the source ends.
+
+        However it ends, every face is told, in order. What the source or a face raises ends the run: before it is
+        raised again, every face is shown a pass in which all motions are stop.
+
+        Args:
+            faces: who shows or keeps each pass, in the order in which they are told.
+            seconds: how long; None: until the source ends. One pass is always made, if there is a snapshot.
+        """
+        until = time.perf_counter() + (float("inf") if seconds is None else seconds)
+        snapshot: Snapshot | None = None
+        with _ended(faces, self.room.source):
+            try:
+                for face in faces:
+                    face.begin(self.room)
+                for snapshot, source_ms in timed_source(self.room.source):
+                    if self.pace is not None:
+                        self.pace(snapshot)
+                    result = self.judge(snapshot)
+                    for face in faces:
+                        face.show(Pass(snapshot, result, source_ms))
+                    if time.perf_counter() >= until:
+                        break
+            except Exception as error:
+                self._say_stop(faces, snapshot, error)
+                raise
+
+    def judge(self, snapshot: Snapshot) -> CycleResult:
+        """What one snapshot comes to; it does not raise."""
+        known = self.checks.hear(snapshot)
+        return self.cycle.run(snapshot).knowing(known)
+
+    def _say_stop(self, faces: Sequence[Face], snapshot: Snapshot | None, error: Exception) -> None:
+        """Shows a failed pass to every face, also to those behind one that cannot show it."""
+        done = Pass(snapshot or Snapshot(()), self.cycle.failed(error, snapshot), 0.0)
+        for face in faces:
+            with suppress(Exception):
+                face.show(done)
+
+
+def timed_source(source: Iterable[Snapshot]) -> Iterator[tuple[Snapshot, float]]:
+    """Each snapshot, and what it took to bring it [ms]."""
+    snapshots = iter(source)
+    while True:
+        begun = time.perf_counter()
+        snapshot = next(snapshots, None)
+        if snapshot is None:
+            return
+        yield snapshot, (time.perf_counter() - begun) * 1e3
+
+
+def _ended(faces: Sequence[Face], source: Source) -> ExitStack:
+    """A context at whose end all faces are told of it, in order, and the source is closed; also if one fails."""
+    stack = ExitStack()
+    stack.callback(source.close)
+    for face in reversed(faces):
+        stack.callback(face.end)
+    return stack

@@ -1,0 +1,49 @@
+"""The start of a run: all that it needs is made, and compiled by doing it once."""
+
+from collections.abc import Callable
+
+from elbowroom.errors import InputError
+from elbowroom.geometry import bits
+from elbowroom.monitor.cycle import Cycle
+from elbowroom.monitor.loop import Loop
+from elbowroom.monitor.start.watching import checks_of
+from elbowroom.motion import check_motions
+from elbowroom.reconstruct import FreeSpace
+from elbowroom.sources import Recorded, Room
+from elbowroom.sources.pace import Pace
+
+
+def started(room: Room, begin: Callable[[str], None]) -> Loop:
+    """A loop over a room, ready to run; a recording comes no faster than it was recorded.
+
+    Args:
+        room: with a machine and speeds.
+        begin: told what is being done.
+
+    Raises:
+        InputError: no machine, no speeds, or the first cycle failed, so that all would.
+        SiteError, CalibrationError: as `checks_of`.
+    """
+    machine, motions = room.machine_and_motions()
+    cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
+    pace = Pace().wait if isinstance(room.source, Recorded) else None
+    loop = Loop(room, checks_of(room, begin), cycle, pace)
+    _warm_up(loop, begin)
+    return loop
+
+
+def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
+    """Compiles all that the loop uses, by doing it once; also where something is in the way."""
+    cycle = loop.cycle
+    begin("first frames")
+    snapshot = next(iter(loop.room.source), None)
+    if snapshot is None:
+        return
+    begin("motions that are blocked")
+    nothing = bits.empty(cycle.grid)
+    all_blocked = FreeSpace(cycle.grid, nothing, nothing, nothing, nothing)
+    check_motions(all_blocked, cycle.machine, snapshot.joints or {}, cycle.motions)
+    begin("first cycle")
+    result = loop.judge(snapshot)
+    if result.fault is not None:
+        raise InputError(f"the first cycle failed: {result.fault}")

@@ -1,0 +1,53 @@
+"""A depth image on disk that has not been read."""
+
+from pathlib import Path
+from typing import NamedTuple, Self
+
+from elbowroom.geometry import DepthCamera
+from elbowroom.sensing import DepthFrame
+from elbowroom.site.site import Site
+from elbowroom.sources.depth_png import check_depth_png, read_depth_png
+
+
+class Image(NamedTuple):
+    """An image on disk that has not been read.
+
+    Args:
+        camera: that took it.
+        stamp_ns: when [ns]; None: it has no time.
+        path: of the file.
+        scale_m: metres per unit.
+        bias_m: what is added to each depth after that [m].
+    """
+
+    camera: DepthCamera
+    stamp_ns: int | None
+    path: Path
+    scale_m: float
+    bias_m: float = 0.0
+
+    @classmethod
+    def of(cls, site: Site, camera: DepthCamera, stamp_ns: int | None, path: Path) -> Self:
+        """An image with the scale and bias that the site says of its camera.
+
+        Args:
+            site: of the recording.
+            camera, stamp_ns, path: as of the class.
+        """
+        name = camera.name
+        return cls(camera, stamp_ns, path, site.depth_scale_m(name), site.depth_bias_m(name))
+
+    def read(self) -> DepthFrame:
+        """The frame.
+
+        Raises:
+            FrameError: the file is not what its camera delivers.
+        """
+        raw = read_depth_png(self.path, self.camera.width, self.camera.height)
+        return DepthFrame.from_raw(
+            self.camera.name, self.stamp_ns, raw, scale_m=self.scale_m, bias_m=self.bias_m
+        )
+
+    def check(self) -> None:
+        """Looks at the file's header alone; raises FrameError as `read` would."""
+        check_depth_png(self.path, self.camera.width, self.camera.height)

@@ -1,0 +1,247 @@
+"""The loop: every face is told of every pass and of the end, and whatever fails is a stop for all of them."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from elbowroom.errors import FrameError
+from elbowroom.geometry import VoxelGrid
+from elbowroom.monitor import Checks, Cycle, Health, Loop, Pass, cycle
+from elbowroom.motion import Cause, Level, Motion, Verdict
+from elbowroom.reconstruct import Terms
+from elbowroom.reconstruct.free_space import FreeSpace
+from elbowroom.sensing import DepthFrame, Snapshot
+from elbowroom.sources import Room
+
+GRID = VoxelGrid(origin_m=(0, 0, 0), shape=(4, 4, 4), voxel_size_m=0.1)
+SPACE = FreeSpace.from_occupied(GRID, np.zeros(GRID.shape, dtype=bool))
+MOTION = Motion("slide", +1, 0.1)
+
+
+class OneJoint:
+    """As much of a machine as a pass asks for itself."""
+
+    class _Slide:
+        name, unit = "slide", "m"
+
+    joints = (_Slide(),)
+
+
+def at(now_ns: int) -> Snapshot:
+    return Snapshot((DepthFrame("c0", now_ns, np.ones((2, 2), np.float32)),), {"slide": 0.0}, now_ns=now_ns)
+
+
+class Script:
+    """A source that gives what it is told to give, or raises it."""
+
+    name = "script"
+
+    def __init__(self, *steps: Snapshot | BaseException) -> None:
+        self.steps = steps
+        self.closed = 0
+
+    def __iter__(self) -> Iterator[Snapshot]:
+        for step in self.steps:
+            if isinstance(step, BaseException):
+                raise step
+            yield step
+
+    def close(self) -> None:
+        self.closed += 1
+
+
+class Listener:
+    """A face that remembers what it was told, and raises at one pass if it is told to."""
+
+    def __init__(self, fails_at: int | None = None, error: BaseException | None = None) -> None:
+        self.fails_at, self.error = fails_at, error or OSError("disk full")
+        self.begun: list[Room] = []
+        self.shown: list[Pass] = []
+        self.ended = 0
+
+    def begin(self, room: Room) -> None:
+        assert not self.shown
+        self.begun.append(room)
+
+    def show(self, done: Pass) -> None:
+        self.shown.append(done)
+        if len(self.shown) - 1 == self.fails_at:
+            raise self.error
+
+    def end(self) -> None:
+        self.ended += 1
+
+    @property
+    def levels(self) -> list[Level]:
+        return [done.result.level for done in self.shown]
+
+
+class AWatch:
+    """Says what it is told to say."""
+
+    def __init__(self, *reasons: str | Exception) -> None:
+        self.reasons = list(reasons)
+        self.heard: list[list[str]] = []
+
+    def hear(self, snapshot: Snapshot) -> Health:
+        self.heard.append([frame.camera for frame in snapshot.frames])
+        reason = self.reasons.pop(0)
+        if isinstance(reason, Exception):
+            raise reason
+        return Health((), (), {"c0": reason} if reason else {})
+
+
+@pytest.fixture(autouse=True)
+def _all_is_clear(monkeypatch):
+    """Both stages of a pass answer that all is free and clear."""
+    clear = Verdict(MOTION, Level.CLEAR, 0.5, "m", None, None, Cause.NONE)
+    monkeypatch.setattr(cycle, "free_space_of", lambda *_, **__: SPACE)
+    monkeypatch.setattr(cycle, "check_motions", lambda *_: [clear])
+
+
+def a_loop(source: Script, checks: Checks | None = None, pace=None) -> Loop:
+    room = Room(None, GRID, (), OneJoint(), Terms(), source)
+    return Loop(room, checks or Checks(), Cycle(GRID, (), OneJoint(), (MOTION,), focused=False), pace)
+
+
+def test_every_face_is_told_of_the_room_of_every_pass_in_order_and_of_the_end():
+    source, faces = Script(at(1), at(2), at(3)), (Listener(), Listener())
+    loop = a_loop(source)
+    loop.run(faces)
+    for face in faces:
+        assert face.begun == [loop.room]
+        assert [done.snapshot.now_ns for done in face.shown] == [1, 2, 3]
+        assert [done.result.sequence for done in face.shown] == [0, 1, 2]
+        assert all(done.source_ms >= 0 for done in face.shown)
+        assert face.levels == [Level.CLEAR] * 3 and face.ended == 1
+    assert source.closed == 1
+
+
+def test_a_source_that_gives_nothing_ends_the_run_at_once():
+    source, face = Script(), Listener()
+    a_loop(source).run([face])
+    assert (face.shown, face.ended, source.closed) == ([], 1, 1)
+
+
+def test_one_pass_is_made_however_short_the_time():
+    face = Listener()
+    a_loop(Script(at(1), at(2))).run([face], seconds=0.0)
+    assert len(face.shown) == 1 and face.ended == 1
+
+
+@pytest.mark.parametrize(
+    "error", [FrameError("cam00 is torn"), RuntimeError("driver"), MemoryError("none left")]
+)
+def test_a_source_that_raises_is_a_stop_and_ends_the_run(error):
+    source, face = Script(at(5), error), Listener()
+    with pytest.raises(type(error), match=str(error)):
+        a_loop(source).run([face])
+    assert face.levels == [Level.CLEAR, Level.STOP] and face.ended == 1 and source.closed == 1
+    last = face.shown[-1].result
+    assert str(error) in last.fault and last.stamp_ns == 5
+    assert {verdict.cause for verdict in last.verdicts} == {Cause.FAULT}
+
+
+def test_a_source_that_raises_before_anything_came_is_a_stop_too():
+    face = Listener()
+    with pytest.raises(FrameError):
+        a_loop(Script(FrameError("no camera"))).run([face])
+    assert face.levels == [Level.STOP] and face.ended == 1
+
+
+@pytest.mark.parametrize("failing", [0, 1, 2])
+def test_a_face_that_raises_is_a_stop_for_all_the_others(failing):
+    faces = [Listener(fails_at=1 if n == failing else None) for n in range(3)]
+    source = Script(at(1), at(2), at(3))
+    with pytest.raises(OSError, match="disk full"):
+        a_loop(source).run(faces)
+    assert all(face.levels[-1] is Level.STOP and face.ended == 1 for face in faces)
+    assert all("disk full" in face.shown[-1].result.fault for face in faces)
+    # those behind it did not hear of the pass that it failed at, only that all stops
+    assert [len(face.shown) for face in faces] == [3 if n <= failing else 2 for n in range(3)]
+    assert source.closed == 1
+
+
+def test_a_face_that_always_raises_keeps_no_other_from_hearing_stop():
+    class Broken(Listener):
+        def show(self, done: Pass) -> None:
+            raise OSError("gone")
+
+    behind = Listener()
+    with pytest.raises(OSError, match="gone"):
+        a_loop(Script(at(1))).run([Broken(), behind])
+    assert behind.levels == [Level.STOP] and behind.ended == 1
+
+
+def test_a_face_that_cannot_begin_is_a_stop_too():
+    class Absent(Listener):
+        def begin(self, room: Room) -> None:
+            raise OSError("no screen")
+
+    source, behind = Script(at(1)), Listener()
+    with pytest.raises(OSError, match="no screen"):
+        a_loop(source).run([Absent(), behind])
+    assert behind.levels == [Level.STOP] and behind.ended == 1 and source.closed == 1
+
+
+def test_a_face_that_cannot_end_keeps_no_other_from_ending():
+    class Stuck(Listener):
+        def end(self) -> None:
+            raise OSError("cannot close")
+
+    source, behind = Script(at(1)), Listener()
+    with pytest.raises(OSError, match="cannot close"):
+        a_loop(source).run([Stuck(), behind])
+    assert behind.ended == 1 and source.closed == 1
+
+
+@pytest.mark.parametrize("where", ["source", "face"])
+def test_ctrl_c_loses_no_pass_and_every_face_is_told_of_the_end(where):
+    source = Script(at(1), at(2), KeyboardInterrupt()) if where == "source" else Script(at(1), at(2), at(3))
+    faces = [Listener(), Listener(fails_at=1 if where == "face" else None, error=KeyboardInterrupt())]
+    with pytest.raises(KeyboardInterrupt):
+        a_loop(source).run(faces)
+    assert [[done.snapshot.now_ns for done in face.shown] for face in faces] == [[1, 2], [1, 2]]
+    assert [face.ended for face in faces] == [1, 1] and source.closed == 1
+
+
+def test_what_the_watch_found_stops_the_pass_and_the_run_goes_on():
+    face = Listener()
+    checks = Checks(AWatch("", "camera c0 has turned by 0.9 degrees", ""))
+    a_loop(Script(at(1), at(2), at(3)), checks).run([face])
+    assert face.levels == [Level.CLEAR, Level.STOP, Level.CLEAR]
+    found = face.shown[1].result
+    assert found.verdicts[0].cause is Cause.WATCH and found.fault is None
+    assert list(found.stage_ms) == ["watch", "motion"]
+
+
+def test_a_watch_that_raises_is_a_stop_with_its_reason_and_the_run_goes_on():
+    face = Listener()
+    a_loop(Script(at(1), at(2)), Checks(AWatch(RuntimeError("no such image"), ""))).run([face])
+    assert face.levels == [Level.STOP, Level.CLEAR]
+    failed = face.shown[0].result
+    assert failed.fault == failed.stopped_by == "RuntimeError: no such image"
+    assert failed.verdicts[0].cause is Cause.FAULT and failed.health is None
+
+
+def test_the_watch_hears_no_frame_past_its_age():
+    image = np.ones((2, 2), np.float32)
+    frames = [DepthFrame(f"c{n}", stamp, image) for n, stamp in enumerate((0, 8, None))]
+    watch = AWatch("")
+    Checks(watch, max_age_ns=5).hear(Snapshot.taken(frames, None, 10))
+    assert watch.heard == [["c1"]]
+
+
+def test_an_age_limit_where_nothing_has_a_time_is_a_fault():
+    known = Checks(AWatch(""), max_age_ns=5).hear(Snapshot(()))
+    assert "an age limit needs the time" in known.fault and known.stop_cause is Cause.FAULT
+
+
+def test_each_snapshot_waits_for_its_time_before_it_is_judged():
+    told: list[int] = []
+    face = Listener()
+    a_loop(
+        Script(at(1), at(2)), pace=lambda snapshot: told.append(snapshot.now_ns + 10 * len(face.shown))
+    ).run([face])
+    assert told == [1, 12]
