@@ -6,6 +6,7 @@
     │   ├── CameraError      intrinsics, pose, an unknown or doubled camera
     │   ├── FrameError       a depth image that is not what its camera delivers
     │   ├── MachineError     a URDF, a mesh, a joint that is unknown or out of its limits
+    │   ├── JointsError      joints over time that are malformed, or not known at the time that is asked for
     │   ├── SiteError        a site file or a recording's folder
     │   └── CalibrationError a board, a capture, or what was seen in it does not fix a pose
     ├── EvidenceError        evidence that cannot be merged or resolved
@@ -37,6 +38,10 @@ class FrameError(InputError):
 
 class MachineError(InputError):
     """A URDF, mesh, link or joint that is missing, unknown or out of its limits."""
+
+
+class JointsError(InputError):
+    """A record of joints that cannot be used, or that does not know where the machine was at a time."""
 
 
 class SiteError(InputError):

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from elbowroom.errors import SiteError
+from elbowroom.errors import JointsError
 from elbowroom.sensing import JointRecord
 from elbowroom.sensing.joints import END_SLACK_NS
 
@@ -42,7 +42,7 @@ def test_outside_the_record_nothing_is_invented(record):
     assert record.at(NOW - END_SLACK_NS)["long"] == 0.0
     assert record.at(NOW + 300 + END_SLACK_NS)["long"] == 5.0
     for stamp in (NOW - END_SLACK_NS - 1, NOW + 301 + END_SLACK_NS):
-        with pytest.raises(SiteError, match=f"joints at {stamp} ns: not known, the record spans {NOW} to"):
+        with pytest.raises(JointsError, match=f"joints at {stamp} ns: not known, the record spans {NOW} to"):
             record.at(stamp)
 
 
@@ -50,7 +50,7 @@ def test_a_gap_too_wide_is_not_bridged(record):
     record = JointRecord(record.stamps_ns, record.positions, max_gap_ns=150)
     assert record.at(NOW + 50)["long"] == 0.5
     assert record.at(NOW + 300)["long"] == 5.0
-    with pytest.raises(SiteError, match=r"gap of 0\.0002 ms"):
+    with pytest.raises(JointsError, match=r"gap of 0\.0002 ms"):
         record.at(NOW + 200)
 
 
@@ -71,7 +71,7 @@ def test_positions_cannot_be_changed(record):
     ],
 )
 def test_unusable_records_are_refused(stamps, positions, message):
-    with pytest.raises(SiteError, match=message):
+    with pytest.raises(JointsError, match=message):
         JointRecord(np.array(stamps), {name: np.array(values) for name, values in positions.items()})
 
 
@@ -102,14 +102,14 @@ def test_csv_is_read_with_whole_stamps(tmp_path):
 def test_unusable_csv_is_one_line_with_its_number(tmp_path, text, message):
     path = tmp_path / "joints.csv"
     path.write_text(text)
-    with pytest.raises(SiteError, match=message) as caught:
+    with pytest.raises(JointsError, match=message) as caught:
         JointRecord.from_csv(path)
     assert str(caught.value).startswith(str(path)) and "\n" not in str(caught.value)
 
 
 def test_missing_or_binary_csv_is_refused(tmp_path):
-    with pytest.raises(SiteError, match="no such file"):
+    with pytest.raises(JointsError, match="no such file"):
         JointRecord.from_csv(tmp_path / "joints.csv")
     (tmp_path / "joints.csv").write_bytes(b"\xff\xfe\x00\x01")
-    with pytest.raises(SiteError, match="not a CSV file"):
+    with pytest.raises(JointsError, match="not a CSV file"):
         JointRecord.from_csv(tmp_path / "joints.csv")

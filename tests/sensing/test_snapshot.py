@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from elbowroom.errors import InputError, SiteError
+from elbowroom.errors import InputError, JointsError
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 
 RECORD = JointRecord(np.array([0, 100]), {"lift": np.array([0.0, 1.0])})
@@ -31,7 +31,7 @@ def test_without_a_frame_a_record_is_asked_now():
 def test_a_record_is_not_asked_of_a_frame_without_a_time_nor_far_outside_it():
     with pytest.raises(InputError, match="frame of a: has no time"):
         Snapshot.taken([frame("a", None)], RECORD)
-    with pytest.raises(SiteError, match="not known"):
+    with pytest.raises(JointsError, match="not known"):
         Snapshot.taken([frame("a", 10**9)], RECORD)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.errors import SiteError
+from elbowroom.errors import JointsError
 
 END_SLACK_NS = 1_000_000
 """A record answers up to 1 ms beyond its ends with its first or last row; farther out it knows nothing."""
@@ -28,7 +28,7 @@ class JointRecord:
             joined.
 
     Raises:
-        SiteError: no rows, no joints, lengths that differ, stamps that do not rise, numbers that are not
+        JointsError: no rows, no joints, lengths that differ, stamps that do not rise, numbers that are not
             finite.
     """
 
@@ -39,29 +39,29 @@ class JointRecord:
     def __post_init__(self) -> None:
         stamps = np.array(self.stamps_ns)
         if stamps.ndim != 1 or stamps.size == 0 or stamps.dtype.kind not in "iu":
-            raise SiteError(
+            raise JointsError(
                 f"joint record: stamps_ns must be whole nanoseconds in one row of at least one, got "
                 f"{stamps.dtype} {stamps.shape}"
             )
         stamps = stamps.astype(np.int64)
         if (np.diff(stamps) <= 0).any():
             row = int(np.argmax(np.diff(stamps) <= 0)) + 1
-            raise SiteError(
+            raise JointsError(
                 f"joint record: stamps_ns[{row}] is {stamps[row]} after {stamps[row - 1]}; "
                 "stamps must strictly rise"
             )
         if not self.positions:
-            raise SiteError("joint record: no joints; at least one is needed")
+            raise JointsError("joint record: no joints; at least one is needed")
         positions = {}
         for joint, given in self.positions.items():
             values = np.array(given, dtype=np.float64)
             if values.shape != stamps.shape:
-                raise SiteError(
+                raise JointsError(
                     f"joint record: {joint} has shape {values.shape}, its stamps have {stamps.shape}"
                 )
             if not np.isfinite(values).all():
                 row = int(np.argmin(np.isfinite(values)))
-                raise SiteError(f"joint record: {joint}[{row}] is {values[row]}, must be a finite number")
+                raise JointsError(f"joint record: {joint}[{row}] is {values[row]}, must be a finite number")
             values.setflags(write=False)
             positions[joint] = values
         stamps.setflags(write=False)
@@ -85,13 +85,13 @@ class JointRecord:
             Position by joint [m or rad].
 
         Raises:
-            SiteError: the time lies more than `END_SLACK_NS` outside the record, or in a gap above
+            JointsError: the time lies more than `END_SLACK_NS` outside the record, or in a gap above
                 `max_gap_ns`: where the machine was is not known then, and is not invented.
         """
         stamps = self.stamps_ns
         first, last = int(stamps[0]), int(stamps[-1])
         if not first - END_SLACK_NS <= stamp_ns <= last + END_SLACK_NS:
-            raise SiteError(
+            raise JointsError(
                 f"joints at {stamp_ns} ns: not known, the record spans {first} to {last} ns; "
                 "record the joints for as long as the frames"
             )
@@ -102,7 +102,7 @@ class JointRecord:
         before = after - 1
         gap = int(stamps[after]) - int(stamps[before])
         if self.max_gap_ns is not None and gap > self.max_gap_ns:
-            raise SiteError(
+            raise JointsError(
                 f"joints at {stamp_ns} ns: not known, the record has a gap of {gap / 1e6:g} ms there, "
                 f"at most {self.max_gap_ns / 1e6:g} ms are bridged"
             )
@@ -122,22 +122,22 @@ class JointRecord:
             max_gap_ns: as of the class.
 
         Raises:
-            SiteError: the file is missing, is no such file, or has a row that is not usable; names file and
+            JointsError: the file is missing, is no such file, or has a row that is not usable; names file and
                 line.
         """
         path = Path(path)
         if not path.is_file():
-            raise SiteError(
+            raise JointsError(
                 f"{path}: no such file; expected joints as CSV with a header {STAMP_COLUMN},<joint>,..."
             )
         if path.stat().st_size > MAX_CSV_BYTES:
-            raise SiteError(f"{path}: {path.stat().st_size:,} bytes, at most {MAX_CSV_BYTES:,} are read")
+            raise JointsError(f"{path}: {path.stat().st_size:,} bytes, at most {MAX_CSV_BYTES:,} are read")
         try:
             with path.open(newline="", encoding="utf-8-sig") as file:
                 reader = csv.reader(file)
                 names, stamps, rows = _read_rows(path, reader, lambda: reader.line_num)
         except (csv.Error, UnicodeDecodeError) as error:
-            raise SiteError(f"{path}: not a CSV file in UTF-8 ({error})") from None
+            raise JointsError(f"{path}: not a CSV file in UTF-8 ({error})") from None
         columns = np.array(rows, dtype=np.float64).T
         return cls(np.array(stamps, dtype=np.int64), dict(zip(names, columns, strict=True)), max_gap_ns)
 
@@ -148,11 +148,11 @@ def _read_rows(
     """Names of the joints, stamps, and positions row by row."""
     header = [name.strip() for name in next(reader, [])]
     if len(header) < 2 or header[0] != STAMP_COLUMN:
-        raise SiteError(
+        raise JointsError(
             f"{path}: line 1: header is {','.join(header)[:80]!r}, must be {STAMP_COLUMN},<joint>,..."
         )
     if len(set(header)) != len(header) or not all(header):
-        raise SiteError(f"{path}: line 1: header has an empty or a doubled name, each column needs its own")
+        raise JointsError(f"{path}: line 1: header has an empty or a doubled name, each column needs its own")
     stamps: list[int] = []
     rows: list[list[float]] = []
     for row in reader:
@@ -160,16 +160,16 @@ def _read_rows(
             continue
         where = f"{path}: line {line_number()}"
         if len(row) != len(header):
-            raise SiteError(f"{where}: {len(row)} values, the header names {len(header)} columns")
+            raise JointsError(f"{where}: {len(row)} values, the header names {len(header)} columns")
         stamp = _whole(row[0], where)
         if stamps and stamp <= stamps[-1]:
-            raise SiteError(
+            raise JointsError(
                 f"{where}: {STAMP_COLUMN} is {stamp} after {stamps[-1]}; stamps must strictly rise"
             )
         stamps.append(stamp)
         rows.append([_finite(text, where, name) for name, text in zip(header[1:], row[1:], strict=True)])
     if not rows:
-        raise SiteError(f"{path}: no rows below the header; at least one is needed")
+        raise JointsError(f"{path}: no rows below the header; at least one is needed")
     return header[1:], stamps, rows
 
 
@@ -177,9 +177,9 @@ def _whole(text: str, where: str) -> int:
     try:
         stamp = int(text)
     except ValueError:
-        raise SiteError(f"{where}: {STAMP_COLUMN} is {text[:40]!r}, must be whole nanoseconds") from None
+        raise JointsError(f"{where}: {STAMP_COLUMN} is {text[:40]!r}, must be whole nanoseconds") from None
     if not -(2**63) <= stamp < 2**63:
-        raise SiteError(f"{where}: {STAMP_COLUMN} is {text[:40]}, must fit 64 bits")
+        raise JointsError(f"{where}: {STAMP_COLUMN} is {text[:40]}, must fit 64 bits")
     return stamp
 
 
@@ -189,5 +189,5 @@ def _finite(text: str, where: str, joint: str) -> float:
     except ValueError:
         value = float("nan")
     if not np.isfinite(value):
-        raise SiteError(f"{where}: {joint} is {text[:40]!r}, must be a finite number [m or rad]")
+        raise JointsError(f"{where}: {joint} is {text[:40]!r}, must be a finite number [m or rad]")
     return value

@@ -50,7 +50,7 @@ class Snapshot:
         Raises:
             InputError: a record, and a frame without a time, or neither frames nor the time; an age limit without the
                 time, or one below zero.
-            SiteError: the record knows nothing of a frame's time.
+            JointsError: the record knows nothing of a frame's time.
         """
         if not isinstance(joints, JointRecord):
             return cls(tuple(frames), joints, {}, now_ns)

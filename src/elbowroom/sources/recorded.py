@@ -54,6 +54,7 @@ def moments(site: Site, joints: Joints | None = None) -> Iterator[Snapshot]:
         SiteError: no recording, its folder is absent or not laid out as the site says, or the machine's
             joints are not known.
         FrameError: an image is not what its camera delivers.
+        JointsError: a record of joints does not know where the machine was at a frame's time.
         InputError: a record of joints, and frames without times.
     """
     layout = layout_of(site)

@@ -136,7 +136,9 @@ def _compared(board: Board, x: Array, y: Array, x_px: Array, y_px: Array, near: 
     down, down_slope = _wave(y, board.square_m, board.rows, EDGE_PX * y_px)
     value = 0.5 + 0.5 * across * down
     by_x, by_y = 0.5 * across_slope * down, 0.5 * across * down_slope
-    return _Edges(x, y, x_px, y_px, near, value, by_x, by_y, near - value)
+    return _Edges(
+        x=x, y=y, x_px=x_px, y_px=y_px, near=near, value=value, by_x=by_x, by_y=by_y, residual=near - value
+    )
 
 
 def _pixel_on_board(place: Array) -> Array:

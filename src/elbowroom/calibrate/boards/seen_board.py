@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.boards.seen_plane import SeenPlane, seen_plane
+from elbowroom.calibrate.least_squares import Look, huber, solved
 from elbowroom.errors import CalibrationError
 from elbowroom.extras import package
 from elbowroom.geometry import DepthCamera
@@ -221,55 +222,35 @@ def _starts(camera: DepthCamera, corners: Array, view: BoardView, what: str) -> 
 def _refined(
     camera: DepthCamera, corners: Array, view: BoardView, plane: SeenPlane | None, start: Array
 ) -> tuple[Lone, Array]:
-    """Levenberg-Marquardt from a start, with Huber's weights; the pose, and the corners' weights."""
-    pose, damping = start, 1e-3
-    weight = np.ones(len(corners))
-    cost, rows, residual, raw = _equations(camera, corners, view, plane, pose, weight)
-    for _ in range(STEPS):
-        normal = rows.T @ rows
-        damped = normal + damping * np.diag(np.diag(normal) + 1e-12)
-        step = np.asarray(-np.linalg.solve(damped, rows.T @ residual), dtype=np.float64)
-        tried = moved(pose, step)
-        if (corners @ tried[2, :3] + tried[2, 3]).min() <= 0:
-            damping *= 10
-            continue
-        new_cost, _, _, raw = _equations(camera, corners, view, plane, tried, weight)
-        if new_cost > cost:
-            damping *= 10
-            if damping > 1e8:
-                break
-            continue
-        converged = cost - new_cost < 1e-5 * cost + 1e-12
-        pose, damping = tried, max(damping / 10, 1e-9)
-        size = np.linalg.norm(raw, axis=1)
+    """Least squares from a start, with Huber's weights; the pose, and the corners' weights."""
+
+    def look(pose: Array) -> Look | None:
+        if (corners @ pose[2, :3] + pose[2, 3]).min() <= 0:
+            return None
+        residuals, _, rows = corner_rows(camera, pose, corners, view)
+        if plane is not None:
+            more, more_rows = _lone_plane_rows(plane, pose)
+            residuals, rows = np.concatenate([residuals, more]), np.concatenate([rows, more_rows])
+        return Look(residuals, lambda: rows)
+
+    def weigh(residuals: Array) -> Array:
+        of_corners, weight = slice(0, 2 * len(corners)), np.ones(len(residuals))
+        size = np.linalg.norm(residuals[of_corners].reshape(-1, 2), axis=1)
         spread = max(1.0, float(np.median(size)) / 1.1774)
-        weight = np.minimum(1.0, HUBER * spread / np.maximum(size, 1e-12))
-        cost, rows, residual, raw = _equations(camera, corners, view, plane, pose, weight)
-        if converged:
-            break
-    return Lone(pose, rows.T @ rows, cost), weight
+        weight[of_corners] = np.repeat(huber(size, HUBER * spread), 2)
+        return weight
+
+    best = solved(look, moved, start, weigh, steps=STEPS, enough=1e-5)
+    return Lone(best.state, best.normal, best.cost), best.weight[: 2 * len(corners) : 2]
 
 
-def _equations(
-    camera: DepthCamera,
-    corners: Array,
-    view: BoardView,
-    plane: SeenPlane | None,
-    pose: Array,
-    weight: Array,
-) -> tuple[float, Array, Array, Array]:
-    """Sum of squares, rows by a motion of the board, residuals; and the corners' own residuals, shape (n, 2)."""
-    raw, _, rows = corner_rows(camera, pose, corners, view)
-    root = np.repeat(np.sqrt(weight), 2)
-    residual, rows = raw * root, rows * root[:, None]
-    if plane is not None:
-        more, _, more_rows, _ = plane_rows(plane, pose)
-        # bias and scale of the depth are not known yet: a millimetre and a thousandth at least
-        errors = plane.root @ np.column_stack([plane.by_bias * 2e-3, plane.by_scale * 2e-3])
-        whiten = np.linalg.inv(np.linalg.cholesky(np.eye(3) + errors @ errors.T))
-        residual = np.concatenate([residual, whiten @ more])
-        rows = np.concatenate([rows, whiten @ more_rows])
-    return float(residual @ residual), rows, residual, raw.reshape(-1, 2)
+def _lone_plane_rows(plane: SeenPlane, camera_from_board: Array) -> tuple[Array, Array]:
+    """Residuals of the plane and rows by a motion of the board, where bias and scale of the depth are not known yet."""
+    residuals, _, rows, _ = plane_rows(plane, camera_from_board)
+    # a millimetre and a thousandth at least
+    errors = plane.root @ np.column_stack([plane.by_bias * 2e-3, plane.by_scale * 2e-3])
+    whiten = np.linalg.inv(np.linalg.cholesky(np.eye(3) + errors @ errors.T))
+    return whiten @ residuals, whiten @ rows
 
 
 def _require_this_board(

@@ -12,15 +12,18 @@ same are weighted down: so the covariance says what is true, not what the sigmas
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from elbowroom.calibrate.boards.seen_board import SeenBoard, corner_rows, plane_rows
 from elbowroom.calibrate.extrinsics.anchor import BoardAnchor, CameraAnchor
 from elbowroom.calibrate.extrinsics.known_points import KnownPoints
 from elbowroom.calibrate.extrinsics.unknowns import Index, State
 from elbowroom.calibrate.extrinsics.variances import Variances, ViewRows
+from elbowroom.calibrate.least_squares import Look, covariance, equations, solved
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import invert_rigid
 
@@ -32,6 +35,20 @@ ROUNDS, STEPS = 4, 15
 """Of linearisations with variances estimated anew; of Levenberg-Marquardt before."""
 RENEWALS = 12
 """Of variances at one linearisation, at most."""
+
+
+class Rows(NamedTuple):
+    """A part of the least squares.
+
+    Fields:
+        residuals: in sigmas, shape (m,).
+        rows: their derivatives by the unknowns that they hang on, shape (m, k).
+        among: where these stand among all unknowns, shape (k,).
+    """
+
+    residuals: Array
+    rows: Array
+    among: NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,14 +88,14 @@ def adjust(seen: Sequence[SeenBoard], state: State, held: BoardAnchor | CameraAn
     state = _solved(seen, state, index, variances)
     for number in range(ROUNDS):
         views = [_rows(one, state, index) for one in seen]
-        prior, pull, _ = _prior(state, index)
+        prior = _prior(state, index)
         for renewal in range(RENEWALS):
-            normal, slope, _ = _summed(views, variances, prior, pull)
-            covariance = _inverse(normal)
-            step = -covariance @ slope
+            normal, gradient = equations(_look(views, variances, prior, index))
+            all_poses = covariance(normal)
+            step = -all_poses @ gradient
             off = [view.y + view.rows @ step[view.among] for view in views]
             # only when variances are near their values is it known which views fit badly
-            renewed = variances.renewed(views, off, covariance, robust=number > 0 or renewal > 3)
+            renewed = variances.renewed(views, off, all_poses, robust=number > 0 or renewal > 3)
             change, variances = renewed.change(variances), renewed
             if change < 0.02 and renewal > 4:
                 break
@@ -116,9 +133,9 @@ def _solution(
     variances: Variances,
     known: KnownPoints | None = None,
 ) -> Solution:
-    prior, pull, _ = _prior(state, index, known)
-    normal, _, _ = _summed([_rows(one, state, index) for one in seen], variances, prior, pull)
-    return Solution(state, _inverse(normal), index, variances)
+    views = [_rows(one, state, index) for one in seen]
+    normal, _ = equations(_look(views, variances, _prior(state, index, known), index))
+    return Solution(state, covariance(normal), index, variances)
 
 
 def _within(seen: Sequence[SeenBoard]) -> float:
@@ -132,36 +149,20 @@ def _within(seen: Sequence[SeenBoard]) -> float:
 
 def _solved(
     seen: Sequence[SeenBoard],
-    state: State,
+    start: State,
     index: Index,
     variances: Variances,
     known: KnownPoints | None = None,
 ) -> State:
-    """Levenberg-Marquardt with the variances as they are."""
+    """Least squares with the variances as they are."""
 
-    def equations(state: State) -> tuple[Array, Array, float]:
-        prior, pull, cost = _prior(state, index, known)
-        normal, slope, more = _summed([_rows(one, state, index) for one in seen], variances, prior, pull)
-        return normal, slope, cost + more
+    def look(state: State) -> Look | None:
+        if state is not start and not _all_in_front(seen, state, known):
+            return None
+        views = [_rows(one, state, index) for one in seen]
+        return _look(views, variances, _prior(state, index, known), index)
 
-    damping = 1e-6
-    normal, slope, cost = equations(state)
-    for _ in range(STEPS):
-        damped = normal + damping * np.diag(np.diag(normal))
-        step = np.asarray(-np.linalg.solve(damped, slope), dtype=np.float64)
-        tried = state.moved(step, index)
-        new = equations(tried) if _all_in_front(seen, tried, known) else None
-        if new is None or not new[2] <= cost * (1 + 1e-9) + 1e-18:
-            damping = max(damping * 100, 1e-3)
-            if damping > 1e6:
-                break
-            continue
-        done = abs(cost - new[2]) < 1e-7 * cost + 1e-15
-        state, (normal, slope, cost) = tried, new
-        damping = max(damping / 100, 1e-9)
-        if done:
-            break
-    return state
+    return solved(look, lambda state, step: state.moved(step, index), start, steps=STEPS).state
 
 
 def _all_in_front(seen: Sequence[SeenBoard], state: State, known: KnownPoints | None) -> bool:
@@ -212,37 +213,30 @@ def _places(one: SeenBoard, index: Index) -> tuple[NDArray[np.int64], NDArray[np
     return np.array(own, dtype=np.int64), np.array(among, dtype=np.int64)
 
 
-def _summed(
-    views: Sequence[ViewRows], variances: Variances, prior: Array, pull: Array
-) -> tuple[Array, Array, float]:
-    """Normal matrix and gradient of views and prior, and the views' sum of squares."""
-    normal, slope, cost = prior.copy(), pull.copy(), 0.0
+def _look(views: Sequence[ViewRows], variances: Variances, prior: Sequence[Rows], index: Index) -> Look:
+    """All views, over what they scatter by, and the prior."""
+    parts = [*prior]
     for view, weight in zip(views, variances.view, strict=True):
-        inverse = variances.inverse(view, float(weight))
-        weighted = inverse @ view.rows
-        normal[np.ix_(view.among, view.among)] += view.rows.T @ weighted
-        slope[view.among] += weighted.T @ view.y
-        cost += float(view.y @ inverse @ view.y)
-    return normal, slope, cost
+        root = np.linalg.cholesky(variances.inverse(view, float(weight))).T
+        parts.append(Rows(root @ view.y, root @ view.rows, view.among))
+    residuals, rows, columns = (
+        np.concatenate(all_of)
+        for all_of in zip(
+            *((own.residuals, own.rows.ravel(), np.tile(own.among, len(own.rows))) for own in parts),
+            strict=True,
+        )
+    )
+    ends = np.cumsum([0, *np.repeat([own.rows.shape[1] for own in parts], [len(own.rows) for own in parts])])
+    sparse = csr_array((rows, columns, ends), shape=(len(residuals), index.size))
+    return Look(residuals, lambda: sparse)
 
 
-def _prior(state: State, index: Index, known: KnownPoints | None = None) -> tuple[Array, Array, float]:
-    """Normal matrix, gradient and sum of squares of depth errors and of points of known place."""
-    normal, slope, cost = np.zeros((index.size, index.size)), np.zeros(index.size), 0.0
-    for name, error in state.depth_errors.items():
-        at, inverse = index.depths[name], np.array([BIAS_SIGMA_M, SCALE_SIGMA]) ** -2.0
-        normal[at, at] += np.diag(inverse)
-        slope[at] += inverse * error
-        cost += float(inverse @ error**2)
-    for point in known.rows(state, index) if known is not None else ():
-        normal[np.ix_(point.among, point.among)] += point.rows.T @ point.rows
-        slope[point.among] += point.rows.T @ point.residual
-        cost += float(point.residual @ point.residual)
-    return normal, slope, cost
-
-
-def _inverse(normal: Array) -> Array:
-    """The inverse of a normal matrix, scaled before, so that metres and radians go together."""
-    scale = 1 / np.sqrt(np.diag(normal))
-    inverse = np.linalg.inv(normal * np.outer(scale, scale))
-    return np.asarray((inverse + inverse.T) / 2 * np.outer(scale, scale))
+def _prior(state: State, index: Index, known: KnownPoints | None = None) -> list[Rows]:
+    """Depth errors, which are small, and points of known place."""
+    sigma = np.array([BIAS_SIGMA_M, SCALE_SIGMA])
+    errors = [
+        Rows(error / sigma, np.diag(1 / sigma), np.arange(index.depths[name].start, index.depths[name].stop))
+        for name, error in state.depth_errors.items()
+    ]
+    points = known.rows(state, index) if known is not None else []
+    return [*errors, *(Rows(point.residual, point.rows, point.among) for point in points)]

@@ -123,11 +123,8 @@ def fit(
         CalibrationError: the base is free and no camera is known, so that nothing fixes the world.
     """
     known = dict(known or {})
-    if free_base and not known:
-        raise CalibrationError(
-            "the machine's base and all cameras at once: nothing fixes the world; say which cameras' poses hold, or "
-            "find the cameras by a board first"
-        )
+    if free_base:
+        require_world(known)
     state = _State(
         machine,
         machine.world_from_base,
@@ -150,6 +147,19 @@ def fit(
     state.still.clear()
     _look(state, views, trust, sums)
     return _finish(state, sums, converged)
+
+
+def require_world(known: Mapping[str, Known]) -> None:
+    """Refuses to look for the base where no camera is known.
+
+    Raises:
+        CalibrationError: so that nothing fixes the world.
+    """
+    if not known:
+        raise CalibrationError(
+            "the machine's base and all cameras at once: nothing fixes the world; say which cameras' poses hold, or "
+            "find the cameras by a board first"
+        )
 
 
 def _look(state: _State, views: Sequence[MachineViews], trust: Trust, sums: dict[str, SurfaceSums]) -> None:

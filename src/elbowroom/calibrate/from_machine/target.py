@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
-from elbowroom.calibrate.from_machine.fit import Known, MachineFit, fit
+from elbowroom.calibrate.from_machine.fit import Known, MachineFit, fit, require_world
 from elbowroom.calibrate.from_machine.start import start
 from elbowroom.calibrate.from_machine.surface_sums import SurfaceSums
 from elbowroom.calibrate.from_machine.verdict import check_camera, notes_of
@@ -162,11 +162,7 @@ def _first_base(
     machine: Machine, starts: Mapping[str, NDArray[np.float64]], known: Mapping[str, Known]
 ) -> NDArray[np.float64]:
     """Where the base is, from the first camera whose pose is known and its pose relative to the base."""
-    if not known:
-        raise CalibrationError(
-            "the machine's base and all cameras at once: nothing fixes the world; say which cameras' poses hold, or "
-            "find the cameras by a board first"
-        )
+    require_world(known)
     name, first = next(iter(known.items()))
     camera_from_base = invert_rigid(starts[name]) @ machine.world_from_base
     return first.world_from_camera @ camera_from_base

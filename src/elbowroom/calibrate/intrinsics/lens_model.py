@@ -10,6 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.least_squares import Look
+from elbowroom.errors import CameraError
 from elbowroom.geometry import DepthCamera, Intrinsics
 from elbowroom.geometry.lens import directions, project
 
@@ -92,6 +94,13 @@ class LensModel:
         pose[:3, :3] = Rotation.from_rotvec(numbers[at : at + 3]).as_matrix()
         pose[:3, 3] = numbers[at + 3 : at + 6]
         return pose
+
+    def look(self, numbers: Array) -> Look | None:
+        """Residuals and rows for the least squares; None: the lens folds back where there are depths."""
+        try:
+            return Look(self.residuals(numbers), lambda: self.jacobian(numbers))
+        except CameraError:
+            return None
 
     def residuals(self, numbers: Array, rays: Array | None = None) -> Array:
         """Corners and depths less what is predicted, over their sigmas, then the priors.

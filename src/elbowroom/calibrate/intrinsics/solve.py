@@ -11,7 +11,8 @@ from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.intrinsics.coverage import advice, cells_seen, tilt_deg
 from elbowroom.calibrate.intrinsics.lens_model import PINHOLE, LensModel
-from elbowroom.errors import CalibrationError, CameraError
+from elbowroom.calibrate.least_squares import covariance, huber, solved
+from elbowroom.errors import CalibrationError
 from elbowroom.extras import package
 from elbowroom.geometry import DepthCamera
 
@@ -20,9 +21,9 @@ LEAST_VIEWS = 3
 LEAST_TILT_DEG = 4.0
 MOST_SCALE_OFF = 0.08
 """Depth that differs by more from what the board's size says is a wrong size, not a sensor's error."""
-ROUNDS = 40
 HUBER = 3.0
-ENOUGH = 1e-7
+ENOUGH = 1e-10
+"""A step that gains less than this share of the sum of squares is the last one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,8 +104,8 @@ def solve_intrinsics(
             "hold it before this camera, whole and tilted this way and that"
         )
     start = _first_solution(camera, board, mine)
-    model, numbers, covariance = _solved(LensModel(camera, board, mine, coefficients), start)
-    return _result(camera, board, model, numbers, covariance)
+    model = LensModel(camera, board, mine, coefficients)
+    return _result(camera, model, *_solved(model, start))
 
 
 def _first_solution(camera: DepthCamera, board: Board, views: Sequence[BoardView]) -> tuple[Array, Array]:
@@ -143,47 +144,14 @@ def _first_solution(camera: DepthCamera, board: Board, views: Sequence[BoardView
     return numbers, np.hstack([np.reshape(turns, (-1, 3)), np.reshape(shifts, (-1, 3))])
 
 
-def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[LensModel, Array, Array]:
+def _solved(model: LensModel, start: tuple[Array, Array]) -> tuple[Array, Array]:
     """The numbers that fit best, and their covariance."""
     pinhole, poses = start
     numbers = np.concatenate([pinhole, np.zeros(model.coefficients), (1.0, 0.0), poses.ravel()])
     _check_size(model, numbers)
-    damping, residuals = 1e-3, model.residuals(numbers)
-    cost = _cost(residuals)
-    for _ in range(ROUNDS):
-        jacobian = model.jacobian(numbers)
-        weight = np.minimum(1.0, HUBER / np.maximum(np.abs(residuals), 1e-12))
-        normal = jacobian.T @ (jacobian * weight[:, None])
-        step = np.linalg.solve(
-            normal + damping * np.diag(np.diag(normal) + 1e-12), -jacobian.T @ (weight * residuals)
-        )
-        try:
-            tried = model.residuals(numbers + step)
-        except (CalibrationError, CameraError):
-            damping *= 10
-            continue
-        gain = cost - _cost(tried)
-        if gain > 0:
-            numbers, residuals, cost, damping = numbers + step, tried, cost - gain, damping / 5
-            if gain < ENOUGH * cost:
-                break
-        else:
-            damping *= 10
-            if damping > 1e8:
-                break
-    jacobian = model.jacobian(numbers)
-    weight = np.minimum(1.0, HUBER / np.maximum(np.abs(residuals), 1e-12))
-    spread = max(1.0, float((weight * residuals**2).sum()) / max(model.seen_rows - len(numbers), 1))
-    covariance: Array = spread * np.asarray(
-        np.linalg.inv(jacobian.T @ (jacobian * weight[:, None])), dtype=np.float64
-    )
-    return model, numbers, covariance
-
-
-def _cost(residuals: Array) -> float:
-    """Huber's loss."""
-    size = np.abs(residuals)
-    return float(np.where(size < HUBER, size**2 / 2, HUBER * (size - HUBER / 2)).sum())
+    best = solved(model.look, np.add, numbers, lambda off: huber(np.abs(off), HUBER), enough=ENOUGH)
+    spread = max(1.0, best.cost / max(model.seen_rows - len(numbers), 1))
+    return best.state, spread * covariance(best.normal)
 
 
 def _check_size(model: LensModel, numbers: Array) -> None:
@@ -207,11 +175,10 @@ def _check_size(model: LensModel, numbers: Array) -> None:
         )
 
 
-def _result(
-    camera: DepthCamera, board: Board, model: LensModel, numbers: Array, covariance: Array
-) -> FoundIntrinsics:
+def _result(camera: DepthCamera, model: LensModel, numbers: Array, of_numbers: Array) -> FoundIntrinsics:
+    """What the numbers and their covariance say."""
     k = model.intrinsics(numbers)
-    sigma = np.sqrt(np.diag(covariance))
+    sigma = np.sqrt(np.diag(of_numbers))
     poses = np.array([model.camera_from_board(numbers, n) for n in range(len(model.views))])
     scale, bias = (float(n) for n in numbers[model.shared - 2 : model.shared])
     residuals = model.residuals(numbers)[: model.seen_rows]
