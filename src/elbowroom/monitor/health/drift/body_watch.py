@@ -10,7 +10,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
 from elbowroom.monitor.health.drift.body_view import BodySpots, BodyView
-from elbowroom.monitor.health.drift.kernels.watch import Prior, fit_motion
+from elbowroom.monitor.health.drift.kernels.watch import fit_motion
 from elbowroom.monitor.health.drift.reference import MOVE_PRIOR_M, TURN_PRIOR_RAD
 from elbowroom.monitor.health.drift.sequential import Tally
 from elbowroom.monitor.health.health import LinkHealth
@@ -26,7 +26,6 @@ SHOWN_M = 0.004
 LEAST_SPOTS = 8
 """A camera sees a link with so many spots, at least."""
 FOR_OVER_AGAINST, LEAST_FOR, LEAST_FIT = 5.0, 20.0, 0.5
-PRIOR = Prior(turn=TURN_PRIOR_RAD, move=MOVE_PRIOR_M)
 AGREE = 0.6
 """So many of the cameras that see a link must say the same, at least two."""
 
@@ -131,8 +130,8 @@ class BodyWatch:
         sigma = np.concatenate([spots.sigma_m[mine] for spots, mine in parts.values()])
         arm = point - point.mean(axis=0)
         jacobian = np.hstack([np.cross(arm, normal), normal])
-        fit = fit_motion(jacobian, offset, sigma, np.arange(len(offset)), PRIOR)
-        support, arm_m = fit.support, float(np.sqrt((arm**2).sum(axis=1).mean()))
+        fit = fit_motion(jacobian, offset, sigma, np.arange(len(offset)), TURN_PRIOR_RAD, MOVE_PRIOR_M)
+        arm_m = float(np.sqrt((arm**2).sum(axis=1).mean()))
         motion = _what_is_shown(fit.motion, fit.covariance, arm_m)
         shifted = np.cross(motion[:3], arm) + motion[3:]
         off_m = float(np.sqrt((shifted**2).sum(axis=1).mean()))
@@ -147,8 +146,8 @@ class BodyWatch:
         is_off = (
             off_m > TOLERANCE_M
             and shown_m > TOLERANCE_M / 3
-            and support.speaks_for > max(FOR_OVER_AGAINST * support.against, LEAST_FOR)
-            and support.fits_moved >= LEAST_FIT
+            and fit.speaks_for > max(FOR_OVER_AGAINST * fit.against, LEAST_FOR)
+            and fit.fits_moved >= LEAST_FIT
             and len(agree) >= max(2, AGREE * len(parts))
         )
         if not is_off and len(parts) < 2:

@@ -8,11 +8,10 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
 from elbowroom.monitor.health.drift.kernels.watch import (
     Counts,
+    Fit,
     Gate,
     Memory,
-    Prior,
     Spots,
-    Support,
     judge_image,
 )
 from elbowroom.monitor.health.drift.lasting import Lasting
@@ -25,7 +24,6 @@ from elbowroom.monitor.health.health import CameraHealth, Condition
 from elbowroom.sensing import DepthFrame
 
 GATE_M = 0.20
-PRIOR = Prior(turn=TURN_PRIOR_RAD, move=MOVE_PRIOR_M)
 SIGMAS = 3.0
 LEAST_SEEN = 60
 """So many spots must be in view for a frame to say anything."""
@@ -129,9 +127,10 @@ class CameraWatch:
                 f"watch: frame of {name} is {image.shape[1]} x {image.shape[0]} pixels, its reference "
                 f"{self.reference.width} x {self.reference.height}"
             )
-        (within, nearer, farther, lost), shift, support = self._listen(frame, self._memory)
+        (within, nearer, farther, lost), fit = self._listen(frame, self._memory)
+        shift = self._shift_of(fit)
         total = len(self.reference.pixel)
-        fits = max(support.fits_still, support.fits_moved) * within
+        fits = max(fit.fits_still, fit.fits_moved) * within
         seen, hidden = fits / total, (nearer + lost) / total
         if lost >= COVERED_SHARE * total:
             return CameraHealth(name, Condition.BLIND, None, seen, hidden)
@@ -143,19 +142,25 @@ class CameraWatch:
         if fits < CHANGED_FIT * (within + farther):
             return CameraHealth(name, Condition.CHANGED, None, seen, hidden)
         moved = (
-            support.speaks_for > max(FOR_OVER_AGAINST * support.against, LEAST_FOR)
-            and support.fits_moved >= LEAST_FIT
+            fit.speaks_for > max(FOR_OVER_AGAINST * fit.against, LEAST_FOR)
+            and fit.fits_moved >= LEAST_FIT
             and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
         )
         still = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.STILL
         return CameraHealth(name, Condition.MOVED if moved else still, shift, seen, hidden)
 
-    def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[Counts, Shift, Support]:
-        """Adds a frame to a memory: numbers of spots, the shift that fits, and what speaks for it."""
+    def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[Counts, Fit]:
+        """Adds a frame to a memory: numbers of spots, and the motion that fits."""
         gate = Gate(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
-        counts, fit = judge_image(frame.depth_m.ravel(), self._spots, gate, PRIOR, memory)
+        heard: tuple[Counts, Fit] = judge_image(
+            frame.depth_m.ravel(), self._spots, gate, TURN_PRIOR_RAD, MOVE_PRIOR_M, memory
+        )
+        return heard
+
+    def _shift_of(self, fit: Fit) -> Shift:
+        """The motion as far as the view shows it."""
         by_fit = Shift.of if self._part is None else self._part.shift
-        return counts, by_fit(fit.motion, fit.covariance), fit.support
+        return by_fit(fit.motion, fit.covariance)
 
     def _count(self, frame: DepthFrame, now: CameraHealth, stamp_ns: int) -> None:
         """Lets the tests hear what the frame said."""
@@ -171,7 +176,8 @@ class CameraWatch:
             self._since_moved.frames[:] = 0
         else:
             # the size is that of frames after the knock: the mean that found it holds some from before
-            _, shift, _ = self._listen(frame, self._since_moved)
+            _, fit = self._listen(frame, self._since_moved)
+            shift = self._shift_of(fit)
         name = self.camera.name
         if moved and shift is not None:
             self.shift = shift
