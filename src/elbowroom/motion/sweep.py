@@ -9,7 +9,7 @@ from elbowroom.geometry import bits
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED, SLIDES
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels.sweep import Halvings, Mover, Skin, bound_speeds, first_block
+from elbowroom.motion.kernels.sweep import Halvings, Skin, bound_speeds, first_block
 from elbowroom.motion.kernels.volume import Volume, block, gather_corners
 from elbowroom.reconstruct.free_space import FreeSpace
 
@@ -83,15 +83,17 @@ def find_block(
         speeds: of `cluster_speeds`.
         volume: of `volume_of`.
     """
-    moving = np.flatnonzero(speeds > 0).astype(np.int32)
-    if way.length == 0 or moving.size == 0:
+    if way.length == 0 or not (speeds > 0).any():
         return None
     finest = volume.lattice.edge * FINEST_STEP_IN_VOXELS
     halvings = int(np.clip(np.ceil(np.log2(way.length * speeds.max() / finest)), 0, MOST_HALVINGS))
     index, kind, cluster, place = first_block(
-        Mover(machine.tree, machine.world_from_base, skin, way.course, speeds),
+        machine.tree,
+        machine.world_from_base,
+        skin,
+        way.course,
         way.length,
-        moving,
+        speeds,
         volume,
         Halvings(of_clusters=max(0, halvings - SAMPLE_HALVINGS), most=halvings),
     )

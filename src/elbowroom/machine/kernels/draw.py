@@ -102,6 +102,7 @@ def draw(mesh, camera_from_links, view, canvas):
         view: the camera.
         canvas: where to.
     """
+    # of each vertex column, row and inverse depth
     seen = np.empty((mesh.vertices.shape[0], 3))
     for l in range(mesh.radius.size):  # noqa: E741
         if mesh.face_start[l + 1] == mesh.face_start[l]:
@@ -119,7 +120,15 @@ def draw(mesh, camera_from_links, view, canvas):
                 # behind the near plane: kept as it is, for clipping; told apart by the sign
                 seen[p, 0], seen[p, 1], seen[p, 2] = x, y, min(z - NEAR_M, -1e-12)
         for f in range(mesh.face_start[l], mesh.face_start[l + 1]):
-            _draw_face(seen, (mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]), backs, view, canvas)
+            a, b, c = mesh.faces[f, 0], mesh.faces[f, 1], mesh.faces[f, 2]
+            behind = (seen[a, 2] < 0.0) + (seen[b, 2] < 0.0) + (seen[c, 2] < 0.0)
+            if behind == 0:
+                area = (seen[b, 0] - seen[a, 0]) * (seen[c, 1] - seen[a, 1])
+                area -= (seen[c, 0] - seen[a, 0]) * (seen[b, 1] - seen[a, 1])
+                if backs or not area > 0.0:
+                    _fill(_corner(seen, a), _corner(seen, b), _corner(seen, c), view, canvas)
+            elif behind < 3:
+                _clip_and_fill(seen, (a, b, c), view, canvas)
 
 
 @njit(nogil=True, error_model="numpy")
@@ -143,28 +152,6 @@ def _is_outside(camera_from_link, centre, radius):
     """Whether the camera is outside a sphere, and the near plane too."""
     x, y, z = moved(camera_from_link, centre[0], centre[1], centre[2])
     return x * x + y * y + z * z > (radius + 2 * NEAR_M) ** 2
-
-
-@njit(nogil=True, error_model="numpy")
-def _draw_face(seen, face, backs, view, canvas):
-    """Draws one triangle, if its front or `backs` show.
-
-    Args:
-        seen: of all vertices column, row and inverse depth, or where they are if the third is below zero.
-        face: its three vertices.
-        backs: whether the backs of faces may be seen.
-        view, canvas: as of `draw`.
-    """
-    a, b, c = face
-    behind = (seen[a, 2] < 0.0) + (seen[b, 2] < 0.0) + (seen[c, 2] < 0.0)
-    if behind == 0:
-        area = (seen[b, 0] - seen[a, 0]) * (seen[c, 1] - seen[a, 1])
-        area -= (seen[c, 0] - seen[a, 0]) * (seen[b, 1] - seen[a, 1])
-        if area > 0.0 and not backs:
-            return
-        _fill(_corner(seen, a), _corner(seen, b), _corner(seen, c), view, canvas)
-    elif behind < 3:
-        _clip_and_fill(seen, face, view, canvas)
 
 
 @njit(inline="always")

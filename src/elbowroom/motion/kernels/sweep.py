@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry.kernels.bits import bit_of, word_of
+from elbowroom.geometry.kernels.bits import bit_of, uncounted, word_of
 from elbowroom.geometry.kernels.rigid import moved
 from elbowroom.machine.kernels.body import SLIDES, Tree, place_links
 from elbowroom.motion.kernels.triangles import triangle_meets_box
@@ -83,17 +83,21 @@ class Halvings(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """What is left to ask at each depth of cutting: a row each.
+    """What is left to ask at each depth of cutting, a row each, and room to work in.
 
     Fields:
         clusters: row d is asked at depth d, int32.
         samples: row d is asked d depths deeper than the last of the clusters, int32; row 0 is not used.
         counts: how many are left after each depth, int64.
+        corners: of the voxels nearest to some samples, (3, `TOGETHER`) int32.
+        triangle: (3, 3).
     """
 
     clusters: np.ndarray
     samples: np.ndarray
     counts: np.ndarray
+    corners: np.ndarray
+    triangle: np.ndarray
 
 
 @njit
@@ -169,7 +173,7 @@ def _distance_to_axis(world_from_joint, axis_in_joint, x, y, z):
     return math.sqrt((y * c - z * b) ** 2 + (z * a - x * c) ** 2 + (x * b - y * a) ** 2)
 
 
-@njit
+@uncounted()
 def _near_clusters(placed, mover, half, volume, asked, near):
     """The clusters among `asked` that may meet a block within half an interval either way; how many."""
     skin, speeds = mover.skin, mover.speeds
@@ -188,7 +192,7 @@ def _near_clusters(placed, mover, half, volume, asked, near):
     return count
 
 
-@njit
+@uncounted()
 def _near_samples(placed, mover, half, volume, asked, near):
     """The same for samples."""
     skin, speeds = mover.skin, mover.speeds
@@ -205,17 +209,16 @@ def _near_samples(placed, mover, half, volume, asked, near):
     return count
 
 
-@njit
-def _near_members(placed, mover, half, volume, clusters, near):
+@uncounted()
+def _near_members(placed, mover, half, volume, clusters, near, at):
     """The same for all samples of some clusters.
 
     A ball smaller than a voxel meets none but the eight voxels about the corner nearest to its centre: one look at
-    what is known of that corner settles most of them.
+    what is known of that corner settles most of them. `at` (3, `TOGETHER`) is room to work in.
     """
     skin, speeds = mover.skin, mover.speeds
     link, points, start, stop, cover = skin.link, skin.points, skin.start, skin.stop, skin.cover
     words, corners, lattice = volume.words, volume.corners, volume.lattice
-    at = np.empty((3, TOGETHER), dtype=np.int32)
     count = 0
     for cluster in clusters:
         r = cover + speeds[cluster] * half + ROUNDING_M
@@ -237,7 +240,7 @@ def _near_members(placed, mover, half, volume, clusters, near):
     return count
 
 
-@njit(error_model="numpy")
+@uncounted(error_model="numpy")
 def _corners_of(placed, link, points, first, last, lattice, at):
     """The voxels' corners nearest to a link's points: (3, points) int32, -1 for one on the grid's border or beyond."""
     scale = 1.0 / lattice.edge
@@ -256,7 +259,7 @@ def _corners_of(placed, link, points, first, last, lattice, at):
         at[0, u] = at[0, u] if (at[1, u] >= 0) & (at[2, u] >= 0) else -1
 
 
-@njit
+@uncounted()
 def _leaves_patch(patch, lattice):
     """Whether a corner of a patch, grown, leaves the grid."""
     skin = patch.skin
@@ -268,15 +271,15 @@ def _leaves_patch(patch, lattice):
     return False
 
 
-@njit
-def _meets_patch(patch, x, y, z, half_edge, corners):
-    """Whether a patch, as it is, meets a cube; `corners` (3, 3) is scratch."""
+@uncounted()
+def _meets_patch(patch, x, y, z, half_edge, triangle):
+    """Whether a patch, as it is, meets a cube; `triangle` (3, 3) is room to work in."""
     skin = patch.skin
     for n in range(skin.patch_start[patch.sample], skin.patch_start[patch.sample + 1]):
         for corner in range(3):
             a, b, c = _carried(patch.world_from_link, skin.triangles[skin.patches[n], corner])
-            corners[corner, 0], corners[corner, 1], corners[corner, 2] = a, b, c
-        if triangle_meets_box(corners, x, y, z, half_edge):
+            triangle[corner, 0], triangle[corner, 1], triangle[corner, 2] = a, b, c
+        if triangle_meets_box(triangle, x, y, z, half_edge):
             return True
     return False
 
@@ -293,16 +296,15 @@ def _kind(volume, word, bit):
     return UNSEEN
 
 
-@njit
-def touched_block(placed, mover, half, volume, samples, place):
+@uncounted()
+def touched_block(placed, mover, half, volume, samples, place, triangle):
     """The most cautious block that samples' patches meet, grown by their movement: what, by which cluster.
 
     Exact but for that growth: triangles against voxels. Fills `place` (3,) with the voxel's centre, or the
-    sample whose patch leaves the grid [m].
+    sample whose patch leaves the grid [m]; `triangle` (3, 3) is room to work in.
     """
     skin, lattice = mover.skin, volume.lattice
     found, by = NOTHING, -1
-    corners = np.empty((3, 3))
     for sample in samples:
         cluster = skin.cluster_of[sample]
         world_from_link = placed[skin.link[cluster]]
@@ -315,7 +317,7 @@ def touched_block(placed, mover, half, volume, samples, place):
                 found, by = OUTSIDE, cluster
                 place[0], place[1], place[2] = x, y, z
             continue
-        kind = _touched_by(patch, counted(x, y, z, r, lattice), volume, found, place, corners)
+        kind = _touched_by(patch, counted(x, y, z, r, lattice), volume, found, place, triangle)
         if kind < found:
             found, by = kind, cluster
         if found == SURFACE:
@@ -323,14 +325,14 @@ def touched_block(placed, mover, half, volume, samples, place):
     return found, by
 
 
-@njit
-def _touched_by(patch, ball, volume, found, place, corners):
+@uncounted()
+def _touched_by(patch, ball, volume, found, place, triangle):
     """The most cautious block that a patch meets, if it is more cautious than what was found; else that.
 
     Args:
         ball: about the patch, centre and radius counted in voxels.
         place: (3,), written where there is such a block: its centre [m].
-        corners: (3, 3), scratch.
+        triangle: (3, 3), room to work in.
     """
     lattice = volume.lattice
     u, v, w, s = ball
@@ -351,14 +353,14 @@ def _touched_by(patch, ball, volume, found, place, corners):
                     lattice.y0 + (j + 0.5) * lattice.edge,
                     lattice.z0 + (k + 0.5) * lattice.edge,
                 )
-                if _meets_patch(patch, x, y, z, lattice.edge / 2 + patch.grown, corners):
+                if _meets_patch(patch, x, y, z, lattice.edge / 2 + patch.grown, triangle):
                     found = kind
                     place[0], place[1], place[2] = x, y, z
     return found
 
 
 @njit(cache=True, nogil=True)
-def first_block(mover, length, moving, volume, halvings):
+def first_block(tree, world_from_base, skin, course, length, speeds, volume, halvings):
     """The first of 2^halvings.most equal intervals of [0, length] in which the machine meets a block.
 
     An interval is tested at its middle, every ball grown by the most that it moves in half of it (its cluster's
@@ -367,16 +369,17 @@ def first_block(mover, length, moving, volume, halvings):
     there, and in the shortest intervals the samples' triangles.
 
     Args:
-        mover: what moves.
+        tree, world_from_base, skin, course, speeds: what moves, and how (`Mover`).
         length: travel that is looked at, at most the course's.
-        moving: the clusters that move, (n,) int32.
         volume: what is blocked.
         halvings: how often intervals are cut.
 
     Returns:
         The interval's index, -1 for none; what the block is, the cluster that meets it, and where (3,) [m].
     """
-    asked = _all_of(mover.skin, moving, halvings)
+    # made here and not by the caller: a record in a record costs Python more to hand over than what it holds
+    mover = Mover(tree, world_from_base, skin, course, speeds)
+    asked = _all_moving(mover, halvings)
     placed = np.empty((1, mover.tree.parent.size, 4, 4))
     place = np.zeros(3)
     depth, index = 0, 0
@@ -386,7 +389,7 @@ def first_block(mover, length, moving, volume, halvings):
         left = _ask(placed[0], mover, half, volume, asked, depth, halvings)
         if left > 0 and depth == halvings.most:
             samples = asked.samples[depth - halvings.of_clusters + 1, :left]
-            kind, by = touched_block(placed[0], mover, half, volume, samples, place)
+            kind, by = touched_block(placed[0], mover, half, volume, samples, place, asked.triangle)
             if kind != NOTHING:
                 return index, kind, by, place
         elif left > 0:
@@ -402,19 +405,21 @@ def first_block(mover, length, moving, volume, halvings):
 
 
 @njit
-def _all_of(skin, moving, halvings):
+def _all_moving(mover, halvings):
     """What is asked first, all clusters that move, and room for what is left of them."""
+    moving = np.flatnonzero(mover.speeds > 0.0)
     total = 0
     for cluster in moving:
-        total += skin.stop[cluster] - skin.start[cluster]
+        total += mover.skin.stop[cluster] - mover.skin.start[cluster]
     clusters = np.empty((halvings.of_clusters + 2, moving.size), dtype=np.int32)
     samples = np.empty((halvings.most - halvings.of_clusters + 2, total), dtype=np.int32)
     for n in range(moving.size):
         clusters[0, n] = moving[n]
-    return Asked(clusters, samples, np.zeros(halvings.most + 1, dtype=np.int64))
+    counts, corners = np.zeros(halvings.most + 1, dtype=np.int64), np.empty((3, TOGETHER), dtype=np.int32)
+    return Asked(clusters, samples, counts, corners, np.empty((3, 3)))
 
 
-@njit
+@uncounted()
 def _ask(placed, mover, half, volume, asked, depth, halvings):
     """How many of the clusters or samples asked at a depth may meet a block: they are what the next depth asks."""
     row = depth - halvings.of_clusters
@@ -425,5 +430,5 @@ def _ask(placed, mover, half, volume, asked, depth, halvings):
     near = asked.clusters[depth + 1]
     left = _near_clusters(placed, mover, half, volume, asked.clusters[depth, :before], near)
     if row == 0:
-        left = _near_members(placed, mover, half, volume, near[:left], asked.samples[1])
+        left = _near_members(placed, mover, half, volume, near[:left], asked.samples[1], asked.corners)
     return left

@@ -78,7 +78,7 @@ def gather_corners(words, lattice, scratch, corners):
     _with_previous(scratch, along_x, corners)
 
 
-@njit
+@njit(inline="always")
 def _with_previous(words, axis, out):
     """Each voxel's bit or that of its lower neighbour along one axis."""
     last = np.uint64(axis.low) << np.uint64(3 * axis.step)

@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.bits import uncounted
+
 
 class Boxes(NamedTuple):
     """The boxes of an array's voxels: least corner of the first, (3,), edge, and half the edge of each box [m]."""
@@ -13,6 +15,16 @@ class Boxes(NamedTuple):
     lower: np.ndarray
     edge: float
     half: float
+
+
+class Search(NamedTuple):
+    """Voxels that a triangle may meet: first and last along each axis and the one that is looked at, (3,) int64 each;
+    the triangle's corners as seen from that one's middle, (3, 3)."""
+
+    first: np.ndarray
+    last: np.ndarray
+    at: np.ndarray
+    corners: np.ndarray
 
 
 @njit(cache=True, nogil=True)
@@ -29,13 +41,14 @@ def touch_surface(triangles, lower, edge, shrink, touched, mark=1):
         mark: what is written.
     """
     boxes = Boxes(lower, edge, 0.5 * edge - shrink)
-    first, last = np.empty(3, np.int64), np.empty(3, np.int64)
+    first, last, at = np.empty(3, np.int64), np.empty(3, np.int64), np.empty(3, np.int64)
+    search = Search(first, last, at, np.empty((3, 3)))
     for t in range(triangles.shape[0]):
         if _range_of(triangles[t], boxes, touched.shape, first, last):
-            _touch_between(triangles[t], boxes, first, last, touched, mark)
+            _touch_between(triangles[t], boxes, search, touched, mark)
 
 
-@njit(cache=True, nogil=True)
+@uncounted()
 def _range_of(triangle, boxes, size, first, last):
     """Writes the first and last voxel along each axis that a triangle may meet; whether there is one."""
     for axis in range(3):
@@ -50,13 +63,14 @@ def _range_of(triangle, boxes, size, first, last):
     return True
 
 
-@njit(cache=True, nogil=True)
-def _touch_between(triangle, boxes, first, last, touched, mark):
-    """Marks the voxels between first and last, (3,) each, whose open box a triangle meets.
+@uncounted()
+def _touch_between(triangle, boxes, search, touched, mark):
+    """Marks the voxels from the first to the last of a search whose open box a triangle meets.
 
     Column by column along the axis that the plane crosses most steeply: there each meets a short piece of it.
     """
     lower, edge, half = boxes.lower, boxes.edge, boxes.half
+    first, last, at = search.first, search.last, search.at
     normal = _normal(triangle)
     main = 0
     if abs(normal[1]) > abs(normal[main]):
@@ -69,7 +83,6 @@ def _touch_between(triangle, boxes, first, last, touched, mark):
     if steep:
         second_slope, third_slope = normal[second] / normal[main], normal[third] / normal[main]
         spread = half * (1.0 + abs(second_slope) + abs(third_slope)) + 1e-9
-    at, corners = np.empty(3, np.int64), np.empty((3, 3))
     for p in range(first[second], last[second] + 1):
         centre_p = lower[second] + (p + 0.5) * edge
         for q in range(first[third], last[third] + 1):
@@ -89,21 +102,21 @@ def _touch_between(triangle, boxes, first, last, touched, mark):
             at[second], at[third] = p, q
             for r in range(begin, end + 1):
                 at[main] = r
-                if not touched[at[0], at[1], at[2]] and _meets(triangle, boxes, at, corners):
+                if not touched[at[0], at[1], at[2]] and _meets(triangle, boxes, search):
                     touched[at[0], at[1], at[2]] = mark
 
 
-@njit(cache=True, nogil=True)
-def _meets(triangle, boxes, at, corners):
-    """Whether a triangle meets the open box of a voxel, `at` (3,); `corners` (3, 3) is scratch."""
+@uncounted()
+def _meets(triangle, boxes, search):
+    """Whether a triangle meets the open box of the voxel that is looked at."""
     for axis in range(3):
-        centre = boxes.lower[axis] + (at[axis] + 0.5) * boxes.edge
+        centre = boxes.lower[axis] + (search.at[axis] + 0.5) * boxes.edge
         for corner in range(3):
-            corners[corner, axis] = triangle[corner, axis] - centre
-    return triangle_meets_box(corners, boxes.half)
+            search.corners[corner, axis] = triangle[corner, axis] - centre
+    return triangle_meets_box(search.corners, boxes.half)
 
 
-@njit(cache=True, nogil=True)
+@uncounted()
 def triangle_meets_box(corners, half):
     """Separating-axis test of a triangle with the open cube of half edge `half` about the origin.
 
@@ -144,7 +157,7 @@ def triangle_meets_box(corners, half):
     return reach == 0.0 or abs(distance) < reach
 
 
-@njit(cache=True, nogil=True)
+@uncounted()
 def _normal(triangle):
     """Normal of a triangle's plane, as long as twice its area."""
     ux, uy, uz = (
@@ -187,7 +200,7 @@ def fill_inside(triangles, lower, edge, touched):
                     touched[i, j, k] = True
 
 
-@njit(cache=True, nogil=True)
+@uncounted()
 def _wind(triangle, lower, edge, winding):
     """Adds to each column of centres that pierces a triangle, at the first centre above, how often and which way."""
     nx, ny, nz = winding.shape
@@ -217,7 +230,7 @@ def _wind(triangle, lower, edge, winding):
                 winding[i, j, int(max(above, 0.0))] -= turns
 
 
-@njit(cache=True, nogil=True)
+@uncounted()
 def _height(triangle, x, y):
     """Height of a triangle at (x, y): those of its corners weighted by the areas opposite to them."""
     ax, ay, az = triangle[0, 0], triangle[0, 1], triangle[0, 2]

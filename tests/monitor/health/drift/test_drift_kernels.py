@@ -52,7 +52,7 @@ def test_the_fitted_motion_is_that_of_matrices(seed, n):
     jacobian, sigma = rng.normal(size=(n + 3, 6)), rng.uniform(0.002, 0.03, n + 3)
     offset = jacobian @ rng.normal(0, 0.01, 6) + rng.normal(0, sigma) * rng.choice([1, 8], n + 3)
     used = np.sort(rng.permutation(n + 3)[:n])
-    motion, covariance, said = kernels.fit_motion(jacobian, offset, sigma, used, kernels.Prior(0.1, 0.2))
+    motion, covariance, *said = kernels.fit_motion(jacobian, offset, sigma, used, 0.1, 0.2)
     if n == 0:
         assert not motion.any() and not any(said)
         assert np.diag(covariance) == pytest.approx([0.01] * 3 + [0.04] * 3)

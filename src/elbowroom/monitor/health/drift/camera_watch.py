@@ -6,7 +6,7 @@ import numpy as np
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
-from elbowroom.monitor.health.drift.fit import PRIOR, convinces
+from elbowroom.monitor.health.drift.fit import MOVE_PRIOR_M, TURN_PRIOR_RAD, convinces
 from elbowroom.monitor.health.drift.kernels.watch import Counts, Fit, Gate, Memory, Spots, judge_image
 from elbowroom.monitor.health.drift.lasting import Lasting
 from elbowroom.monitor.health.drift.reference import CameraReference
@@ -113,7 +113,7 @@ class CameraWatch:
         self._require_size(frame)
         (within, nearer, farther, lost), fit = self._listen(frame, self._memory)
         total = len(self.reference.pixel)
-        fits = max(fit.support.fits_still, fit.support.fits_moved) * within
+        fits = max(fit.fits_still, fit.fits_moved) * within
         seen, hidden = fits / total, (nearer + lost) / total
         shift = None
         if lost >= COVERED_SHARE * total:
@@ -126,7 +126,7 @@ class CameraWatch:
             condition = Condition.CHANGED
         else:
             shift = self._shift(fit)
-            moved = convinces(fit.support) and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
+            moved = convinces(fit) and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)
             still = Condition.HIDDEN if hidden >= HIDDEN_SHARE else Condition.STILL
             condition = Condition.MOVED if moved else still
         return CameraHealth(self.camera.name, condition, shift, seen, hidden)
@@ -142,7 +142,9 @@ class CameraWatch:
     def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[Counts, Fit]:
         """Adds a frame to a memory: numbers of spots, and the motion that fits them."""
         gate = Gate(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
-        counts, fit = judge_image(frame.depth_m.ravel(), self._spots, gate, PRIOR, memory)
+        counts, fit = judge_image(
+            frame.depth_m.ravel(), self._spots, gate, TURN_PRIOR_RAD, MOVE_PRIOR_M, memory
+        )
         return counts, fit
 
     def _shift(self, fit: Fit) -> Shift:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.monitor.health.drift.body_view import BodySpots
-from elbowroom.monitor.health.drift.fit import PRIOR, convinces
+from elbowroom.monitor.health.drift.fit import MOVE_PRIOR_M, TURN_PRIOR_RAD, convinces
 from elbowroom.monitor.health.drift.kernels.watch import Fit, fit_motion
 from elbowroom.monitor.health.health import LinkHealth
 
@@ -68,7 +68,8 @@ class LinkSpots:
         Args:
             link: its name.
         """
-        fit = fit_motion(self.jacobian, self.offset, self.sigma, np.arange(len(self.offset)), PRIOR)
+        every = np.arange(len(self.offset))
+        fit = fit_motion(self.jacobian, self.offset, self.sigma, every, TURN_PRIOR_RAD, MOVE_PRIOR_M)
         motion = self._shown(fit)
         shifted = np.cross(motion[:3], self.arm) + motion[3:]
         off_m = float(np.sqrt((shifted**2).sum(axis=1).mean()))
@@ -77,7 +78,7 @@ class LinkSpots:
         is_off = (
             off_m > TOLERANCE_M
             and shown_m > TOLERANCE_M / 3
-            and convinces(fit.support)
+            and convinces(fit)
             and len(agree) >= max(2, AGREE * len(self.parts))
         )
         if not is_off and len(self.parts) < 2:

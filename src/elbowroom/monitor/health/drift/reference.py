@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.twist import CAMERA_MOTIONS
-from elbowroom.monitor.health.drift.fit import PRIOR
+from elbowroom.monitor.health.drift.fit import MOVE_PRIOR_M, TURN_PRIOR_RAD
 from elbowroom.monitor.health.drift.kernels.watch import LEAST_SIGMA_M, Spots
 from elbowroom.monitor.health.drift.tolerance import Tolerance
 
@@ -96,7 +96,7 @@ class CameraReference:
         where the spots do not show some direction, the prior's."""
         spots = self.spots()
         weighted = spots.jacobian / spots.sigma[:, None]
-        prior = np.diag([PRIOR.turn**-2.0] * 3 + [PRIOR.move**-2.0] * 3)
+        prior = np.diag([TURN_PRIOR_RAD**-2.0] * 3 + [MOVE_PRIOR_M**-2.0] * 3)
         return np.linalg.inv(weighted.T @ weighted + prior)
 
     def unseen_motions(self, turn_rad: float, move_m: float) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.bits import uncounted
 from elbowroom.geometry.kernels.noise import sigma
 from elbowroom.geometry.kernels.pinhole import radial_over_planar
 from elbowroom.machine.kernels.draw import Mesh, draw
@@ -77,13 +78,20 @@ def draw_links(mesh, camera_from_links, view, canvas, shown):
             mesh.closed[link : link + 1],
         )
         draw(one, camera_from_links[link : link + 1], view, canvas)
-        for v in range(view.height):
-            for u in range(canvas.first[v], canvas.last[v] + 1):
-                if canvas.inverse[v, u] > shown.inverse[v, u]:
-                    shown.inverse[v, u] = canvas.inverse[v, u]
-                    shown.link[v, u] = link
-                canvas.inverse[v, u] = 0.0
-            canvas.first[v], canvas.last[v] = view.width, -1
+        _keep_nearer(canvas, link, shown)
+
+
+@uncounted()
+def _keep_nearer(canvas, link, shown):
+    """Puts a link into what is shown, where it is nearer, and wipes the canvas."""
+    width = canvas.inverse.shape[1]
+    for v in range(canvas.first.size):
+        for u in range(canvas.first[v], canvas.last[v] + 1):
+            if canvas.inverse[v, u] > shown.inverse[v, u]:
+                shown.inverse[v, u] = canvas.inverse[v, u]
+                shown.link[v, u] = link
+            canvas.inverse[v, u] = 0.0
+        canvas.first[v], canvas.last[v] = width, -1
 
 
 @njit(cache=True, nogil=True)
@@ -101,28 +109,30 @@ def surface_spots(view, shown, image, raw, gate, found):
     Returns:
         How many spots were written.
     """
+    inverse, link_of, numbers = shown.inverse, found.link, found.numbers
     n = 0
     # every other pixel of every other row: neighbours share what they are judged by
     for v in range(1, view.height - 1, 2):
         for u in range(1, view.width - 1, 2):
             pixel = raw.pixel[v, u]
-            if pixel < 0 or not _is_one_link(shown.link, u, v) or _bend(shown.inverse, u, v) > 2.0 * BEND_M:
+            if pixel < 0 or not _is_one_link(shown.link, u, v):
                 continue
             depth = float(image[pixel])
             if not (depth > 0.0 and depth >= view.min_depth and depth <= view.max_depth and depth < np.inf):
                 continue
-            z = 1.0 / shown.inverse[v, u]
+            if _bend(inverse, u, v) > 2.0 * BEND_M:
+                continue
+            z = 1.0 / inverse[v, u]
             x, y = (u - view.cx) / view.fx, (v - view.cy) / view.fy
-            nx, ny, nz, scale = _normal(view, shown.inverse, u, v, x, y)
+            nx, ny, nz, scale = _normal(view, inverse, u, v, x, y)
             if scale / radial_over_planar(x, y) < LEAST_COSINE:
                 continue
             offset, spread = (z - depth / raw.per_planar[v, u]) * scale, sigma(view, z) * scale
             if abs(offset) > gate + 3.0 * spread:
                 continue
-            if n == found.link.size:
+            if n == link_of.size:
                 return n
-            found.link[n] = shown.link[v, u]
-            numbers = found.numbers
+            link_of[n] = shown.link[v, u]
             numbers[n, 0], numbers[n, 1], numbers[n, 2] = x * z, y * z, z
             numbers[n, 3], numbers[n, 4], numbers[n, 5] = nx, ny, nz
             numbers[n, 6], numbers[n, 7] = offset, spread
@@ -130,7 +140,7 @@ def surface_spots(view, shown, image, raw, gate, found):
     return n
 
 
-@njit(nogil=True)
+@uncounted()
 def _is_one_link(link, u, v):
     """Whether a pixel and all eight about it show the same link."""
     alone = link[v, u] >= 0
@@ -140,7 +150,7 @@ def _is_one_link(link, u, v):
     return alone
 
 
-@njit(nogil=True)
+@uncounted()
 def _bend(inverse, u, v):
     """By how much depth leaves a plane from neighbour to neighbour, rows and columns together, twice over [m]."""
     w = inverse[v, u]
@@ -150,7 +160,7 @@ def _bend(inverse, u, v):
     return (abs(bend_u) + abs(bend_v)) * z * z
 
 
-@njit(nogil=True)
+@uncounted()
 def _normal(view, inverse, u, v, x, y):
     """Normal of the surface in a pixel whose ray is (x, y, 1), towards the camera.
 

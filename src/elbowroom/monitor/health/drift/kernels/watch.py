@@ -67,13 +67,6 @@ class Gate(NamedTuple):
     off: float
 
 
-class Prior(NamedTuple):
-    """How far a turn [rad] and a move [m] may be expected: sigmas."""
-
-    turn: float
-    move: float
-
-
 class Counts(NamedTuple):
     """Numbers of spots within the gate, nearer, farther, without a return."""
 
@@ -83,27 +76,23 @@ class Counts(NamedTuple):
     lost: int
 
 
-class Support(NamedTuple):
-    """What the spots say of a motion against standing still.
+class Fit(NamedTuple):
+    """A small motion, and what speaks for it against standing still.
 
     Fields:
+        motion: turn [rad], move [m], shape (6,).
+        covariance: of it, shape (6, 6).
         speaks_for, against: log-likelihood of the motion over that of standing still, added over the spots that speak
             for it, and over those that speak against it.
         fits_still, fits_moved: shares of the spots that fit without and with it.
     """
 
+    motion: np.ndarray
+    covariance: np.ndarray
     speaks_for: float
     against: float
     fits_still: float
     fits_moved: float
-
-
-class Fit(NamedTuple):
-    """A small motion: turn [rad] and move [m], shape (6,), its covariance, shape (6, 6), and what supports it."""
-
-    motion: np.ndarray
-    covariance: np.ndarray
-    support: Support
 
 
 @njit(cache=True, nogil=True)
@@ -158,7 +147,7 @@ def _remember(memory, i, e, sigma):
 
 
 @njit(cache=True, nogil=True)
-def fit_motion(jacobian, offset, sigma, used, prior):
+def fit_motion(jacobian, offset, sigma, used, turn_sigma, move_sigma):
     """The small motion that explains most offsets, and what speaks for it against standing still.
 
     Geman-McClure loss whose width falls from step to step (graduated non-convexity: Yang, Antonante, Tzoumas, Carlone,
@@ -168,7 +157,7 @@ def fit_motion(jacobian, offset, sigma, used, prior):
         jacobian: shape (n, 6), offset per turn [m/rad] and per move.
         offset, sigma: shape (n,) [m].
         used: indices of those that count.
-        prior: of the motion.
+        turn_sigma, move_sigma: of the prior [rad], [m].
 
     Returns:
         `Fit`.
@@ -188,7 +177,7 @@ def fit_motion(jacobian, offset, sigma, used, prior):
         _weights(rows, sigma, used, motion, width)
         _normal_equations(rows, sums)
         for k in range(6):
-            sums[k, k] += 1.0 / (prior.turn if k < 3 else prior.move) ** 2
+            sums[k, k] += 1.0 / (turn_sigma if k < 3 else move_sigma) ** 2
             rhs[k] = sums[k, 6]
         _factorise(sums)
         _solve(sums, rhs, motion)
@@ -196,7 +185,8 @@ def fit_motion(jacobian, offset, sigma, used, prior):
         for k in range(6):
             rhs[k] = 1.0 if k == m else 0.0
         _solve(sums, rhs, covariance[m])
-    return Fit(motion, covariance, _weigh(rows, sigma, used, motion))
+    speaks_for, against, fits_still, fits_moved = _weigh(rows, sigma, used, motion)
+    return Fit(motion, covariance, speaks_for, against, fits_still, fits_moved)
 
 
 @njit(nogil=True)
@@ -269,7 +259,7 @@ def _solve(factor, rhs, solution):
 
 @njit(nogil=True)
 def _weigh(rows, sigma, used, motion):
-    """What each spot says of the motion against standing still: Gaussian with a share of strays."""
+    """What the spots say of the motion (`Fit`): of each a Gaussian with a share of strays."""
     speaks_for, against, fits_still, fits_moved = 0.0, 0.0, 0, 0
     for j in range(rows.shape[0]):
         s, e = sigma[used[j]], rows[j, 6]
@@ -289,12 +279,12 @@ def _weigh(rows, sigma, used, motion):
         fits_still += abs(e) <= near
         fits_moved += abs(r) <= near
     count = max(used.size, 1)
-    return Support(speaks_for, against, fits_still / count, fits_moved / count)
+    return speaks_for, against, fits_still / count, fits_moved / count
 
 
 @njit(cache=True, nogil=True)
-def judge_image(image, spots, gate, prior, memory):
+def judge_image(image, spots, gate, turn_sigma, move_sigma, memory):
     """`listen`, then `fit_motion` to the spots within the gate: their arguments, and what both return."""
     counts = listen(image, spots, gate, memory)
     used = memory.used[: counts.within]
-    return counts, fit_motion(spots.jacobian, memory.offset, memory.sigma, used, prior)
+    return counts, fit_motion(spots.jacobian, memory.offset, memory.sigma, used, turn_sigma, move_sigma)
