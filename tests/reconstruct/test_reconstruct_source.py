@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from elbowroom.errors import CameraError, EvidenceError, SiteError
+from elbowroom.errors import CameraError, EvidenceError, JointsError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.machine.probe import probe
 from elbowroom.motion import Motion, check_motion
@@ -107,7 +107,7 @@ def test_a_record_is_not_asked_where_the_machine_was_at_a_frame_past_its_age():
     limited = reconstruct(*given, now_ns=1060, max_age_ns=100)
     missing = reconstruct(GRID, [CAMERA, old], frames[:1], probe(), {"slide": 0.01})
     np.testing.assert_array_equal(limited.free_words, missing.free_words)
-    with pytest.raises(SiteError, match="not known"):
+    with pytest.raises(JointsError, match="not known"):
         reconstruct(*given, now_ns=1060)
 
 
