@@ -152,6 +152,13 @@ def test_kernels_import_numbers_and_other_kernels_only(path: Path) -> None:
             assert is_kernel or name.partition(".")[0] in KERNEL_LIBRARIES, f"{path.name} imports {name}"
 
 
+def test_nothing_is_compiled_outside_the_folders_of_kernels() -> None:
+    outside = [path for path in SOURCE.rglob("*.py") if "kernels" not in path.parts]
+    assert not [
+        path for path in outside if re.search(r"^@(njit|uncounted)\b", path.read_text(encoding="utf-8"), re.M)
+    ]
+
+
 def test_pictures_are_light() -> None:
     for picture in (PROJECT / "docs" / "images").iterdir():
         assert picture.stat().st_size <= 300_000, picture.name
