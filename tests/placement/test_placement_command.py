@@ -9,11 +9,11 @@ import pytest
 from PIL import Image
 
 from elbowroom.cli import run
-from elbowroom.placement.cameras import cameras_of
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.verification import verify
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
+from elbowroom.sources import cameras_of
 
 SMALL = """
 name: hall

@@ -8,14 +8,15 @@ import yaml
 from elbowroom.errors import InputError, SiteError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.placement.bill import bill
-from elbowroom.placement.cameras import cameras_of, requirement_of
 from elbowroom.placement.candidates import candidates_of, default_aims
 from elbowroom.placement.fixed_room import FixedRoom, clear_sight
+from elbowroom.placement.requirement import requirement_of
 from elbowroom.placement.sensor import sensors_of
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
 from elbowroom.site.written import write_site
+from elbowroom.sources import cameras_of
 from reference.placement_rooms import camera_at, room_of
 
 SITE = """

@@ -64,10 +64,9 @@ def check(
 
 def _findings(site: "Site") -> dict[str, Any]:
     """All that can be said of a site without carving; raises on whatever is wrong with it."""
-    from elbowroom.placement.cameras import cameras_of
     from elbowroom.site import memory_of
     from elbowroom.site.notes import notes_of
-    from elbowroom.sources import check_images, silent_cameras
+    from elbowroom.sources import cameras_of, check_images, silent_cameras
 
     grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
     motions = site.motions(machine) if machine is not None else ()
@@ -135,7 +134,7 @@ def _say(row: dict[str, Any]) -> None:
 
 def _draw(site: "Site", out: Path) -> None:
     from elbowroom.files.atomic import whole_file
-    from elbowroom.placement.cameras import cameras_of
+    from elbowroom.sources import cameras_of
     from elbowroom.view.draw.outline import triangles_of
     from elbowroom.view.draw.site import draw_site
 

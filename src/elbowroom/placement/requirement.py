@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from elbowroom.errors import InputError
+from elbowroom.site import Site
 
 TIE_RAD = 1e-9
 """Views apart by the angle less this count as far enough apart: rounding [rad]."""
@@ -43,3 +44,22 @@ class Requirement:
         if self.views == 1:
             return "1 view"
         return f"{self.views} views, each two at least {self.angle_deg:g} degrees apart"
+
+
+def requirement_of(site: Site, views: int | None = None, angle_deg: float | None = None) -> Requirement:
+    """The requirement of a site's key `placement`, or what is said otherwise.
+
+    Args:
+        site: the file.
+        views, angle_deg: instead of the site's; None: the site's, or 3 and 100 degrees.
+
+    Raises:
+        InputError: a requirement that cannot be met on a circle.
+    """
+    given = site.entry.placement
+    default = Requirement()
+    if views is None:
+        views = default.views if given is None else given.views
+    if angle_deg is None:
+        angle_deg = default.angle_deg if given is None else given.angle_deg
+    return Requirement(views, angle_deg)

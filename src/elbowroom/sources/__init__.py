@@ -1,5 +1,6 @@
-"""Where frames come from, as snapshots: recordings on disk, the simulated room; a source a file."""
+"""Where frames come from, as snapshots: recordings on disk, the simulated room; a source a file. Cameras of a site."""
 
+from elbowroom.sources.cameras import cameras_of
 from elbowroom.sources.depth_png import read_depth_png
 from elbowroom.sources.recorded import Recorded, check_images, excluded_frames, moments, silent_cameras
 from elbowroom.sources.room import Room, open_room
@@ -9,6 +10,7 @@ __all__ = [
     "Recorded",
     "Room",
     "Source",
+    "cameras_of",
     "check_images",
     "excluded_frames",
     "moments",

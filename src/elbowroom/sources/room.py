@@ -12,6 +12,7 @@ from elbowroom.motion import Motion
 from elbowroom.reconstruct import FreeSpace, Terms, free_space_of
 from elbowroom.sensing import Snapshot
 from elbowroom.site import Site
+from elbowroom.sources.cameras import cameras_of
 from elbowroom.sources.recorded import Recorded
 from elbowroom.sources.source import Source
 
@@ -99,29 +100,9 @@ def open_room(
         if machine is None:
             raise InputError(f"joints: {site.path} names no machine; leave them out")
         machine.checked(joints)
-    made = _cameras(site, cameras, resolution)
+    made = cameras_of(site, cameras, resolution)
     source = _source(site, made, joints, knocks)
     return Room(site, grid, made, machine, site.terms(rule, detail), source)
-
-
-def _cameras(site: Site, count: int | None, resolution: tuple[int, int] | None) -> tuple[DepthCamera, ...]:
-    """The cameras that a site lists, or those that the simulator makes for it."""
-    given = "cameras" if count is not None else "resolution" if resolution is not None else None
-    if site.simulated is None or site.lists_cameras:
-        if given is not None:
-            why = "is none" if site.simulated is None else "lists its cameras"
-            raise InputError(
-                f"{given}: for simulated rooms whose cameras are made, and {site.path} {why}; leave it out"
-            )
-        return site.cameras()
-    from elbowroom.simulate import wall_cameras
-
-    settings = site.simulated_cameras()
-    if count is not None:
-        settings["count"] = count
-    if resolution is not None:
-        settings["width"], settings["height"] = resolution
-    return wall_cameras(**settings)
 
 
 def _source(

@@ -8,13 +8,13 @@ from typing import Any
 from elbowroom.cli.placement.options import CapabilityOptions
 from elbowroom.files.atomic import folder
 from elbowroom.files.json_rows import json_rows
-from elbowroom.placement.cameras import cameras_of
 from elbowroom.placement.charts import capability_section
 from elbowroom.placement.detection import Capability, capability, save_capability
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.pictures import save
 from elbowroom.placement.verification import verify
 from elbowroom.site import Site
+from elbowroom.sources import cameras_of
 
 HIP_M = 1.1
 """Height of the horizontal section above the box's floor [m]."""

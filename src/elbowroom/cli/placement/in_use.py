@@ -11,7 +11,6 @@ from elbowroom.cli.placement.simulate import walled_room
 from elbowroom.cli.screen import show
 from elbowroom.files.json_rows import json_rows
 from elbowroom.placement.bill import bill, bill_table
-from elbowroom.placement.cameras import cameras_of
 from elbowroom.placement.candidates import Candidate, candidates_of
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.in_use import FoundInUse, optimise_in_use
@@ -20,6 +19,7 @@ from elbowroom.placement.rehearsal import Rehearsal, Settings, rehearse
 from elbowroom.placement.scenes import random_scenes
 from elbowroom.site import Site
 from elbowroom.site.written import write_site
+from elbowroom.sources import cameras_of
 
 OTHER_SEED = 1000
 

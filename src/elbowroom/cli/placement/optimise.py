@@ -13,14 +13,15 @@ from elbowroom.cli.screen import show
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
 from elbowroom.placement.bill import bill, bill_table
-from elbowroom.placement.cameras import cameras_of, requirement_of
 from elbowroom.placement.candidates import candidates_of
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.optimisation import Goal, Optimised, Search, optimise
 from elbowroom.placement.pictures import save_pictures
+from elbowroom.placement.requirement import requirement_of
 from elbowroom.site import Site
 from elbowroom.site.site import THESIS_ROOM
 from elbowroom.site.written import write_site
+from elbowroom.sources import cameras_of
 
 
 def run_optimise(options: OptimiseOptions, json_file: Path | None) -> None:

@@ -12,11 +12,11 @@ from elbowroom.cli.placement.options import SimulateOptions
 from elbowroom.cli.screen import note, show
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
-from elbowroom.placement.cameras import cameras_of
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.rehearsal import Rehearsal, Settings, rehearse
 from elbowroom.placement.scenes import random_scenes
 from elbowroom.site import Site
+from elbowroom.sources import cameras_of
 from elbowroom.view.report.blocks import Table
 
 WORTH = "contributes: what would not be found had it never hung there; lost: if it fails, it disputes all it looks at"

@@ -13,12 +13,11 @@ from elbowroom.cli.screen import note, show
 from elbowroom.errors import InputError
 from elbowroom.files.atomic import folder
 from elbowroom.files.json_rows import AddRow, json_rows
-from elbowroom.placement.cameras import requirement_of
 from elbowroom.placement.charts import curve
 from elbowroom.placement.even import Sweep, sweep
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.pictures import save
-from elbowroom.placement.requirement import Requirement
+from elbowroom.placement.requirement import Requirement, requirement_of
 from elbowroom.placement.sensor import Sensor, known_sensors, sensors_of
 from elbowroom.site import Site
 from elbowroom.site.room_entry import BoxEntry, RoomEntry

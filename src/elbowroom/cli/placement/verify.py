@@ -11,12 +11,13 @@ from elbowroom.cli.placement.options import VerifyOptions
 from elbowroom.cli.progress import Steps
 from elbowroom.files.json_rows import json_rows
 from elbowroom.geometry import VoxelGrid
-from elbowroom.placement.cameras import cameras_of, requirement_of
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.pictures import save_pictures
+from elbowroom.placement.requirement import requirement_of
 from elbowroom.placement.verification import Verification, verify
 from elbowroom.placement.worst import worst_places
 from elbowroom.site import Site
+from elbowroom.sources import cameras_of
 
 NO_WALLS = "the site has no key room: nothing blocks sight, and every pixel is taken to have a return"
 
