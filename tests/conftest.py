@@ -16,6 +16,23 @@ PROJECT = Path(__file__).resolve().parents[1]
 EXAMPLES = PROJECT / "examples"
 
 
+MANY = 500
+"""A run of fewer tests compiles what it comes to use."""
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Compiles on all cores before the first test what a whole run would compile one test after the other."""
+    if len(session.items) < MANY or session.config.option.collectonly or numba.config.DISABLE_JIT:
+        return
+    from elbowroom.geometry.parallel import default_threads
+    from elbowroom.monitor.start.compiling import run_jobs
+    from elbowroom.monitor.start.kernel_jobs import JOBS
+
+    wanted = [job for job in JOBS if not job.is_kept]
+    if wanted:
+        run_jobs(wanted, default_threads(), lambda name, state: None)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _kept_apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What is kept from one process to the next is kept in a folder of the tests, not in the user's."""

@@ -1,6 +1,8 @@
 """The house keeps its figures, and whoever counts them counts right."""
 
 import inspect
+import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -19,7 +21,7 @@ def today() -> House:
 
 def told(figure: str, offenders: Sequence[Place]) -> str:
     """What a failing figure says."""
-    return "\n".join([f"{figure}, see `python tests/reference/house.py --list`:", *map(str, offenders)])
+    return "\n".join([f"{figure}, see `python tests/house_report.py --list`:", *map(str, offenders)])
 
 
 # figures of the house
@@ -294,3 +296,18 @@ def test_kernels_are_counted_by_module_and_by_folder(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     assert [place.line for place in house.kernel_lines(path)] == [4, 5, 7]
+
+
+def test_the_report_names_each_figure_and_where() -> None:
+    report = Path(__file__).with_name("house_report.py")
+    done = subprocess.run([sys.executable, report, "--list"], capture_output=True, text=True, check=True)
+    for figure in (
+        "parameters, 90 % / max",
+        "code lines",
+        "calls",
+        "circles",
+        "Args",
+        "lines that name kernels",
+    ):
+        assert figure in done.stdout
+    assert all(str(place) in done.stdout for place in house.kernel_lines())

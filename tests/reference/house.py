@@ -1,17 +1,11 @@
 """The figures of the house, counted from the sources alone: nothing of the package is imported.
 
-    python tests/reference/house.py                  the figures, beside what they were and what is due
-    python tests/reference/house.py --list           and every offender, sorted by folder
-    python tests/reference/house.py --list reconstruct/ motion/check.py      those of these places only
-    python tests/reference/house.py other/src/elbowroom                      of another checkout
-
 Functions and methods are counted wherever they stand, also within others; lambdas are not. `self` and `cls` are no
 parameters. A typer command is a function that is decorated with, or handed to, `<app>.command(...)` or
 `<app>.callback(...)`. Code lines are those below the line of the `def`; docstrings, blank lines and comments are
 none. Files of kernels are `kernels/` and all that lies in a folder `kernels`.
 """
 
-import argparse
 import ast
 import io
 import re
@@ -333,77 +327,3 @@ def _circles(edges: dict[str, set[str]]) -> list[list[str]]:
     reach = {node: reached(node) for node in edges}
     circles = {frozenset(other for other in reach[node] if node in reach[other]) for node in edges}
     return sorted(sorted(circle) for circle in circles if len(circle) > 1)
-
-
-@dataclass(frozen=True)
-class Figure:
-    """A line of the report: what it was before the house was moved, what is due, what is now, and who offends."""
-
-    name: str
-    before: str
-    due: str
-    now: str
-    offenders: list[Place]
-
-
-def figures(house: House, kernels: list[Place]) -> list[Figure]:
-    """All figures of the report."""
-    outside, everything, lines = house.parameters(), house.parameters(commands=True), house.code_lines()
-    calls, many, long = house.positional_calls(), house.many_parameters(), house.long_functions()
-    asked, silent = len(house.explained()), house.unexplained()
-    files, folders = len(house.file_circles()), len(house.folder_circles())
-
-    commands = f"with commands {nine_tenths(everything)} / {max(everything)}"
-    most = f"{nine_tenths(outside)} / {max(outside)} ({commands})"
-    longest = f"{nine_tenths(lines)} / {max(lines)} ({above_nine_tenths(lines, DUE_LINES)})"
-    told = f"{asked - len(silent)} of {asked}, {(asked - len(silent)) / max(asked, 1):.0%}"
-    circles = f"{files + folders} ({files} of files, {folders} of folders)"
-    return [
-        Figure("parameters, 90 % / max", "6 / 25", f"{DUE_PARAMETERS} / {MOST_PARAMETERS}", most, many),
-        Figure("code lines, 90 % / max", "27 / 107", f"{DUE_LINES} / {MOST_LINES}", longest, long),
-        Figure("calls with nine positions or more", "58", f"{DUE_CALLS}", f"{len(calls)}", calls),
-        Figure("circles", "3", f"{DUE_CIRCLES}", circles, house.circle_places()),
-        Figure("Args told at three arguments or more", "53 %", f"{DUE_ARGS:.0%}", told, silent),
-        Figure("lines that name kernels", "81", f"{DUE_KERNEL_LINES}", f"{len(kernels)}", kernels),
-    ]
-
-
-def by_folder(figures: list[Figure], places: list[str]) -> Iterator[str]:
-    """Lines of the list: folder, figure, offenders. Places are beginnings of paths; none: all."""
-    found = [
-        (str(PurePosixPath(place.file).parent), figure.name, place)
-        for figure in figures
-        for place in figure.offenders
-        if not places or any(place.file.startswith(start) for start in places)
-    ]
-    order = [figure.name for figure in figures]
-    last = ("", "")
-    for folder, name, place in sorted(found, key=lambda row: (row[0], order.index(row[1]), row[2])):
-        if folder != last[0]:
-            here = sum(row[0] == folder for row in found)
-            yield f"\n{folder}/  ({here})"
-        if (folder, name) != last:
-            yield f"  {name}"
-        yield f"    {place}"
-        last = (folder, name)
-
-
-def main() -> None:
-    """Prints the report."""
-    parser = argparse.ArgumentParser(description="The figures of the house.")
-    parser.add_argument("source", nargs="?", type=Path, default=SOURCE, help="folder of the package")
-    parser.add_argument("--list", nargs="*", metavar="PLACE", help="offenders, of all or of these places")
-    asked = parser.parse_args()
-    source = asked.source.resolve()
-    found = figures(House(source), kernel_lines(source.parents[1] / "pyproject.toml"))
-    print(f"{'':38}{'before':>9}{'due':>9}   now")
-    for figure in found:
-        print(
-            f"{figure.name:38}{figure.before:>9}{figure.due:>9}   {figure.now}; {len(figure.offenders)} listed"
-        )
-    if asked.list is not None:
-        print(*by_folder(found, asked.list), sep="\n")
-
-
-if __name__ == "__main__":
-    main()

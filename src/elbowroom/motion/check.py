@@ -12,7 +12,7 @@ from elbowroom.geometry import bits, parallel
 from elbowroom.machine import Machine
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.course import Way, way_of
-from elbowroom.motion.kernels.sweep import Skin
+from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.volume import Volume
 from elbowroom.motion.motion import JointPath, Motion
 from elbowroom.motion.skin import skin_of

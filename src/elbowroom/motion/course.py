@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.machine import Machine
-from elbowroom.motion.kernels.sweep import Course
+from elbowroom.motion.kernels.mover import Course
 from elbowroom.motion.motion import JointPath, Motion
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
 from elbowroom.machine.samples import ROUNDING_M, BodySamples, body_samples
-from elbowroom.motion.kernels.sweep import Skin
+from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.triangles import list_patches
 
 

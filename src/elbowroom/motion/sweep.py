@@ -9,7 +9,8 @@ from elbowroom.geometry import bits
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED, SLIDES
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels.sweep import Halvings, Skin, bound_speeds, first_block
+from elbowroom.motion.kernels.mover import Skin, bound_speeds
+from elbowroom.motion.kernels.sweep import Halvings, first_block
 from elbowroom.motion.kernels.volume import Volume, block, gather_corners
 from elbowroom.reconstruct.free_space import FreeSpace
 

@@ -13,7 +13,8 @@ from elbowroom.reconstruct.images import Image, RoomImages
 from elbowroom.reconstruct.kernels import pyramid as pyramid
 from elbowroom.reconstruct.kernels.box import ALL
 from elbowroom.reconstruct.kernels.camera import Texels
-from elbowroom.reconstruct.kernels.pixel import VOXEL, settle_word
+from elbowroom.reconstruct.kernels.cone import VOXEL
+from elbowroom.reconstruct.kernels.pixel import settle_word
 from elbowroom.reconstruct.kernels.place import Boxes
 from elbowroom.reconstruct.layout import layout_of
 from elbowroom.reconstruct.records import counting_of, cut_out

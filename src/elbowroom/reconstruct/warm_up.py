@@ -9,7 +9,8 @@ from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.kernels.pixel import VOXEL, settle_word
+from elbowroom.reconstruct.kernels.cone import VOXEL
+from elbowroom.reconstruct.kernels.pixel import settle_word
 from elbowroom.reconstruct.kernels.place import Boxes
 from elbowroom.reconstruct.layout import layout_of
 from elbowroom.reconstruct.reconstruct import reconstruct

@@ -11,8 +11,9 @@ from numba import njit
 
 from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
 from elbowroom.reconstruct.kernels.box import ALL, LANES
+from elbowroom.reconstruct.kernels.cone import VOXEL
 from elbowroom.reconstruct.kernels.look import Look, ask, contested, measured_at_centre, sort_out
-from elbowroom.reconstruct.kernels.pixel import VOXEL, settle_word
+from elbowroom.reconstruct.kernels.pixel import settle_word
 from elbowroom.reconstruct.kernels.place import blocks_of, cube_at, voxels_of
 from elbowroom.reconstruct.kernels.planes import (
     DISPUTED,
@@ -29,7 +30,7 @@ from elbowroom.reconstruct.kernels.planes import (
 class Scratch(NamedTuple):
     """Memory of one kernel.
 
-    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.pixel`; in arrays, or nothing would hold their
+    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.cone`; in arrays, or nothing would hold their
     memory. By camera of a cube: through, mixed (n,): blocks that it sees through, and those that must be asked voxel by
     voxel; undecided (n,): blocks with voxels left for the pixel test; unsettled, stopped (n, 64): which voxels, and
     which of these it surely does not see through.

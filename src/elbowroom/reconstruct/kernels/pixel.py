@@ -1,10 +1,5 @@
 """The exit test: one voxel against every pixel whose widened cone meets it (docs/architecture.md, "The pixel test").
 
-A pixel's cone holds the directions (x, y, 1) with u within 0.5 + lateral of its centre. Along grid axis a such a
-direction moves by d_a(u, v), linear in u and v. With the voxel's faces at low_a and high_a from the camera's centre,
-the cone has left the voxel at depth t once t * d_a is beyond the far face for some axis, has not reached it while
-t * d_a is before the near face for some axis, and misses it if it passes a silhouette edge on the outer side.
-
 What stands in inner loops is inlined by LLVM (`forceinline`): a call would cost more than the arithmetic.
 """
 
@@ -15,21 +10,14 @@ from numba import njit
 
 from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
 from elbowroom.geometry.kernels.noise import margin_at
-from elbowroom.geometry.kernels.pinhole import pixel_of
 from elbowroom.geometry.kernels.rigid import moved
 from elbowroom.reconstruct.kernels.box import PLANE_EPS
+from elbowroom.reconstruct.kernels.cone import Pixel, has_left, misses, not_reached, prepare, steepness
 from elbowroom.reconstruct.kernels.place import box_in
-from elbowroom.reconstruct.kernels.texels import NEUTRAL, NO_RETURN
+from elbowroom.reconstruct.kernels.texels import NEUTRAL, NO_RETURN, greatest_of
 
 THROUGH, DISPUTES, IS_SURFACE, IS_BLIND, BLOCKED = 1, 2, 4, 8, 16
 """Answers. BLOCKED is said within this file alone: some pixel is not free beyond the voxel."""
-
-VOXEL = np.dtype((np.record, [("low", "f8", 3), ("high", "f8", 3), ("lines", "i8"), ("line", "f8", (6, 4))]))
-"""Scratch memory for one voxel and camera: its faces, as seen from the camera's centre [m], and silhouette lines.
-
-A pixel is beyond a line, outside the voxel, where line[0] + line[1] u + line[2] v + line[3] < 0; the last is the line's
-half width over a widened pixel.
-"""
 
 
 class Pixels(NamedTuple):
@@ -51,108 +39,10 @@ class Depths(NamedTuple):
     hidden_to: np.uint32
 
 
-class Pixel(NamedTuple):
-    """One pixel: its column and row, up to where it is free [quanta], and the texel of what it measured."""
-
-    u: int
-    v: int
-    free_to: np.uint32
-    measured: np.uint32
-
-
-@uncounted(cache=True, error_model="numpy")
-def _silhouette(b, c, rays, voxel):
-    """Adds the two lines that bound the voxel as seen along the third axis; none if the camera is within its shadow.
-
-    In the plane of axes b and c the voxel is a rectangle; the directions that meet it lie between two of its corners.
-    """
-    low_b, high_b, low_c, high_c = voxel.low[b], voxel.high[b], voxel.low[c], voxel.high[c]
-    if low_b <= 0.0 <= high_b and low_c <= 0.0 <= high_c:
-        return
-    # the extreme corners, counter-clockwise from `first` to `second` as seen from the origin
-    if low_b > 0.0:
-        first_b, first_c = (high_b, low_c) if low_c > 0.0 else (low_b, low_c)
-        second_b, second_c = (high_b, high_c) if high_c < 0.0 else (low_b, high_c)
-    elif high_b < 0.0:
-        first_b, first_c = (low_b, high_c) if high_c < 0.0 else (high_b, high_c)
-        second_b, second_c = (low_b, low_c) if low_c > 0.0 else (high_b, low_c)
-    elif low_c > 0.0:
-        first_b, first_c, second_b, second_c = high_b, low_c, low_b, low_c
-    else:
-        first_b, first_c, second_b, second_c = low_b, high_c, high_b, high_c
-    for corner in range(2):
-        # inside where cross(first, d) >= 0 and cross(d, second) >= 0
-        pb = first_b if corner == 0 else -second_b
-        pc = first_c if corner == 0 else -second_c
-        for n in range(3):
-            voxel.line[voxel.lines, n] = pb * rays[n, c] - pc * rays[n, b]
-        voxel.lines += 1
-
-
-@uncounted(cache=True, error_model="numpy")
-def _prepare(camera, box, voxel):
-    """Fills the scratch record for one voxel and camera."""
-    half = 0.5 * box.edge
-    wide = 0.5 + camera.lateral_px
-    for a in range(3):
-        middle = (box.x if a == 0 else (box.y if a == 1 else box.z)) - camera.centre_in_world[a]
-        voxel.low[a] = middle - half
-        voxel.high[a] = middle + half
-    voxel.lines = 0
-    # not literals: numba would compile it once for each of them
-    first, second, third = np.int64(0), np.int64(1), np.int64(2)
-    _silhouette(first, second, camera.ray, voxel)
-    _silhouette(second, third, camera.ray, voxel)
-    _silhouette(third, first, camera.ray, voxel)
-    for n in range(voxel.lines):
-        voxel.line[n, 3] = (abs(voxel.line[n, 1]) + abs(voxel.line[n, 2])) * wide
-
-
-@uncounted(cache=True, forceinline=True)
-def _misses(voxel, u, v):
-    """Whether a pixel's cone passes the voxel."""
-    for n in range(voxel.lines):
-        line = voxel.line[n]
-        if line[0] + line[1] * u + line[2] * v + line[3] < 0.0:
-            return True
-    return False
-
-
-@uncounted(cache=True, forceinline=True)
-def _has_left(camera, voxel, pixel, t):
-    """Whether all of the pixel's cone is beyond the voxel from depth t on."""
-    for a in range(3):
-        d = camera.ray[0, a] + camera.ray[1, a] * pixel.u + camera.ray[2, a] * pixel.v
-        low, high = d - camera.ray_half_width[a], d + camera.ray_half_width[a]
-        if low >= 0.0 and t * low > voxel.high[a]:
-            return True
-        if high <= 0.0 and t * high < voxel.low[a]:
-            return True
-    return False
-
-
-@uncounted(cache=True, forceinline=True)
-def _not_reached(camera, voxel, pixel, t):
-    """Whether no part of the pixel's cone has reached the voxel up to depth t."""
-    for a in range(3):
-        d = camera.ray[0, a] + camera.ray[1, a] * pixel.u + camera.ray[2, a] * pixel.v
-        if max(t * (d + camera.ray_half_width[a]), 0.0) < voxel.low[a]:
-            return True
-        if min(t * (d - camera.ray_half_width[a]), 0.0) > voxel.high[a]:
-            return True
-    return False
-
-
-@njit(inline="always")
-def _greatest(texel):
-    """Greatest depth of a texel [quanta]."""
-    return np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
-
-
 @njit(inline="always")
 def _says_nothing(measured, depths):
     """Whether measured bounds lie wholly behind a voxel, or wholly before it, or are `NEUTRAL`: no dispute."""
-    return measured >> np.uint32(16) >= depths.clear_from or _greatest(measured) <= depths.hidden_to
+    return measured >> np.uint32(16) >= depths.clear_from or greatest_of(measured) <= depths.hidden_to
 
 
 @uncounted(cache=True)
@@ -253,35 +143,21 @@ def _bounds_about(camera, texels, pixels):
 
 
 @uncounted(cache=True, error_model="numpy", forceinline=True)
-def _steepness(camera, u, v):
-    """Of the directions in a pixel's cone, the least and the greatest ratio of the camera's depth to planar depth."""
-    steep_near, steep_far = 1.0, 1.0
-    if camera.radial:
-        wide = 0.5 + camera.lateral_px
-        xn, yn = abs(u - camera.cx) / camera.fx, abs(v - camera.cy) / camera.fy
-        wx, wy = wide / camera.fx, wide / camera.fy
-        steep_far = np.sqrt(1.0 + (xn + wx) * (xn + wx) + (yn + wy) * (yn + wy))
-        xl, yl = max(xn - wx, 0.0), max(yn - wy, 0.0)
-        steep_near = np.sqrt(1.0 + xl * xl + yl * yl)
-    return steep_near, steep_far
-
-
-@uncounted(cache=True, error_model="numpy", forceinline=True)
 def _ask_pixel(camera, depths, voxel, pixel):
     """What one pixel whose cone meets the voxel says of it: 0, or BLOCKED with what else it says."""
     quantum, margin = camera.quantum, depths.margin
-    steep_near, steep_far = _steepness(camera, pixel.u, pixel.v)
-    if _has_left(camera, voxel, pixel, (pixel.free_to * quantum - margin) / steep_far):
+    steep_near, steep_far = steepness(camera, pixel.u, pixel.v)
+    if has_left(camera, voxel, pixel, (pixel.free_to * quantum - margin) / steep_far):
         return 0
     if _says_nothing(pixel.measured, depths):
         return BLOCKED
-    greatest = _greatest(pixel.measured)
+    greatest = greatest_of(pixel.measured)
     if greatest == NO_RETURN:
         return BLOCKED | DISPUTES | IS_BLIND
     least = pixel.measured >> np.uint32(16)
-    if _not_reached(camera, voxel, pixel, (greatest * quantum + margin) / steep_near):
+    if not_reached(camera, voxel, pixel, (greatest * quantum + margin) / steep_near):
         return BLOCKED
-    if _has_left(camera, voxel, pixel, (least * quantum - margin) / steep_far):
+    if has_left(camera, voxel, pixel, (least * quantum - margin) / steep_far):
         return BLOCKED
     return BLOCKED | DISPUTES | IS_SURFACE
 
@@ -309,10 +185,10 @@ def _ask_pixels(camera, texels, pixels, depths, voxel):
                     # one that can add nothing to what is known already
                     if answer & BLOCKED and (
                         _says_nothing(measured, depths)
-                        or (answer & IS_BLIND and _greatest(measured) == NO_RETURN)
+                        or (answer & IS_BLIND and greatest_of(measured) == NO_RETURN)
                     ):
                         continue
-                    if _misses(voxel, u, v):
+                    if misses(voxel, u, v):
                         continue
                     answer |= _ask_pixel(camera, depths, voxel, Pixel(u, v, free_to, measured))
                     if answer & IS_SURFACE:
@@ -348,7 +224,7 @@ def settle_voxel(camera, texels, box, voxel):
         return free
     if most <= depths.hidden_to:
         return 0
-    _prepare(camera, box, voxel)
+    prepare(camera, box, voxel)
     answer = _ask_pixels(camera, texels, pixels, depths, voxel)
     return answer & ~BLOCKED if answer else free
 
@@ -378,30 +254,3 @@ def settle_word(camera, texels, voxels, boxes, voxel):
         if answer & IS_BLIND:
             blind |= bit
     return through, disputed, surface, blind
-
-
-@uncounted(cache=True, error_model="numpy")
-def settle_centre(camera, doubt_texels, box):
-    """The thesis' depth test (section 3.1): the voxel's centre against the one pixel that it projects to."""
-    px, py, pz = moved(camera.camera_from_world, box.x, box.y, box.z)
-    if pz <= PLANE_EPS:
-        return 0
-    column, line = pixel_of(camera, px, py, pz)
-    u, v = np.floor(column + 0.5), np.floor(line + 0.5)
-    if not (u >= 0.0 and u < camera.width and v >= 0.0 and v < camera.height):
-        return 0
-    texel = doubt_texels[camera.first_texel + int(v) * camera.width + int(u)]
-    if texel == NEUTRAL:
-        return 0
-    least, greatest = texel >> np.uint32(16), _greatest(texel)
-    if greatest == NO_RETURN:
-        return DISPUTES | IS_BLIND
-    at = np.sqrt(px * px + py * py + pz * pz) if camera.radial else pz
-    margin, quantum = margin_at(camera.margin, at), camera.quantum
-    # texels round by a quantum or two to the safe side; the plain comparison undoes that
-    measured = (greatest - 1) * quantum
-    if measured > at + margin and least * quantum + 4 * quantum > at + margin:
-        return THROUGH
-    if measured + margin >= at - 0.5 * box.edge:
-        return DISPUTES | IS_SURFACE
-    return 0

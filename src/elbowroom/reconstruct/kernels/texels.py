@@ -134,3 +134,9 @@ def _mark_row(model, counting, trust, doubt):
             is_machine = (depth > zero) | (depth < nothing)
             doubt[u] = NEUTRAL if is_machine else doubt[u]
     return left, right
+
+
+@njit(inline="always")
+def greatest_of(texel):
+    """Greatest depth of a texel [quanta]."""
+    return np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
