@@ -181,7 +181,7 @@ def _legend(plot: Plot, cut: NDArray[np.uint8], with_machine: bool, cameras: int
         pen.ellipse((x + 5, y + 5, x + 15, y + 15), fill=CAMERA_INK)
         pen.text(
             (x + 28, y + 10),
-            f"{cameras} camera{'s' * (cameras > 1)}, and where they look",
+            "1 camera, and where it looks" if cameras == 1 else f"{cameras} cameras, and where they look",
             fill=INK,
             font=text,
             anchor="lm",
