@@ -9,6 +9,7 @@ underscore are left out.
 import pkgutil
 import sys
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 
 import elbowroom
@@ -25,8 +26,12 @@ def _is_shown(name: str) -> bool:
     return "kernels" not in words and not words[-1].startswith("_")
 
 
-def write(out: Path) -> None:
-    """Writes the pages.
+def write(out: Path, names: Sequence[str]) -> None:
+    """Writes the pages of some modules, and an index.
+
+    Args:
+        out: folder.
+        names: of the modules.
 
     Raises:
         ModuleNotFoundError: pdoc is not installed; it comes with the extras `docs` and `test`.
@@ -37,7 +42,7 @@ def write(out: Path) -> None:
     with warnings.catch_warnings():
         # a package without `__all__` brings its modules along
         warnings.filterwarnings("ignore", message="The module specification .* has already been added")
-        pdoc.pdoc(*modules(), output_directory=out)
+        pdoc.pdoc(*names, output_directory=out)
 
 
 def version() -> str:
@@ -50,5 +55,5 @@ def version() -> str:
 if __name__ == "__main__":
     if len(sys.argv) != 2:
         sys.exit("usage: python docs/reference.py FOLDER")
-    write(Path(sys.argv[1]))
+    write(Path(sys.argv[1]), modules())
     print(f"written: {Path(sys.argv[1]) / 'index.html'}")

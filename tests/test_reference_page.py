@@ -10,9 +10,12 @@ PROJECT = Path(__file__).resolve().parents[1]
 
 
 def test_the_reference_has_a_page_for_each_module_and_every_public_name(tmp_path: Path) -> None:
+    # of some modules; continuous integration makes the pages of all
     made = runpy.run_path(str(PROJECT / "docs" / "reference.py"))
-    made["write"](tmp_path)
-    for name in made["modules"]():
+    names = ("elbowroom", "elbowroom.reconstruct", "elbowroom.motion", "elbowroom.motion.verdict")
+    assert set(names) < set(made["modules"]())
+    made["write"](tmp_path, names)
+    for name in names:
         assert (tmp_path / f"{name.replace('.', '/')}.html").is_file(), name
     page = (tmp_path / "elbowroom.html").read_text(encoding="utf-8")
     for public in elbowroom.__all__:

@@ -57,7 +57,7 @@ def test_a_site_is_commissioned_again_with_one_key(commissioned, tmp_path):
 def test_a_knocked_camera_stops_the_monitor_and_is_named(commissioned, tmp_path, capsys):
     out = tmp_path / "run.json"
     assert (
-        run(["monitor", str(commissioned), "--seconds", "12", "--knock", "cam01:2deg@0", "--json", str(out)])
+        run(["monitor", str(commissioned), "--seconds", "5", "--knock", "cam01:2deg@0", "--json", str(out)])
         == 0
     )
     (summary,) = rows(out, "summary")
