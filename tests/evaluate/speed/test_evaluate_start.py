@@ -41,7 +41,7 @@ def started(monkeypatch):
 
 def test_trees_take_turns_and_a_first_call_is_due_in_a_third(started, tmp_path):
     rows = list(start.start_rows(3, tmp_path))
-    assert [what for what, _ in started] == ["alone", "machine"] * 2 * 4
+    assert [what for what, _ in started] == ["alone", "machine", "readme"] * 2 * 4
     assert {row["rounds"] for row in rows} == {3}
     for row in rows:
         assert 100 < row["median_ms"] <= row["p99_ms"] <= row["max_ms"] < 101 < row["before_ms"] < 401
