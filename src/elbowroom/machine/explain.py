@@ -97,7 +97,7 @@ def explain_frames(
     images = [_image(camera, depth) for camera, depth in zip(cameras, depths, strict=True)]
     placed = _camera_from_links(machine, cameras, joints_per_camera)
     near_body = _Near(machine, grid, growth_m)
-    mesh, tolerance = mesh_of(machine), Tolerance(float(tolerance_m), float(tolerance_sigmas))
+    mesh = mesh_of(machine)
     canvases: deque[NDArray[np.float32]] = deque()
     tolerance = Tolerance(float(tolerance_m), float(tolerance_sigmas))
 

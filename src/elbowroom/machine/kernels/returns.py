@@ -153,7 +153,7 @@ def mark_row_of_tiles(view, depth, model, row, around, scratch):
         _mark_row(view, depth, model, v, left, right, around, scratch)
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def _limit(view, row, around, limits):
     """Writes the depths that are looked for in the pixels of a row of tiles; first and one past the last column."""
     near, far, width, least, most = around.near, around.far, view.width, limits[0], limits[1]
@@ -167,7 +167,7 @@ def _limit(view, row, around, limits):
     return left, right
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def _find(depth, model, limits, left, right, found):
     """Notes the pixels of a row that are not explained and whose depth lies within their limits."""
     least, most = limits[0], limits[1]
@@ -183,7 +183,7 @@ def _find(depth, model, limits, left, right, found):
         )
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def _mark_row(view, depth, model, v, left, right, around, scratch):
     """Sets the voxels of the returns that were found in one row of pixels, from column left up to right."""
     # taken out of the tuples once: each look into them counts references, which costs more than the arithmetic below
