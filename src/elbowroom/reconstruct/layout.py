@@ -15,7 +15,8 @@ from elbowroom.geometry.bits import Words
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.kernels.camera import Texels
 from elbowroom.reconstruct.kernels.pyramid import TILE_LEVEL
-from elbowroom.reconstruct.records import Records, records_of
+from elbowroom.reconstruct.kernels.texels import Counting
+from elbowroom.reconstruct.records import Records, counting_of, records_of
 
 SQUARES = 3
 """Of tiles of doubt, squares of 2, 4 and 8 either way are kept."""
@@ -44,6 +45,7 @@ class Layout:
     Args:
         grid, cameras: what was laid out.
         records: of the cameras, as kernels take them; what is of the moment is zero.
+        counting: how each camera counts depth; reading it from a record costs as much as a small kernel.
         texels, tiles: by camera, where its own are in arrays of all.
         windows: how many texels of windows all cameras have.
         inside: the voxels of the grid.
@@ -52,6 +54,7 @@ class Layout:
     grid: VoxelGrid
     cameras: tuple[DepthCamera, ...]
     records: Records
+    counting: tuple[Counting, ...]
     texels: tuple[slice, ...]
     tiles: tuple[slice, ...]
     windows: int
@@ -108,7 +111,8 @@ def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin)
     tiles = _one_after_the_other([sizes[TILE_LEVEL] for sizes in shapes])
     records["first_texel"] = [own.start for own in texels]
     records["first_tile"] = [own.start for own in tiles]
-    return Layout(grid, cameras, records, texels, tiles, windows, bits.inside(grid))
+    counting = tuple(map(counting_of, cameras, records))
+    return Layout(grid, cameras, records, counting, texels, tiles, windows, bits.inside(grid))
 
 
 def _put_levels(records: Records, shapes: Sequence[Sequence[tuple[int, int]]]) -> int:

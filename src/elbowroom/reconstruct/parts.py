@@ -16,8 +16,8 @@ from elbowroom.reconstruct.kernels.camera import Texels
 from elbowroom.reconstruct.kernels.cone import VOXEL
 from elbowroom.reconstruct.kernels.pixel import settle_word
 from elbowroom.reconstruct.kernels.place import Boxes
-from elbowroom.reconstruct.layout import layout_of
-from elbowroom.reconstruct.records import counting_of, cut_out
+from elbowroom.reconstruct.layout import Layout, layout_of
+from elbowroom.reconstruct.records import cut_out
 from elbowroom.reconstruct.views import NO_TEXELS, texels_of
 
 PARTS = 4
@@ -58,10 +58,10 @@ def is_seen_in_parts(
     for position, row in enumerate(rows):
         if not (seen | maybe[rows[position:]].any(axis=0)).all():
             return False
-        camera, record = images.cameras[row], layout_of(grid, images.cameras, margin).records[row]
-        bounds_m = images.least_m[camera.name], images.greatest_m[camera.name]
-        model_m, parts = model_depth.get(camera.name), _Parts(first, edge, in_cameras[row])
-        seen |= _parts_seen(camera, record, bounds_m, model_m, parts)
+        layout, name = layout_of(grid, images.cameras, margin), images.cameras[row].name
+        bounds_m = images.least_m[name], images.greatest_m[name]
+        parts = _Parts(first, edge, in_cameras[row])
+        seen |= _parts_seen(layout, row, bounds_m, model_depth.get(name), parts)
         if seen.all():
             return True
     return False
@@ -137,8 +137,8 @@ def _may_be_seen(
 
 
 def _parts_seen(
-    camera: DepthCamera,
-    record: np.record,
+    layout: Layout,
+    row: int,
     bounds_m: tuple[Image, Image],
     model_m: Image | None,
     parts: _Parts,
@@ -146,12 +146,12 @@ def _parts_seen(
     """Which parts one camera sees through, shape (parts,).
 
     Args:
-        camera, record: the camera, and what kernels know of it in the grid.
+        layout, row: cameras in the grid, and which of them.
         bounds_m: its images of least and greatest depth [m].
         model_m: what the machine explains of them [m]; None: nothing.
         parts: before it.
     """
-    corners = parts.corners
+    camera, record, corners = layout.cameras[row], layout.records[row], parts.corners
     if corners[2].min() <= NEAREST_M:
         return np.zeros(len(STEPS), dtype=np.bool_)
     window = _window(camera, float(record["lateral_px"]) + SPARE_PX, corners)
@@ -159,7 +159,7 @@ def _parts_seen(
     least_m, greatest_m = (np.ascontiguousarray(image[window]) for image in bounds_m)
     model = None if model_m is None else np.ascontiguousarray(model_m[window])
     trust, doubt = (np.empty(least_m.shape, dtype=np.uint32) for _ in range(2))
-    texels_of(camera, counting_of(camera, part), (least_m, greatest_m), model, (trust, doubt))
+    texels_of(camera, layout.counting[row], (least_m, greatest_m), model, (trust, doubt))
     texels = Texels(trust.reshape(-1), doubt.reshape(-1), _tiles(trust), _tiles(doubt), NO_TEXELS)
     x, y, z = parts.first.tolist()
     words = settle_word(part, texels, ALL, Boxes(x, y, z, parts.edge, 0), np.empty(1, VOXEL)[0])

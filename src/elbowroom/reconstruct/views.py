@@ -15,7 +15,7 @@ from elbowroom.reconstruct.kernels import texels as texels
 from elbowroom.reconstruct.kernels.camera import Views
 from elbowroom.reconstruct.kernels.texels import Counting
 from elbowroom.reconstruct.layout import SQUARES, Buffers, Layout
-from elbowroom.reconstruct.records import counting_of, margin_of, pitch_of
+from elbowroom.reconstruct.records import margin_of, pitch_of
 
 STEP = Margin(sigmas=3.0)
 STEP_WITHOUT_NOISE = Margin(range_linear=0.005)
@@ -54,9 +54,8 @@ def fill(layout: Layout, images: RoomImages, model_depth: Mapping[str, Image]) -
         apart = NOWHERE
         if name in images.least_m:
             bounds_m = images.least_m[name], images.greatest_m[name]
-            counting = counting_of(layout.cameras[c], record)
             record["explained"], apart = texels_of(
-                layout.cameras[c], counting, bounds_m, model_depth.get(name), own
+                layout.cameras[c], layout.counting[c], bounds_m, model_depth.get(name), own
             )
         else:
             record["blank"] = True
