@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from elbowroom.errors import FrameError
+from elbowroom.finding import Finding
 from elbowroom.geometry import VoxelGrid
 from elbowroom.monitor import Checks, Cycle, Health, Loop, Pass, cycle
 from elbowroom.motion import Cause, Level, Motion, Verdict
@@ -223,6 +224,30 @@ def test_a_watch_that_raises_is_a_stop_with_its_reason_and_the_run_goes_on():
     failed = face.shown[0].result
     assert failed.fault == failed.stopped_by == "RuntimeError: no such image"
     assert failed.verdicts[0].cause is Cause.FAULT and failed.health is None
+
+
+class ALook:
+    """Finds the same at every moment."""
+
+    name = "look"
+
+    def __init__(self, *findings):
+        self.findings = findings
+
+    def hear(self, snapshot):
+        return self.findings
+
+
+def test_what_a_look_finds_stops_every_motion_if_it_says_so_and_is_told_either_way():
+    mild = Finding("unit", ("c0",), "camera c0: odd", False)
+    grave = Finding("pose", ("c1",), "camera c1: turned over", True)
+    for findings, level, words in (((mild,), Level.CLEAR, None), ((mild, grave), Level.STOP, grave.text)):
+        face = Listener()
+        a_loop(Script(at(1)), Checks(looks=(ALook(*findings),))).run([face])
+        result = face.shown[0].result
+        assert (result.level, result.stopped_by, result.fault) == (level, words, None)
+        assert result.findings == findings and "look" in result.stage_ms
+    assert result.verdicts[0].cause is Cause.INPUT
 
 
 def test_the_watch_hears_no_frame_past_its_age():

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Self
 
+from elbowroom.finding import Finding
 from elbowroom.monitor.health.health import Health
 from elbowroom.monitor.health.known import Known
 from elbowroom.motion import Cause, Level, Verdict
@@ -24,6 +25,7 @@ class CycleResult:
         fault: why verdicts are missing, one sentence; None: the pass is whole.
         health: whether cameras and machine are where they are said to be; None: nobody watches, or the watch failed.
             While it names a reason, every verdict is stop.
+        findings: what the looks at the input found; while one of them stops, every verdict is stop.
     """
 
     sequence: int
@@ -34,6 +36,7 @@ class CycleResult:
     oldest_age_ms: float | None
     fault: str | None = None
     health: Health | None = None
+    findings: tuple[Finding, ...] = ()
 
     def knowing(self, known: Known) -> Self:
         """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""
@@ -45,12 +48,16 @@ class CycleResult:
             stage_ms={**known.stage_ms, **self.stage_ms},
             fault=self.fault or known.fault,
             health=known.health,
+            findings=known.findings,
         )
 
     @property
     def stopped_by(self) -> str | None:
-        """Why every verdict is stop, whatever the space is: the fault, else what the watch found; None: neither."""
-        return self.fault or (self.health.reason if self.health is not None else None)
+        """Why every verdict is stop, whatever the space is: the fault, else input that cannot be right, else what the
+        watch found; None: none of them.
+        """
+        wrong = "; ".join(finding.text for finding in self.findings if finding.stops)
+        return self.fault or wrong or (self.health.reason if self.health is not None else None)
 
     @property
     def cycle_ms(self) -> float:

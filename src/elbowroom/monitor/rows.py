@@ -1,5 +1,6 @@
 """What a run comes to as rows of a file; `Rows` is the face that writes them."""
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -70,6 +71,7 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
         "oldest_age_ms": result.oldest_age_ms,
         "fault": result.fault,
         "stopped_by": result.stopped_by,
+        "findings": [asdict(finding) for finding in result.findings],
     }
     return [cycle, *({"kind": "verdict", **shared, **verdict.row()} for verdict in result.verdicts)]
 

@@ -9,13 +9,14 @@ Levels by the first blocked voxel that the swept body meets, S being the braking
     beyond, or nothing    CLEAR        0
 
 How verdicts combine (`most_cautious`): the lowest level of this table's order wins; within a level a fault goes
-before all else, then what the watch found, then a verdict that cannot be overridden before one that can; then the one
-with the least free travel in braking distances; then the first. No verdict at all is an error, since nothing seen
-means stop.
+before all else, then input that cannot be right, then what the watch found, then a verdict that cannot be overridden
+before one that can; then the one with the least free travel in braking distances; then the first. No verdict at all is
+an error, since nothing seen means stop.
 
 | cause              | may be overridden at low speed, while an operator holds on |
 |--------------------|------------------------------------------------------------|
 | FAULT              | no: nothing is known                                       |
+| INPUT              | no: what came in cannot be meant so                        |
 | WATCH              | no: what is known comes from a camera that is elsewhere    |
 | SURFACE            | no                                                         |
 | BLIND              | no: losing evidence never makes a block overridable        |
@@ -68,12 +69,13 @@ class Cause(Enum):
     UNSEEN = "nobody sees that space"
     NONE = "nothing"
     FAULT = "this program failed, so nothing is known"
+    INPUT = "what came in cannot be right"
     WATCH = "a camera or the machine is not where it should be"
 
     @property
     def rank(self) -> int:
-        """0 for a fault, 1 for what the watch found, 2 for what was seen: the lower, the more cautious."""
-        return {Cause.FAULT: 0, Cause.WATCH: 1}.get(self, 2)
+        """0 for a fault, rising to 3 for what was seen: the lower, the more cautious."""
+        return {Cause.FAULT: 0, Cause.INPUT: 1, Cause.WATCH: 2}.get(self, 3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,8 +91,8 @@ class Verdict:
         link: the link that meets the block; None: none does.
         place_in_world: centre of the blocked voxel, or the link's point that leaves the grid [m]; None: no
             block.
-        cause: what the block is. NONE also where a joint limit, not a block, ends the travel. FAULT and WATCH are no
-            blocks: whatever the space is, nothing may move.
+        cause: what the block is. NONE also where a joint limit, not a block, ends the travel. FAULT, INPUT and WATCH
+            are no blocks: whatever the space is, nothing may move.
     """
 
     motion: Motion | JointPath

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from elbowroom.finding import Finding
 from elbowroom.monitor.health.health import Health
 from elbowroom.motion import Cause
 
@@ -15,15 +16,19 @@ class Known:
         health: of cameras and machine; None: nobody watches, or the checks failed.
         fault: why nothing is known, one sentence; None: nothing failed.
         stage_ms: time that each check took [ms].
+        findings: what the looks at the input found, those that stop and those that warn.
     """
 
     health: Health | None = None
     fault: str | None = None
     stage_ms: Mapping[str, float] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()
 
     @property
     def stop_cause(self) -> Cause | None:
-        """Why every motion is stop: a fault, or what the watch found; None: neither."""
+        """Why every motion is stop: a fault, input that cannot be right, what the watch found; None: none."""
         if self.fault is not None:
             return Cause.FAULT
+        if any(finding.stops for finding in self.findings):
+            return Cause.INPUT
         return Cause.WATCH if self.health is not None and self.health.reason is not None else None
