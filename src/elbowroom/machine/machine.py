@@ -1,13 +1,14 @@
 """The machine: links with a body, joints that move them, and where the links are."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from elbowroom.choices import ExplainWith
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
 from elbowroom.machine.joint import Joint
@@ -65,17 +66,24 @@ class Machine:
         world_from_base: ArrayLike | None = None,
         unchecked_links: Sequence[str] = (),
         package_dirs: Sequence[str | Path] = (),
+        explain_with: ExplainWith = "auto",
     ) -> "Machine":
         """Reads a URDF with its collision geometry: meshes (STL, OBJ, GLB, PLY), boxes, cylinders, spheres.
 
         A link without collision geometry takes its visual geometry if that exists. Cylinders and spheres
         become polyhedra that contain them.
 
+        Collision geometry is what a motion is swept with. It may be larger than the machine, so what cameras see of
+        it may be another surface, within it.
+
         Args:
             path: the URDF file.
             world_from_base: where its first link is, shape (4, 4), rigid; None: at the world's origin.
             unchecked_links: names of links that leave the grid by design.
             package_dirs: where to look for `package://` files, before the folders above the URDF.
+            explain_with: which geometry says what cameras see of a link. "auto": its visual geometry, if all of it can
+                be read and it fills the collision geometry without standing out of it; else the collision geometry.
+                "visual": visual geometry wherever a link has any. "collision": never.
 
         Raises:
             MachineError: the file, one of its meshes or its tree of links cannot be used; the message says
@@ -84,7 +92,7 @@ class Machine:
         # what reads meshes is slow to load, and a bare room needs none of it
         from elbowroom.machine.urdf import read_urdf
 
-        parts = read_urdf(Path(path), [Path(folder) for folder in package_dirs])
+        parts = read_urdf(Path(path), [Path(folder) for folder in package_dirs], explain_with)
         base = np.eye(4) if world_from_base is None else np.asarray(world_from_base, dtype=np.float64)
         return cls(*parts, world_from_base=base, unchecked_links=tuple(unchecked_links))
 
@@ -104,6 +112,13 @@ class Machine:
         return tuple(
             link.name for link in self.links if link.has_geometry and link.name not in self.unchecked_links
         )
+
+    @cached_property
+    def as_seen(self) -> "Machine":
+        """The machine with what cameras see of its links for a body; itself, where that is its collision geometry."""
+        if all(link.seen is None for link in self.links):
+            return self
+        return replace(self, links=tuple(link.as_seen for link in self.links))
 
     def joint(self, name: str) -> Joint:
         """The commanded joint of this name.

@@ -81,8 +81,8 @@ def canvas(height: int, width: int, inverse: NDArray[np.float32] | None = None) 
 
 @kept
 def mesh_of(machine: Machine) -> Mesh:
-    """All triangles of the machine as kernels take them; made once."""
-    links = machine.links
+    """All triangles that cameras see of the machine, as kernels take them; made once."""
+    links = [link.as_seen for link in machine.links]
     counts = np.cumsum([0] + [len(link.vertices) for link in links])
     centre = np.zeros((len(links), 3))
     radius = np.zeros(len(links))

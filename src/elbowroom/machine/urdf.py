@@ -10,12 +10,14 @@ from lxml import etree
 from numpy.typing import NDArray
 from yourdfpy import urdf as yourdf
 
+from elbowroom.choices import ExplainWith
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
 from elbowroom.machine.joint import Joint, Mimic
 from elbowroom.machine.kernels.body import FIXED, SLIDES, TURNS, Tree
-from elbowroom.machine.link import Link
-from elbowroom.machine.meshes import mesh_path, triangles_of
+from elbowroom.machine.link import Link, Surface
+from elbowroom.machine.meshes import Triangles, mesh_path, triangles_of
+from elbowroom.machine.seen import is_drawn_as_it_collides, seen_surface
 
 MAX_URDF_BYTES = 16_000_000
 """A larger file is refused."""
@@ -32,12 +34,13 @@ class Parts(NamedTuple):
     tree: Tree
 
 
-def read_urdf(path: Path, package_dirs: Sequence[Path]) -> Parts:
+def read_urdf(path: Path, package_dirs: Sequence[Path], explain_with: ExplainWith = "auto") -> Parts:
     """The machine that a URDF describes.
 
     Args:
         path: the file.
         package_dirs: folders in which `package://` is looked for, before the folders above the URDF.
+        explain_with: which geometry says what cameras see of a link (`seen_surface`).
 
     Raises:
         MachineError: no such file, not XML, not a tree of links, a joint of an unknown kind or without
@@ -47,7 +50,7 @@ def read_urdf(path: Path, package_dirs: Sequence[Path]) -> Parts:
     order = _tree_order(robot, path)
     into = {joint.child: joint for joint in robot.joints}
     by_name = {link.name: link for link in robot.links}
-    links = tuple(_link(by_name[name], path, package_dirs) for name in order)
+    links = tuple(_link(by_name[name], path, package_dirs, explain_with) for name in order)
     if not any(link.has_geometry for link in links):
         raise MachineError(f"{path}: no link has a mesh, box, cylinder or sphere; a machine needs a body")
     joints = tuple(_joint(into[name], path) for name in order if name in into and into[name].type in MOVABLE)
@@ -106,14 +109,43 @@ def _tree_order(robot: yourdf.Robot, path: Path) -> list[str]:
     return order
 
 
-def _link(link: yourdf.Link, path: Path, package_dirs: Sequence[Path]) -> Link:
+def _link(link: yourdf.Link, path: Path, package_dirs: Sequence[Path], explain_with: ExplainWith) -> Link:
     """Collision geometry; without any, the visual geometry as far as its files exist."""
-    required = bool(link.collisions)
-    vertices: list[NDArray[np.float64]] = [np.zeros((0, 3))]
-    faces: list[NDArray[np.int64]] = [np.zeros((0, 3), dtype=np.int64)]
-    count = 0
-    for shape in link.collisions or link.visuals:
-        what = f"{path}: link {link.name}"
+    what, required = f"{path}: link {link.name}", bool(link.collisions)
+    shapes = _shapes(link.collisions or link.visuals, path, package_dirs, what, required)
+    body, seen = _together(shapes), None
+    if required and not is_drawn_as_it_collides(link) and explain_with != "collision":
+        try:
+            visual = _together(_shapes(link.visuals, path, package_dirs, what, True))
+        except MachineError:
+            if explain_with == "visual":
+                raise
+            visual = _together([])
+        seen = seen_surface(visual, body, [points for points, _ in shapes], explain_with)
+    return Link(link.name, body.vertices, body.faces, seen)
+
+
+def _shapes(
+    shapes: Sequence[yourdf.Collision | yourdf.Visual],
+    path: Path,
+    package_dirs: Sequence[Path],
+    what: str,
+    required: bool,
+) -> list[Triangles]:
+    """The triangles of each shape of a link, in the link's frame.
+
+    Args:
+        shapes: as yourdfpy parsed them.
+        path: the URDF.
+        package_dirs: of `read_urdf`.
+        what: how errors name the link.
+        required: whether a file that is missing is an error; else its shape is left out.
+
+    Raises:
+        MachineError: a mesh that is missing, or a shape that none can be.
+    """
+    found = []
+    for shape in shapes:
         file = None
         if shape.geometry.mesh is not None:
             file = mesh_path(shape.geometry.mesh.filename or "", path, package_dirs)
@@ -128,10 +160,22 @@ def _link(link: yourdf.Link, path: Path, package_dirs: Sequence[Path]) -> Link:
         if shape.origin is not None:
             link_from_shape = nearest_rigid(shape.origin, f"{what}: origin", MachineError)
             points = points @ link_from_shape[:3, :3].T + link_from_shape[:3, 3]
-        vertices.append(points)
-        faces.append(triangles + count)
-        count += len(points)
-    return Link(link.name, np.concatenate(vertices), np.concatenate(faces))
+        found.append((points, triangles))
+    return found
+
+
+def _together(shapes: Sequence[Triangles]) -> Surface:
+    """All shapes of a link as one surface."""
+    firsts = np.cumsum([0] + [len(points) for points, _ in shapes])
+    return Surface(
+        np.concatenate([np.zeros((0, 3)), *(points for points, _ in shapes)]),
+        np.concatenate(
+            [
+                np.zeros((0, 3), dtype=np.int64),
+                *(faces + first for (_, faces), first in zip(shapes, firsts, strict=False)),
+            ]
+        ),
+    )
 
 
 def _joint(joint: yourdf.Joint, path: Path) -> Joint:

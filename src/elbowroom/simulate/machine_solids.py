@@ -66,4 +66,8 @@ def _limits(machine: Machine, name: str) -> tuple[float, float]:
 
 @kept
 def _meshes_of(machine: Machine) -> dict[str, Mesh]:
-    return {link.name: Mesh(link.vertices, link.faces) for link in machine.links if link.has_geometry}
+    return {
+        link.name: Mesh(link.as_seen.vertices, link.as_seen.faces)
+        for link in machine.links
+        if link.has_geometry
+    }
