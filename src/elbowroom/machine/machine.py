@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
 
@@ -12,8 +13,10 @@ from elbowroom.choices import ExplainWith
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
 from elbowroom.machine.joint import Joint
-from elbowroom.machine.kernels.body import Tree, place_links
+from elbowroom.machine.kernels.body import FIXED, Tree, place_links
 from elbowroom.machine.link import Link
+from elbowroom.machine.part import Part
+from elbowroom.machine.stand import Stand
 
 LIMIT_TOLERANCE = 1e-6
 """Joint positions beyond a limit by this much are rounding, not a fault [m or rad]."""
@@ -34,9 +37,12 @@ class Machine:
         tree: parents, fixed transforms and axes by link, as the kernels take them.
         world_from_base: where the first link is, shape (4, 4), rigid.
         unchecked_links: links that may leave the grid by design and are not checked for collision.
+        allowed_contacts: pairs of names of links that may touch, besides neighbours; a name may hold wildcards ("*").
+        stands: what some links may touch: a table, the floor.
+        parts: names of the links that are carried (`with_part`).
 
     Raises:
-        MachineError: `world_from_base` is not rigid, or an unchecked link does not exist.
+        MachineError: `world_from_base` is not rigid, or a link that is named does not exist.
     """
 
     name: str
@@ -45,6 +51,9 @@ class Machine:
     tree: Tree = field(repr=False)
     world_from_base: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     unchecked_links: tuple[str, ...] = ()
+    allowed_contacts: tuple[tuple[str, str], ...] = ()
+    stands: tuple[Stand, ...] = ()
+    parts: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         what = f"machine {self.name}"
@@ -56,6 +65,21 @@ class Machine:
             if name not in self.link_names:
                 raise MachineError(
                     f"{what}: unchecked link {name!r} does not exist; links are {', '.join(self.link_names)}"
+                )
+        object.__setattr__(self, "allowed_contacts", tuple((a, b) for a, b in self.allowed_contacts))
+        object.__setattr__(self, "stands", tuple(self.stands))
+        for stand in self.stands:
+            self._require_links("stands_on", stand.links)
+        for pair in self.allowed_contacts:
+            self._require_links("allowed_contacts", pair)
+
+    def _require_links(self, what: str, names: Sequence[str]) -> None:
+        """Each name, which may hold wildcards, is that of a link."""
+        for name in names:
+            if not any(fnmatchcase(link, name) for link in self.link_names):
+                raise MachineError(
+                    f"machine {self.name}: {what}: link {name!r} does not exist; links are "
+                    f"{', '.join(self.link_names)}"
                 )
 
     @classmethod
@@ -119,6 +143,86 @@ class Machine:
         if all(link.seen is None for link in self.links):
             return self
         return replace(self, links=tuple(link.as_seen for link in self.links))
+
+    def standing_on(self, *stands: Stand) -> "Machine":
+        """The machine with boxes of the room that some of its links may touch; those that it has stay.
+
+        Raises:
+            MachineError: a link that is named does not exist.
+        """
+        return replace(self, stands=(*self.stands, *stands))
+
+    def allowing(self, *contacts: tuple[str, str]) -> "Machine":
+        """The machine with pairs of links that may touch; those that it has stay. Names may hold wildcards.
+
+        Raises:
+            MachineError: a link that is named does not exist.
+        """
+        return replace(self, allowed_contacts=(*self.allowed_contacts, *contacts))
+
+    def with_part(self, link: str, part: Part, link_from_part: ArrayLike | None = None) -> "Machine":
+        """The machine with a part on one of its links, as a link of its own: explained, taken out and swept with it.
+
+        The part may touch its link and that link's neighbours, such as the fingers of a hand.
+
+        Args:
+            link: name of the link that carries it.
+            part: what it carries.
+            link_from_part: where the part is on it, shape (4, 4), rigid; None: frames are one.
+
+        Raises:
+            MachineError: no such link, a link of the part's name, or a pose that is not rigid.
+        """
+        self._require_links("part " + part.name, [link])
+        if part.name in self.link_names:
+            raise MachineError(f"machine {self.name}: part {part.name}: there is a link of that name")
+        given = np.eye(4) if link_from_part is None else link_from_part
+        pose = nearest_rigid(given, f"part {part.name}: link_from_part", MachineError)
+        row, tree = self.link_names.index(link), self.tree
+        grown = Tree(
+            parent=np.append(tree.parent, row),
+            parent_from_joint=np.concatenate([tree.parent_from_joint, pose[None]]),
+            axis=np.concatenate([tree.axis, np.zeros((1, 3))]),
+            kind=np.append(tree.kind, FIXED),
+            column=np.append(tree.column, -1),
+            multiplier=np.append(tree.multiplier, 1.0),
+            offset=np.append(tree.offset, 0.0),
+        )
+        carried = Link(part.name, part.surface.vertices, part.surface.faces)
+        touched = [(part.name, self.link_names[other]) for other in self._about(row)]
+        return replace(
+            self,
+            links=(*self.links, carried),
+            tree=grown,
+            allowed_contacts=(*self.allowed_contacts, *touched),
+            parts=(*self.parts, part.name),
+        )
+
+    def without_part(self, name: str) -> "Machine":
+        """The machine without a part that it was given.
+
+        Raises:
+            MachineError: it has no part of that name.
+        """
+        if name not in self.parts:
+            has = ", ".join(self.parts) or "none"
+            raise MachineError(f"machine {self.name}: carries no part {name!r}; parts are {has}")
+        keep = [row for row, link in enumerate(self.links) if link.name != name]
+        left = np.cumsum([link.name != name for link in self.links]) - 1
+        rows = Tree(*(array[keep] for array in self.tree))
+        return replace(
+            self,
+            links=tuple(self.links[row] for row in keep),
+            tree=rows._replace(parent=np.where(rows.parent < 0, -1, left[rows.parent])),
+            allowed_contacts=tuple(pair for pair in self.allowed_contacts if name not in pair),
+            unchecked_links=tuple(link for link in self.unchecked_links if link != name),
+            parts=tuple(part for part in self.parts if part != name),
+        )
+
+    def _about(self, row: int) -> list[int]:
+        """A link, the next one up, and those that hang on it."""
+        parent = int(self.tree.parent[row])
+        return [other for other, above in enumerate(self.tree.parent) if other in (row, parent) or above == row]
 
     def joint(self, name: str) -> Joint:
         """The commanded joint of this name.

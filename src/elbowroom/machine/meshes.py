@@ -66,18 +66,59 @@ def triangles_of(geometry: yourdf.Geometry, path: Path | None, what: str) -> Tri
     """
     if geometry.mesh is not None:
         assert path is not None
-        mesh = _read(path, what)
+        vertices, faces = file_triangles(path, what)
         scale = 1.0 if geometry.mesh.scale is None else geometry.mesh.scale
-        return np.asarray(mesh.vertices, dtype=np.float64) * scale, np.asarray(mesh.faces)
+        return vertices * scale, faces
     if geometry.box is not None:
-        size = _sizes(what, *geometry.box.size)
-        mesh = trimesh.creation.box(extents=size)
-    elif geometry.cylinder is not None:
-        mesh = _cylinder(*_sizes(what, geometry.cylinder.radius, geometry.cylinder.length))
-    elif geometry.sphere is not None:
+        return box_triangles(what, geometry.box.size)
+    if geometry.cylinder is not None:
+        return cylinder_triangles(what, geometry.cylinder.radius, geometry.cylinder.length)
+    if geometry.sphere is not None:
         mesh = _sphere(*_sizes(what, geometry.sphere.radius))
     else:
         raise MachineError(f"{what}: no geometry; allowed are mesh, box, cylinder, sphere")
+    return np.asarray(mesh.vertices), np.asarray(mesh.faces)
+
+
+def file_triangles(path: Path, what: str) -> Triangles:
+    """Those of a mesh file, in its own unit.
+
+    Args:
+        path: the file, which exists.
+        what: how errors name it.
+
+    Raises:
+        MachineError: no triangles, or a file of an unknown kind.
+    """
+    mesh = _read(path, what)
+    return np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces)
+
+
+def box_triangles(what: str, size_m: Sequence[float]) -> Triangles:
+    """Those of a box about the origin.
+
+    Args:
+        what: how errors name it.
+        size_m: its edges [m].
+
+    Raises:
+        MachineError: an edge that is not above 0.
+    """
+    mesh = trimesh.creation.box(extents=_sizes(what, *size_m))
+    return np.asarray(mesh.vertices), np.asarray(mesh.faces)
+
+
+def cylinder_triangles(what: str, radius_m: float, length_m: float) -> Triangles:
+    """Those of a prism that contains a cylinder about the z axis, its middle in the origin.
+
+    Args:
+        what: how errors name it.
+        radius_m, length_m: of the cylinder [m].
+
+    Raises:
+        MachineError: a size that is not above 0.
+    """
+    mesh = _cylinder(*_sizes(what, radius_m, length_m))
     return np.asarray(mesh.vertices), np.asarray(mesh.faces)
 
 

@@ -1,0 +1,153 @@
+"""When a part of a machine first meets another: steps no longer than their distance allows (conservative advancement)."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from elbowroom.motion.kernels.field import Fields, at_least
+from elbowroom.motion.kernels.mover import Mover, Skin, carried, place_at
+
+
+class Pairs(NamedTuple):
+    """Links that must not meet: the samples of one against the field of the other.
+
+    Fields:
+        skin: samples of all links in clusters; no triangles.
+        fields: of all links.
+        sampled, other: rows of the links, (pairs,).
+        pair, cluster: of each cluster of a sampled link, once for each pair, (members,), sorted by pair.
+    """
+
+    skin: Skin
+    fields: Fields
+    sampled: np.ndarray
+    other: np.ndarray
+    pair: np.ndarray
+    cluster: np.ndarray
+
+
+class Nearness(NamedTuple):
+    """What counts as met: gaps below `least` [m]; by `more` than it is now, where it is less already; and how far apart
+    in travel two looks must be to be worth two placings, as a share of what is looked at."""
+
+    least: float
+    more: float
+    together: float
+
+
+@njit
+def _relate(placed, one, other, other_from_one):
+    """Fills a transform (3, 4) from a link's frame to another's."""
+    a, b = placed[one], placed[other]
+    for i in range(3):
+        for j in range(3):
+            other_from_one[i, j] = b[0, i] * a[0, j] + b[1, i] * a[1, j] + b[2, i] * a[2, j]
+        x, y, z = a[0, 3] - b[0, 3], a[1, 3] - b[1, 3], a[2, 3] - b[2, 3]
+        other_from_one[i, 3] = b[0, i] * x + b[1, i] * y + b[2, i] * z
+
+
+@njit
+def _gap(pairs, member, other_from_one, fine_below, nearest):
+    """No more than the distance of a cluster's surface from the other link, and the sample that comes nearest.
+
+    Args:
+        member: of `pairs`.
+        other_from_one: (3, 4).
+        fine_below: where the cluster's ball is no nearer than this, it stands for its samples [m].
+        nearest: (1,), takes the sample, where samples were looked at.
+    """
+    skin, cluster, other = pairs.skin, pairs.cluster[member], pairs.other[pairs.pair[member]]
+    x, y, z = carried(other_from_one, skin.centre[cluster])
+    around = at_least(pairs.fields, other, x, y, z) - skin.radius[cluster] - skin.cover
+    if around > fine_below:
+        return around
+    least = math.inf
+    for sample in range(skin.start[cluster], skin.stop[cluster]):
+        x, y, z = carried(other_from_one, skin.points[sample])
+        away = at_least(pairs.fields, other, x, y, z)
+        if away < least:
+            least = away
+            nearest[0] = sample
+    return least - skin.cover
+
+
+@njit(cache=True, nogil=True)
+def gaps_now(pairs, placed, fine_below, gaps, least):
+    """Fills, for each member of the pairs, its gap, and for each pair the least of them [m].
+
+    Args:
+        pairs: what must not meet.
+        placed: where links are, (links, 4, 4).
+        fine_below: as of `_gap`; also gaps below it are exact as far as samples and fields are.
+        gaps: (members,).
+        least: (pairs,).
+    """
+    other_from_one, nearest, last = np.empty((3, 4)), np.zeros(1, dtype=np.int64), -1
+    least[:] = math.inf
+    for member in range(gaps.size):
+        pair = pairs.pair[member]
+        if pair != last:
+            _relate(placed, pairs.sampled[pair], pairs.other[pair], other_from_one)
+            last = pair
+        gaps[member] = _gap(pairs, member, other_from_one, fine_below, nearest)
+        least[pair] = min(least[pair], gaps[member])
+
+
+@njit(cache=True, nogil=True)
+def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, least, nearness):
+    """The travel up to which no pair meets, the member that meets then, and the place of its nearest sample.
+
+    Args:
+        tree, world_from_base, course: what moves, and how (`Mover`).
+        pairs: what must not meet.
+        length: travel that is looked at, at most the course's.
+        speeds: the most by which the distance of each member's surface from the other link changes per unit of travel,
+            (members,) [m]; 0: they move as one.
+        gaps, least: now, of `gaps_now`.
+        nearness: what counts as met.
+
+    Returns:
+        Travel, the member or -1, place (3,) [m].
+    """
+    mover = Mover(tree, world_from_base, pairs.skin, course, speeds)
+    place, nearest = np.zeros(3), np.zeros(1, dtype=np.int64)
+    placed, other_from_one = np.empty((1, tree.parent.size, 4, 4)), np.empty((3, 4))
+    floors = np.empty(least.size)
+    for pair in range(least.size):
+        floors[pair] = min(0.0, least[pair] - nearness.least - nearness.more)
+        if least[pair] > nearness.least:
+            floors[pair] = 0.0
+    active, until = np.empty(gaps.size, dtype=np.int64), np.empty(gaps.size)
+    count = 0
+    for member in range(gaps.size):
+        reach = gaps[member] - floors[pairs.pair[member]]
+        if speeds[member] > 0.0 and reach < speeds[member] * length:
+            active[count], until[count] = member, max(reach, 0.0) / speeds[member]
+            count += 1
+    while count > 0:
+        travel = until[:count].min()
+        if travel >= length:
+            break
+        place_at(mover, travel, placed)
+        last, left = -1, 0
+        for n in range(count):
+            member, safe = active[n], until[n]
+            if safe <= travel + nearness.together * length:
+                pair = pairs.pair[member]
+                if pair != last:
+                    _relate(placed[0], pairs.sampled[pair], pairs.other[pair], other_from_one)
+                    last = pair
+                away = _gap(pairs, member, other_from_one, floors[pair] + nearness.least, nearest) - floors[pair]
+                if away <= nearness.least and safe <= travel:
+                    row = pairs.sampled[pair]
+                    place[0], place[1], place[2] = carried(placed[0, row], pairs.skin.points[nearest[0]])
+                    return travel, member, place
+                safe = max(safe, travel + away / speeds[member])
+            # what stays apart on all of the way is not asked again
+            if safe < length:
+                active[left], until[left] = member, safe
+                left += 1
+        count = left
+    return length, -1, place
