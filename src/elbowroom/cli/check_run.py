@@ -8,7 +8,7 @@ from elbowroom.cli.progress import Steps
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
 from elbowroom.monitor.start.compiling import compile_kernels
-from elbowroom.motion import Motion, Verdict, check_motion
+from elbowroom.motion import Cause, Motion, Verdict, check_motion
 from elbowroom.reconstruct import FreeSpace, warm_up
 from elbowroom.sources import Room
 from elbowroom.view.screen.words import NOT_CERTIFIED, travel_text
@@ -56,19 +56,23 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
                 **verdict.row(),
                 "explanation": reasons,
                 "unchecked_links": machine.unchecked_links,
+                "allowances": machine.allowances,
             }
         )
     print(f"{verdict.motion.name}: {verdict.level.value}")
     print(_travel(motion, verdict))
     if verdict.place_in_world is not None:
         x, y, z = verdict.place_in_world
-        print(f"What ends it: {verdict.cause.value}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
+        what = verdict.cause.value + (f", {verdict.other_link}" if verdict.other_link else "")
+        print(f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
     if verdict.overridable:
         print("An operator who holds on may drive on at low speed, since nobody sees that space.")
     for line in reasons:
         print(line)
     if machine.unchecked_links:
         print(f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}.")
+    for line in machine.allowances:
+        print(f"{line}.")
     print(NOT_CERTIFIED)
 
 
@@ -81,7 +85,12 @@ def _travel(motion: Motion, verdict: Verdict) -> str:
 
 
 def _reasons(space: FreeSpace, verdict: Verdict) -> list[str]:
-    """What each camera saw at the place that ends the travel, a line each; nothing if that lies nowhere."""
+    """What each camera saw at the place that ends the travel, a line each; nothing if that lies nowhere, or is the machine."""
+    if verdict.cause is Cause.MACHINE:
+        return [
+            f"{verdict.link} and {verdict.other_link} may be meant to touch: then name both in the site's machine: "
+            "allowed_contacts."
+        ]
     if verdict.place_in_world is None or not space.grid.contains(verdict.place_in_world):
         return []
     return str(space.explain(verdict.place_in_world)).splitlines()

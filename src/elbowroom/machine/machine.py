@@ -160,6 +160,15 @@ class Machine:
         """
         return replace(self, allowed_contacts=(*self.allowed_contacts, *contacts))
 
+    @cached_property
+    def allowances(self) -> tuple[str, ...]:
+        """What somebody's word lets pass, a line each: every summary says it."""
+        own = [pair for pair in self.allowed_contacts if not set(pair) & set(self.parts)]
+        return (
+            *(f"Not stopped by anything there, by the site's word: {stand}" for stand in self.stands),
+            *(f"May touch each other, by the site's word: {one} and {other}" for one, other in own),
+        )
+
     def with_part(self, link: str, part: Part, link_from_part: ArrayLike | None = None) -> "Machine":
         """The machine with a part on one of its links, as a link of its own: explained, taken out and swept with it.
 

@@ -134,7 +134,7 @@ class _Scene:
             grounds,
             machine,
             skin_of(machine, voxel_size_m),
-            Meeting.of(machine, placed, voxel_size_m),
+            Meeting.of(machine, placed),
             blocks_inside(machine, grounds, placed),
             placed,
         )

@@ -8,42 +8,49 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
-from elbowroom.machine.samples import BodySamples, body_samples
+from elbowroom.machine.kernels.samples import cluster
+from elbowroom.machine.samples import COVER_IN_VOXELS, ROUNDING_M, BodySamples, body_samples
 from elbowroom.motion.field import fields_of
 from elbowroom.motion.kernels.field import Fields, slack_of
-from elbowroom.motion.kernels.meeting import Pairs, gaps_now
+from elbowroom.motion.kernels.meeting import RUN, Pairs, gaps_now
 from elbowroom.motion.kernels.mover import Skin
 
-COARSE_M = 0.04
-"""Samples for voxels of this size, or of twice the room's if they are smaller, stand for the links [m]."""
-FINEST = 1 / 12
-"""A field's cells are no smaller than this share of that size."""
+SAMPLES = 16_000
+"""A machine's surface has about so many samples here; a robot of 1 m2 is covered to within 6 mm."""
+FINEST = 1 / 8
+"""A field's cells are no smaller than this share of the voxels that the samples would do for."""
 POSES, ALWAYS = 40, 0.95
 """Links that lie in each other in this share of so many poses, drawn from the joints' limits, are meant to."""
 
 
 @kept
-def pairs_of(machine: Machine, voxel_size_m: float) -> Pairs:
-    """The pairs of a machine's links that must not meet; made once per machine and size, then kept.
+def pairs_of(machine: Machine) -> Pairs:
+    """The pairs of a machine's links that must not meet; made once per machine, then kept.
 
     Left out are links and the next one up the tree that has a body, those that the machine's `allowed_contacts` name,
     those that lie in each other in all poses, and pairs of unchecked links.
 
     Args:
         machine: whose links.
-        voxel_size_m: edge of the room's voxels [m].
 
     Raises:
         MachineError: as `body_samples`.
     """
-    edge = min(2 * voxel_size_m, max(COARSE_M, voxel_size_m / 2))
     rows = [pair for pair in _may_not_touch(machine) if _can_move_apart(machine, *pair)]
-    if not rows:
-        return _empty(machine)
-    samples = body_samples(machine, edge, unchecked=True)
-    found = _pairs(samples, fields_of(machine, FINEST * edge), rows)
-    kept_apart = ~_always_touch(machine, found)
-    return _pairs(samples, found.fields, [pair for pair, keep in zip(rows, kept_apart, strict=True) if keep])
+    edge = _voxel_for(machine)
+    skin, width = _skin(body_samples(machine, edge, unchecked=True))
+    fields = fields_of(machine, [row for row in range(len(machine.links)) if any(row in pair for pair in rows)], FINEST * edge)
+    always = _always_touch(machine, _pairs(skin, width, fields, rows))
+    apart = [pair for pair, touch in zip(rows, always, strict=True) if not touch]
+    return _pairs(skin, width, fields, apart)
+
+
+def _voxel_for(machine: Machine) -> float:
+    """The edge of voxels for which a machine's surface takes about `SAMPLES` [m]."""
+    corners = np.concatenate([link.triangles for link in machine.links])
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
+    # flat parts take a sample for each square that fits into the circle which it covers
+    return float(np.sqrt(area / SAMPLES / 2) / COVER_IN_VOXELS)
 
 
 def _may_not_touch(machine: Machine) -> list[tuple[int, int]]:
@@ -86,44 +93,55 @@ def _stiff_with(machine: Machine, row: int) -> int:
     return row
 
 
-def _pairs(samples: BodySamples, fields: Fields, rows: list[tuple[int, int]]) -> Pairs:
-    """The kernels' pairs: the link that is measured more finely gets the other's samples."""
-    clusters = {row: np.flatnonzero(samples.cluster_link == row) for pair in rows for row in pair}
+def _pairs(skin: Skin, width: NDArray[np.float64], fields: Fields, rows: list[tuple[int, int]]) -> Pairs:
+    """The kernels' pairs: the link that is measured more finely gets the other's samples.
+
+    Args:
+        skin, width, fields: as of `Pairs`.
+        rows: of the links of each pair.
+    """
+    clusters = {row: np.flatnonzero(skin.link == row) for pair in rows for row in pair}
     fine_last = [(a, b) if fields.edge[b] <= fields.edge[a] else (b, a) for a, b in rows]
     members = [clusters[sampled] for sampled, _ in fine_last]
-    none = np.zeros(0, dtype=np.int64)
     return Pairs(
-        skin=Skin(
-            points=samples.points,
-            cluster_of=np.zeros(0, dtype=np.int32),
-            start=samples.cluster_start,
-            stop=samples.cluster_stop,
-            link=samples.cluster_link,
-            centre=samples.cluster_centre,
-            radius=samples.cluster_radius,
-            cover=samples.cover_m,
-            triangles=np.zeros((0, 3, 3)),
-            patches=np.zeros(0, dtype=np.int32),
-            patch_start=none,
-        ),
+        skin=skin,
+        width=width,
         fields=fields,
         sampled=np.array([a for a, _ in fine_last], dtype=np.int64),
         other=np.array([b for _, b in fine_last], dtype=np.int64),
         pair=np.repeat(np.arange(len(rows)), [len(own) for own in members]),
-        cluster=np.concatenate([none, *members]),
+        cluster=np.concatenate([np.zeros(0, dtype=np.int64), *members]),
     )
 
 
-def _empty(machine: Machine) -> Pairs:
-    nothing = np.zeros(0)
-    none = np.zeros(0, dtype=np.int64)
-    few = np.zeros(0, dtype=np.int32)
+def _skin(samples: BodySamples) -> tuple[Skin, NDArray[np.float64]]:
+    """The samples, sorted within their clusters into runs, without triangles; and how wide each run is."""
+    order = np.arange(len(samples.points))
+    for start, stop in zip(samples.cluster_start, samples.cluster_stop, strict=True):
+        within = np.empty(stop - start, dtype=np.int64)
+        cluster(samples.points[start:stop], RUN, within, np.empty(stop - start + 1, dtype=np.int64))
+        order[start:stop] = start + within
+    points = samples.points[order]
+    sizes = samples.cluster_stop - samples.cluster_start
+    place = np.arange(len(points)) - np.repeat(samples.cluster_start, sizes)
+    first = np.arange(len(points)) - place % RUN
+    width = np.zeros(len(points))
+    np.maximum.at(width, first, np.linalg.norm(points - points[first], axis=1) + ROUNDING_M)
+    none = np.zeros(0, dtype=np.int32)
     skin = Skin(
-        np.zeros((0, 3), dtype=np.float32), few, none, none, few, np.zeros((0, 3)), nothing, 0.0,
-        np.zeros((0, 3, 3)), few, none,
+        points=points,
+        cluster_of=none,
+        start=samples.cluster_start,
+        stop=samples.cluster_stop,
+        link=samples.cluster_link,
+        centre=samples.cluster_centre,
+        radius=samples.cluster_radius,
+        cover=samples.cover_m,
+        triangles=np.zeros((0, 3, 3)),
+        patches=none,
+        patch_start=np.zeros(0, dtype=np.int64),
     )
-    fields = Fields(np.zeros(0, dtype=np.float32), none, np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3)), nothing)
-    return Pairs(skin, fields, none, none, none, none)
+    return skin, width
 
 
 def _always_touch(machine: Machine, pairs: Pairs) -> NDArray[np.bool_]:

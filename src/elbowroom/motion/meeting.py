@@ -17,6 +17,8 @@ LEAST_IN_COVERS = 0.1
 """Links that come nearer than this have met; in covering radii of their samples."""
 MORE_IN_COVERS = 1.0
 """Links that are so near already may come nearer by this; in the same."""
+STEP_IN_COVERS = 2.0
+"""No step along a way is shorter than what moves links by this; in the same."""
 TOGETHER = 1 / 64
 """Looks that lie nearer to each other than this share of the way are done at one place."""
 
@@ -49,15 +51,9 @@ class Meeting:
     least: NDArray[np.float64]
 
     @classmethod
-    def of(cls, machine: Machine, world_from_link: NDArray[np.float64], voxel_size_m: float) -> Self:
-        """At one place of the machine.
-
-        Args:
-            machine: the machine.
-            world_from_link: where its links are, shape (n_links, 4, 4).
-            voxel_size_m: edge of the room's voxels [m].
-        """
-        pairs = pairs_of(machine, voxel_size_m)
+    def of(cls, machine: Machine, world_from_link: NDArray[np.float64]) -> Self:
+        """At one place of the machine, whose links are there: shape (n_links, 4, 4)."""
+        pairs = pairs_of(machine)
         gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
         gaps_now(pairs, world_from_link, LEAST_IN_COVERS * pairs.skin.cover, gaps, least)
         return cls(machine, pairs, world_from_link, gaps, least)
@@ -65,7 +61,8 @@ class Meeting:
     def first(self, way: Way, length: float) -> Met | None:
         """Where two links first come so near that they may touch; None: nowhere.
 
-        Links that are so near already may not come nearer by more than what their samples are apart.
+        Links that are so near already may not come nearer by more than the covering radius of their samples; and links
+        may touch by as much in passing.
 
         Args:
             way: where the motion leads.
@@ -97,7 +94,7 @@ class Meeting:
     @property
     def _nearness(self) -> Nearness:
         cover = self.pairs.skin.cover
-        return Nearness(LEAST_IN_COVERS * cover, MORE_IN_COVERS * cover, TOGETHER)
+        return Nearness(LEAST_IN_COVERS * cover, MORE_IN_COVERS * cover, STEP_IN_COVERS * cover, TOGETHER)
 
     def _closing(
         self, speeds: NDArray[np.float64], by_link: NDArray[np.float64], way: Way

@@ -9,10 +9,12 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
+from elbowroom.choices import ExplainWith
 from elbowroom.errors import SiteError
 from elbowroom.machine import Joint, Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.motion import Motion, braking_distance
+from elbowroom.site.contact_entry import PartEntry, StandEntry
 from elbowroom.site.entry import Entry, Matrix, Positive, Text
 from elbowroom.site.paths import expand
 
@@ -20,7 +22,9 @@ from elbowroom.site.paths import expand
 class MachineEntry(Entry):
     """The machine: one that ships with the package, or a URDF; where its base stands; links not to check.
 
-    `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself.
+    `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself, and
+    `explain_with` says which geometry that model is. `allowed_contacts` are pairs of links that may touch, `stands_on` boxes
+    of the room that some links may touch, `carries` parts that it holds.
     """
 
     builtin: Literal["ceiling_c_arm"] | None = None
@@ -28,6 +32,10 @@ class MachineEntry(Entry):
     world_from_base: Matrix | None = None
     unchecked_links: tuple[Text, ...] = ()
     explain_tolerance_m: Positive | None = None
+    explain_with: ExplainWith = "auto"
+    allowed_contacts: tuple[tuple[Text, Text], ...] = ()
+    stands_on: tuple[StandEntry, ...] = ()
+    carries: tuple[PartEntry, ...] = ()
 
     @model_validator(mode="after")
     def _one_source(self) -> "MachineEntry":
@@ -44,13 +52,21 @@ class MachineEntry(Entry):
         Raises:
             SiteError, MachineError: a URDF, a link or a pose that is not usable.
         """
+        machine = self._bare(beside)
+        for part in self.carries:
+            machine = part.on(machine, beside)
+        return machine.allowing(*self.allowed_contacts).standing_on(*(stand.build() for stand in self.stands_on))
+
+    def _bare(self, beside: Path) -> Machine:
         base = None if self.world_from_base is None else np.array(self.world_from_base)
         if self.builtin is not None:
             machine = ceiling_c_arm(base)
             unchecked = dict.fromkeys((*machine.unchecked_links, *self.unchecked_links))
             return replace(machine, unchecked_links=tuple(unchecked))
         urdf = expand(str(self.urdf), beside)
-        return Machine.from_urdf(urdf, world_from_base=base, unchecked_links=self.unchecked_links)
+        return Machine.from_urdf(
+            urdf, world_from_base=base, unchecked_links=self.unchecked_links, explain_with=self.explain_with
+        )
 
 
 class JointEntry(Entry):

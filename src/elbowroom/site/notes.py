@@ -27,6 +27,10 @@ def notes_of(site: Site) -> tuple[str, ...]:
     if machine is not None:
         if machine.unchecked_links:
             notes.append(f"links that are not checked: {', '.join(machine.unchecked_links)}")
+        notes += machine.allowances
+        if machine.as_seen is not machine:
+            seen = ", ".join(link.name for link in machine.links if link.seen is not None)
+            notes.append(f"links that cameras see by their visual geometry, which lies within what is swept: {seen}")
         without = [joint for joint in machine.joint_names if joint not in entry.joints]
         if without:
             notes.append(f"joints without a speed, whose motions are not checked: {', '.join(without)}")

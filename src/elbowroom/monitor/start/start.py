@@ -1,10 +1,12 @@
 """The start of a run: all that it needs is made, and compiled by doing it once."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import bits
 from elbowroom.monitor.cycle import Cycle
+from elbowroom.monitor.health.model import ModelLook
 from elbowroom.monitor.loop import Loop
 from elbowroom.monitor.start.watching import checks_of
 from elbowroom.motion import check_motions
@@ -27,7 +29,9 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
     machine, motions = room.machine_and_motions()
     cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
     pace = Pace().wait if isinstance(room.source, Recorded) else None
-    loop = Loop(room, checks_of(room, begin), cycle, pace)
+    checks = checks_of(room, begin)
+    checks = replace(checks, looks=(*checks.looks, ModelLook(room.cameras, machine)))
+    loop = Loop(room, checks, cycle, pace)
     _warm_up(loop, begin)
     return loop
 

@@ -14,13 +14,15 @@ class Pairs(NamedTuple):
     """Links that must not meet: the samples of one against the field of the other.
 
     Fields:
-        skin: samples of all links in clusters; no triangles.
+        skin: samples of all links in clusters, in these in runs that lie side by side; no triangles.
+        width: of the run that begins with each sample, how far its others are from it at most, (samples,) [m].
         fields: of all links.
         sampled, other: rows of the links, (pairs,).
         pair, cluster: of each cluster of a sampled link, once for each pair, (members,), sorted by pair.
     """
 
     skin: Skin
+    width: np.ndarray
     fields: Fields
     sampled: np.ndarray
     other: np.ndarray
@@ -28,12 +30,23 @@ class Pairs(NamedTuple):
     cluster: np.ndarray
 
 
+RUN = 8
+"""So many samples of a cluster that lie side by side are passed over together."""
+
+
 class Nearness(NamedTuple):
-    """What counts as met: gaps below `least` [m]; by `more` than it is now, where it is less already; and how far apart
-    in travel two looks must be to be worth two placings, as a share of what is looked at."""
+    """What counts as met, and how closely it is looked for.
+
+    Fields:
+        least: gaps below it [m];
+        more: by this less than now, where a gap is less already [m].
+        step: links are looked at again after having moved by this, or by their gap if that is more [m].
+        together: how far apart in travel two looks must be to be worth two placings, as a share of what is looked at.
+    """
 
     least: float
     more: float
+    step: float
     together: float
 
 
@@ -64,12 +77,17 @@ def _gap(pairs, member, other_from_one, fine_below, nearest):
     if around > fine_below:
         return around
     least = math.inf
-    for sample in range(skin.start[cluster], skin.stop[cluster]):
-        x, y, z = carried(other_from_one, skin.points[sample])
-        away = at_least(pairs.fields, other, x, y, z)
-        if away < least:
-            least = away
-            nearest[0] = sample
+    for first in range(skin.start[cluster], skin.stop[cluster], RUN):
+        stop = min(first + RUN, skin.stop[cluster])
+        for sample in range(first, stop):
+            x, y, z = carried(other_from_one, skin.points[sample])
+            away = at_least(pairs.fields, other, x, y, z)
+            if away < least:
+                least = away
+                nearest[0] = sample
+            # the others of a run are no nearer than its first less its width
+            if sample == first and away - pairs.width[first] > least:
+                break
     return least - skin.cover
 
 
@@ -97,7 +115,9 @@ def gaps_now(pairs, placed, fine_below, gaps, least):
 
 @njit(cache=True, nogil=True)
 def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, least, nearness):
-    """The travel up to which no pair meets, the member that meets then, and the place of its nearest sample.
+    """The travel up to which no pair meets, the member that meets after it, and the place of its nearest sample.
+
+    Links may meet in passing, between two looks, as far as they move between them.
 
     Args:
         tree, world_from_base, course: what moves, and how (`Mover`).
@@ -109,22 +129,19 @@ def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, le
         nearness: what counts as met.
 
     Returns:
-        Travel, the member or -1, place (3,) [m].
+        Travel at which the member that meets was last looked at before, the member or -1, place (3,) [m].
     """
     mover = Mover(tree, world_from_base, pairs.skin, course, speeds)
     place, nearest = np.zeros(3), np.zeros(1, dtype=np.int64)
     placed, other_from_one = np.empty((1, tree.parent.size, 4, 4)), np.empty((3, 4))
-    floors = np.empty(least.size)
-    for pair in range(least.size):
-        floors[pair] = min(0.0, least[pair] - nearness.least - nearness.more)
-        if least[pair] > nearness.least:
-            floors[pair] = 0.0
-    active, until = np.empty(gaps.size, dtype=np.int64), np.empty(gaps.size)
+    floors = np.where(least > nearness.least, 0.0, least - nearness.least - nearness.more)
+    # of the members that can meet: which, when to look again, and when they were looked at and had not met
+    active, until, before = np.empty(gaps.size, dtype=np.int64), np.empty(gaps.size), np.zeros(gaps.size)
     count = 0
     for member in range(gaps.size):
         reach = gaps[member] - floors[pairs.pair[member]]
         if speeds[member] > 0.0 and reach < speeds[member] * length:
-            active[count], until[count] = member, max(reach, 0.0) / speeds[member]
+            active[count], until[count] = member, max(reach, nearness.step) / speeds[member]
             count += 1
     while count > 0:
         travel = until[:count].min()
@@ -133,21 +150,21 @@ def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, le
         place_at(mover, travel, placed)
         last, left = -1, 0
         for n in range(count):
-            member, safe = active[n], until[n]
+            member, safe, known = active[n], until[n], before[n]
             if safe <= travel + nearness.together * length:
                 pair = pairs.pair[member]
                 if pair != last:
                     _relate(placed[0], pairs.sampled[pair], pairs.other[pair], other_from_one)
                     last = pair
                 away = _gap(pairs, member, other_from_one, floors[pair] + nearness.least, nearest) - floors[pair]
-                if away <= nearness.least and safe <= travel:
+                if away <= nearness.least:
                     row = pairs.sampled[pair]
                     place[0], place[1], place[2] = carried(placed[0, row], pairs.skin.points[nearest[0]])
-                    return travel, member, place
-                safe = max(safe, travel + away / speeds[member])
+                    return known, member, place
+                safe, known = travel + max(away, nearness.step) / speeds[member], travel
             # what stays apart on all of the way is not asked again
             if safe < length:
-                active[left], until[left] = member, safe
+                active[left], until[left], before[left] = member, safe, known
                 left += 1
         count = left
     return length, -1, place

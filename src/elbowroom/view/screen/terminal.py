@@ -83,7 +83,7 @@ class TerminalView:
 
     def open(self, watched: Watched) -> None:
         """As `begin`, by what its head says."""
-        self.watched, self.log = watched, RunLog(watched.source, watched.unchecked_links)
+        self.watched, self.log = watched, RunLog(watched.source, watched.unchecked_links, watched.allowances)
         if self._live is not None:
             self._live.start()
         else:
@@ -136,6 +136,7 @@ class TerminalView:
             lines.append(
                 Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
             )
+        lines += [Text(line, "dim") for line in self.watched.allowances]
         lines.append(Text(NOT_CERTIFIED, "dim"))
         return Padding(Group(*lines), (0, 1))
 

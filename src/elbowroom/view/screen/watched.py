@@ -18,6 +18,7 @@ class Watched:
         rule, detail: as of `reconstruct`.
         source: in words, where frames come from: its time is shown apart.
         unchecked_links: links of the machine that are not checked.
+        allowances: what else the site lets pass, a line each.
     """
 
     title: str
@@ -27,6 +28,7 @@ class Watched:
     detail: str
     source: str
     unchecked_links: Sequence[str] = ()
+    allowances: Sequence[str] = ()
 
     @property
     def room(self) -> str:
@@ -42,5 +44,12 @@ def watched_of(room: Room) -> Watched:
     cameras = f"{len(room.cameras)} camera{'s' * (len(room.cameras) > 1)} {', '.join(sizes)}"
     unchecked = room.machine.unchecked_links if room.machine else ()
     return Watched(
-        room.site.name, room.grid, cameras, room.terms.rule, room.terms.detail, room.source.name, unchecked
+        room.site.name,
+        room.grid,
+        cameras,
+        rule=room.terms.rule,
+        detail=room.terms.detail,
+        source=room.source.name,
+        unchecked_links=unchecked,
+        allowances=room.machine.allowances if room.machine else (),
     )
