@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from ages import with_ages
+
 from elbowroom.evaluate.thesis.due import due_table
 from elbowroom.evaluate.thesis.parts import PARTS
 from elbowroom.evaluate.thesis.scale_budget import budget_table
@@ -188,4 +190,4 @@ def _table(table: Table) -> list[str]:
 
 if __name__ == "__main__":
     draw(RESULTS, Path(sys.argv[1]) if len(sys.argv) > 1 else None)
-    PAGE.write_text(render(), encoding="utf-8")
+    PAGE.write_text(with_ages(render()), encoding="utf-8")
