@@ -52,7 +52,7 @@ One command does all of it and writes one page with the pictures:
 shares that do not depend on each other: `--jobs N` spreads them over processes, `--cluster tcp://HOST:PORT` over the
 computers of a Dask cluster, and the numbers are the same however they are spread. Ctrl-C keeps the shares that are
 done in `report/parts`; the same command goes on from there. All of it took 8 min 56 s on two cores (`time` before the
-command; due are 12 minutes). It needs `pip install 'elbowroom[evaluate]'`, and
+command; due are 12 minutes). It needs `.venv/bin/pip install '.[evaluate]'`, and
 `[cluster]` for Dask.
 
 ## The six setups

@@ -277,7 +277,7 @@ def test_goals_that_are_none_are_refused(make, words):
 def test_without_cp_sat_the_error_says_what_to_install(site, monkeypatch):
     monkeypatch.setitem(sys.modules, "ortools.sat.python.cp_model", None)
     grid, room = site.grid(), room_of()
-    with pytest.raises(PackageError, match=r"pip install 'elbowroom\[placement\]'"):
+    with pytest.raises(PackageError, match=r"-m pip install 'ortools"):
         optimise(grid, room, candidates_of(site, grid, room), search=Search(1.0))
 
 
