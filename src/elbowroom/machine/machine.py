@@ -172,7 +172,7 @@ class Machine:
     def with_part(self, link: str, part: Part, link_from_part: ArrayLike | None = None) -> "Machine":
         """The machine with a part on one of its links, as a link of its own: explained, taken out and swept with it.
 
-        The part may touch its link and that link's neighbours, such as the fingers of a hand.
+        The part may touch its link, what is fixed to that, and what hangs on these, such as the fingers of a hand.
 
         Args:
             link: name of the link that carries it.
@@ -198,7 +198,7 @@ class Machine:
             offset=np.append(tree.offset, 0.0),
         )
         carried = Link(part.name, part.surface.vertices, part.surface.faces)
-        touched = [(part.name, self.link_names[other]) for other in self._about(row)]
+        touched = [(part.name, self.link_names[other]) for other in self._held_with(row)]
         return replace(
             self,
             links=(*self.links, carried),
@@ -208,7 +208,7 @@ class Machine:
         )
 
     def without_part(self, name: str) -> "Machine":
-        """The machine without a part that it was given.
+        """The machine without a part that it was given, and without those that hang on it.
 
         Raises:
             MachineError: it has no part of that name.
@@ -216,22 +216,32 @@ class Machine:
         if name not in self.parts:
             has = ", ".join(self.parts) or "none"
             raise MachineError(f"machine {self.name}: carries no part {name!r}; parts are {has}")
-        keep = [row for row, link in enumerate(self.links) if link.name != name]
-        left = np.cumsum([link.name != name for link in self.links]) - 1
+        stays = np.array([link.name != name for link in self.links])
+        for row, parent in enumerate(self.tree.parent):
+            stays[row] &= parent < 0 or stays[parent]
+        keep, left = np.flatnonzero(stays), np.cumsum(stays) - 1
+        gone = {link.name for link, here in zip(self.links, stays, strict=True) if not here}
         rows = Tree(*(array[keep] for array in self.tree))
         return replace(
             self,
             links=tuple(self.links[row] for row in keep),
             tree=rows._replace(parent=np.where(rows.parent < 0, -1, left[rows.parent])),
-            allowed_contacts=tuple(pair for pair in self.allowed_contacts if name not in pair),
-            unchecked_links=tuple(link for link in self.unchecked_links if link != name),
-            parts=tuple(part for part in self.parts if part != name),
+            allowed_contacts=tuple(pair for pair in self.allowed_contacts if not gone & set(pair)),
+            unchecked_links=tuple(link for link in self.unchecked_links if link not in gone),
+            parts=tuple(part for part in self.parts if part not in gone),
         )
 
-    def _about(self, row: int) -> list[int]:
-        """A link, the next one up, and those that hang on it."""
-        parent = int(self.tree.parent[row])
-        return [other for other, above in enumerate(self.tree.parent) if other in (row, parent) or above == row]
+    def _held_with(self, row: int) -> list[int]:
+        """The links that are fixed to a link, itself among them, and those that hang on them, such as fingers."""
+        roots = list(range(len(self.links)))
+        for other, parent in enumerate(self.tree.parent):
+            if parent >= 0 and self.tree.kind[other] == FIXED:
+                roots[other] = roots[parent]
+        return [
+            other
+            for other, parent in enumerate(self.tree.parent)
+            if roots[other] == roots[row] or (parent >= 0 and roots[parent] == roots[row])
+        ]
 
     def joint(self, name: str) -> Joint:
         """The commanded joint of this name.
