@@ -21,13 +21,14 @@ class Loop:
         room: whose source gives the snapshots.
         checks: look after cameras and machine.
         cycle: judges.
-        pace: called with each snapshot before it is judged, and may wait; None: nobody waits.
+        pace: called with each snapshot before it is judged, and the time at which the run ends [s of
+            `time.perf_counter`]; may wait, and says whether the snapshot's time came before; None: nobody waits.
     """
 
     room: Room
     checks: Checks
     cycle: Cycle
-    pace: Callable[[Snapshot], None] | None = None
+    pace: Callable[[Snapshot, float], bool] | None = None
 
     def run(self, faces: Sequence[Face], seconds: float | None = None) -> None:
         """Judges one snapshot after the other until the time is over or the source ends.
@@ -37,7 +38,8 @@ class Loop:
 
         Args:
             faces: who shows or keeps each pass, in the order in which they are told.
-            seconds: how long; None: until the source ends. One pass is always made, if there is a snapshot.
+            seconds: how long, also where the pace waits; None: until the source ends. One pass is always made, if there
+                is a snapshot.
         """
         until = time.perf_counter() + (float("inf") if seconds is None else seconds)
         snapshot: Snapshot | None = None
@@ -46,8 +48,8 @@ class Loop:
                 for face in faces:
                     face.begin(self.room)
                 for snapshot, source_ms in timed_source(self.room.source):
-                    if self.pace is not None:
-                        self.pace(snapshot)
+                    if self.pace is not None and not self.pace(snapshot, until):
+                        break
                     result = self.judge(snapshot)
                     for face in faces:
                         face.show(Pass(snapshot, result, source_ms))
@@ -59,8 +61,9 @@ class Loop:
 
     def judge(self, snapshot: Snapshot) -> CycleResult:
         """What one snapshot comes to; it does not raise."""
+        begun_ns = self.cycle.clock_ns()
         known = self.checks.hear(snapshot)
-        return self.cycle.run(snapshot).knowing(known)
+        return self.cycle.run(snapshot, begun_ns).knowing(known)
 
     def _say_stop(self, faces: Sequence[Face], snapshot: Snapshot | None, error: Exception) -> None:
         """Shows a failed pass to every face, also to those behind one that cannot show it."""

@@ -132,6 +132,7 @@ class TerminalView:
             Text(health_text(result.health), "dim"),
         ]
         lines += [Text(f" {line} ", STYLES[Level.STOP]) for line in _stops(result)]
+        lines += [Text(finding.text, "orange1") for finding in result.findings if not finding.stops]
         if self.watched.unchecked_links:
             lines.append(
                 Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
@@ -141,7 +142,7 @@ class TerminalView:
 
     def line(self, result: CycleResult) -> str:
         """One pass in one plain line."""
-        age = "" if result.oldest_age_ms is None else f" age {result.oldest_age_ms:.0f} ms"
+        age = "" if result.age_ms is None else f" age {result.age_ms:.0f} ms"
         head = (
             f"{result.stamp_ns / 1e9:8.2f} s {self.log.rate_hz:5.1f} Hz cycle {result.cycle_ms:.0f} ms{age}"
         )
@@ -153,13 +154,14 @@ class TerminalView:
 
     def _speed(self, result: CycleResult) -> Text:
         log = self.log
-        age = log.recent(log.age_ms)
+        age = result.age_ms if result.late is not None else log.recent(log.age_ms)
         stages = " + ".join(f"{name} {ms:.0f}" for name, ms in log.recent_stage_ms.items())
         levels = [verdict.level for verdict in result.verdicts]
         text = Text()
         text.append(f"{log.rate_hz:.1f} Hz", "bold")
         text.append("  frame age ")
-        text.append("unknown" if result.oldest_age_ms is None else f"{age:.0f} ms", "bold")
+        style = "bold" if result.late is None else STYLES[Level.STOP]
+        text.append("unknown" if result.age_ms is None else f"{age:.0f} ms", style)
         text.append("  cycle ")
         text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
         text.append(f" = {stages}", "dim")
@@ -206,6 +208,9 @@ def _stops(result: CycleResult) -> list[str]:
     """Why every motion is stop, a line each."""
     found = () if result.health is None else result.health.stops.values()
     lines = [f"Stop: {reason}. Stays until the monitor is started again." for reason in found]
+    lines += [f"Stop: {finding.text}" for finding in result.findings if finding.stops]
+    if result.late is not None:
+        lines.append(f"Stop, since {result.late}")
     return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
 
 
