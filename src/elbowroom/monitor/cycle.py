@@ -66,9 +66,9 @@ class Cycle:
             space = self._space_of(snapshot, stage_ms)
             with timed("motion", stage_ms):
                 given = _usable(check_motions(space, self.machine, snapshot.joints or {}, self.motions))
+            late = self._late(snapshot, begun_ns)
         except Exception as error:  # at this border a fault becomes a decision: stop
             return self.failed(error, snapshot, stage_ms)
-        late = self._late(snapshot, begun_ns)
         if late is not None:
             given = {motion: self._stop(motion, Cause.STALE) for motion in self.motions}
         missing = [motion.name for motion in self.motions if motion not in given]
@@ -109,8 +109,8 @@ class Cycle:
         if age_ms + took_ms <= limit_ns / 1e6:
             return None
         return (
-            f"its verdicts are out when the oldest image is {age_ms + took_ms:.0f} ms old, at most {limit_ns / 1e6:g} ms "
-            f"are allowed (max_frame_age_ms): the pass took {took_ms:.0f} ms"
+            f"its verdicts are out when the oldest image is {age_ms + took_ms:.0f} ms old, "
+            f"at most {limit_ns / 1e6:g} ms are allowed (max_frame_age_ms): the pass took {took_ms:.0f} ms"
         )
 
     def _space_of(self, snapshot: Snapshot, stage_ms: dict[str, float]) -> FreeSpace:

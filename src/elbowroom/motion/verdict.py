@@ -9,9 +9,9 @@ Levels by the first blocked voxel that the swept body meets, S being the braking
     beyond, or nothing    CLEAR        0
 
 How verdicts combine (`most_cautious`): the lowest level of this table's order wins; within a level a fault goes
-before all else, then images too old by now, then input that cannot be right, then what the watch found, then a verdict that cannot be overridden
-before one that can; then the one with the least free travel in braking distances; then the first. No verdict at all is
-an error, since nothing seen means stop.
+before all else, then images too old by now, then input that cannot be right, then what the watch found, then a
+verdict that cannot be overridden before one that can; then the one with the least free travel in braking distances;
+then the first. No verdict at all is an error, since nothing seen means stop.
 
 | cause              | may be overridden at low speed, while an operator holds on |
 |--------------------|------------------------------------------------------------|

@@ -6,7 +6,6 @@ from pydantic import Field, model_validator
 
 from elbowroom.site.entry import Entry, NotNegative, Positive, Text, Whole
 
-
 StampUnit = Literal["ns", "us", "ms", "s"]
 """Of the times that name images."""
 

@@ -21,25 +21,19 @@ class Pace:
     _first: tuple[int, float] | None = field(default=None, init=False)
     _last_ns: int = field(default=0, init=False)
 
-    def wait(self, snapshot: Snapshot, until_s: float = float("inf")) -> bool:
-        """Sleeps while the snapshot is early; not at all where it has no time, is late, or comes after a gap.
+    def wait(self, snapshot: Snapshot) -> None:
+        """Sleeps while the snapshot is early."""
+        early_s = self.early_s(snapshot)
+        if early_s > SLACK_S:
+            time.sleep(early_s)
 
-        Args:
-            snapshot: that has come.
-            until_s: at that time sleeping ends [s of `time.perf_counter`].
-
-        Returns:
-            Whether its time has come; otherwise `until_s` came before.
-        """
+    def early_s(self, snapshot: Snapshot) -> float:
+        """For how long the snapshot's time has not come [s]: 0 where it has no time, is late, or comes after a gap."""
         if snapshot.now_ns is None:
-            return True
+            return 0.0
         now_s = time.perf_counter()
         if self._first is None or not 0 <= snapshot.now_ns - self._last_ns <= self.gap_ns:
             self._first = snapshot.now_ns, now_s
         self._last_ns = snapshot.now_ns
         first_ns, start_s = self._first
-        comes_s = start_s + (snapshot.now_ns - first_ns) / 1e9
-        early_s = min(comes_s, until_s) - now_s
-        if early_s > SLACK_S:
-            time.sleep(early_s)
-        return comes_s <= until_s
+        return max(0.0, (snapshot.now_ns - first_ns) / 1e9 - (now_s - start_s))

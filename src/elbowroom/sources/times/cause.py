@@ -26,7 +26,7 @@ class Span:
     @property
     def are_dates(self) -> bool:
         """Whether they lie between the years 2000 and 2100."""
-        return DATES_FROM_NS <= self.first_ns and self.last_ns < DATES_TO_NS
+        return self.first_ns >= DATES_FROM_NS and self.last_ns < DATES_TO_NS
 
     def covers(self, other: "Span", factor: float = 1.0) -> bool:
         """Whether they overlap if this one's numbers are multiplied.

@@ -20,7 +20,7 @@ FAST, FASTEST = 1e-3, 0.1
 """A clock that runs fast or slow by between these shares."""
 BURST, BURST_SHARE = 0.2, 0.05
 """Steps shorter than this share of the usual one come in bursts, if so many do."""
-LATEST_RATE_HZ = 1 / 10
+RARE_HZ = 1 / 10
 """Slower than this, another unit is likelier, if it gives what cameras do."""
 
 
@@ -56,7 +56,11 @@ def _never(meeting: Meeting, odd: Series) -> str:
         f"images of camera {odd.camera} ({odd.span}) are never within {skew} of those of camera {lead.camera} "
         f"({lead.span}); "
     )
-    if lead.first_ns - nearest <= odd.last_ns and odd.first_ns <= lead.last_ns + nearest and _is_close(meeting, odd):
+    if (
+        lead.first_ns - nearest <= odd.last_ns
+        and odd.first_ns <= lead.last_ns + nearest
+        and _is_close(meeting, odd)
+    ):
         return f"{said}the nearest two are {length_text(nearest)} apart: is max_skew_ms too small?"
     these, others = Span(odd.first_ns, odd.last_ns), Span(lead.first_ns, lead.last_ns)
     return f"{said}{cause_text(these, others)}"
@@ -81,8 +85,9 @@ def _too_many_steps(meeting: Meeting, row: Series) -> Iterator[Finding]:
     if count:
         step = row.step_ns or meeting.lead.step_ns or 0.0
         text = (
-            f"camera {row.camera} is left out of {count} of {len(meeting.lead)} moments: its nearest image is more than "
-            f"three of its steps of {length_text(step)} away, though within max_skew_ms ({length_text(meeting.max_skew_ns)})"
+            f"camera {row.camera} is left out of {count} of {len(meeting.lead)} moments: its nearest image is more "
+            f"than three of its steps of {length_text(step)} away, though within max_skew_ms, "
+            f"{length_text(meeting.max_skew_ns)}"
         )
         yield Finding("skew", (row.camera,), text, False)
 
@@ -94,7 +99,7 @@ def _unit(meeting: Meeting) -> Iterator[Finding]:
     if Span(*micro).are_dates:
         text = f"stamps read as microseconds would be {span_text(*micro)}: if they are, say stamp_unit: us in recording"
         yield Finding("unit", (), text, False)
-    if step is not None and 1e9 / step < LATEST_RATE_HZ and len(lead) > 2:
+    if step is not None and 1e9 / step < RARE_HZ and len(lead) > 2:
         for unit, factor in NS.items():
             if factor > 1 and 1 <= 1e9 * factor / step <= 120:
                 text = (
@@ -173,7 +178,11 @@ def _offset(meeting: Meeting, row: Series) -> Iterator[Finding]:
             "images: is its clock off by that?"
         )
         yield Finding("clock", (row.camera,), text, False)
-    elif FAST < abs(ratio) < FASTEST and abs(ends - begins) > far and abs(step / usual - 1 - ratio) < 0.3 * abs(ratio):
+    elif (
+        FAST < abs(ratio) < FASTEST
+        and abs(ends - begins) > far
+        and abs(step / usual - 1 - ratio) < 0.3 * abs(ratio)
+    ):
         way = "fast" if ratio > 0 else "slow"
         text = (
             f"the clock of camera {row.camera} seems to run {100 * abs(ratio):.2g} % {way}: as many images as camera "

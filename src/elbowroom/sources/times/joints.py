@@ -104,7 +104,11 @@ def require_meeting(path: Path, record: JointRecord, meeting: Meeting) -> None:
     step = usual_step_ns(record.stamps_ns)
     if step is not None and step < 1e9 / FASTEST_ROWS_HZ:
         fits = [unit for unit, ns in NS.items() if ns > 1 and 1 / 60 < 1e9 / (step * ns) <= FASTEST_ROWS_HZ]
-        likely = f"they look like {WORDS[fits[0]]}: name that column stamp_{fits[0]}" if fits else "are they times?"
+        likely = (
+            f"they look like {WORDS[fits[0]]}: name that column stamp_{fits[0]}"
+            if fits
+            else "are they times?"
+        )
         raise JointsError(f"{path}: as nanoseconds, {1e9 / step:,.0f} rows a second; {likely}")
     known = float(_known(record, meeting.lead.stamps_ns).mean())
     for unit, ns in NS.items():

@@ -14,7 +14,7 @@ SHOWN = 4
 
 
 def natural(path: Path) -> tuple[tuple[int, int, str], ...]:
-    """A key that sorts names as people do: numbers as numbers, 9 before 10. 9 and 09 are of one place, so both count."""
+    """A key that sorts names as people do: numbers as numbers, 9 before 10; 09 beside 9."""
     parts = re.split(r"([0-9]+)", path.as_posix())
     key = tuple((0, int(part), "") if n % 2 else (1, 0, part) for n, part in enumerate(parts))
     return (*key, (2, 0, path.as_posix()))
@@ -109,7 +109,8 @@ def _disagree(
 ) -> str:
     """How names of one moment differ, and the likely cause."""
     here, there = numbers[lead], numbers[name]
-    text = f"images of moment {at} are {rows[lead][at].name} of camera {lead} and {rows[name][at].name} of camera {name}"
+    first, second = rows[lead][at].name, rows[name][at].name
+    text = f"images of moment {at} are {first} of camera {lead} and {second} of camera {name}"
     apart = np.unique(there - here)
     lacks = sorted(set(here.tolist()) - set(there.tolist()))
     if int(min(here.min(), there.min())) >= 10**9:

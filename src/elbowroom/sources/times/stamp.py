@@ -113,14 +113,16 @@ def _likely(step: float, last: float, unit: StampUnit, others: Sequence[str]) ->
     counts = step <= 10 and last < COUNTED
     if others:
         first = f"as {WORDS[fitting[0]]}, {hz(step * NS[fitting[0]])}" if fitting else "another unit"
-        return f"The others' ({_cameras(others)}) are possible, so these are in another unit ({first}): write all in one"
+        return f"Those of {_cameras(others)} are possible, so these are in another unit ({first}): write all in one"
     if counts or not fitting:
         return "If they are counts and no times, say layout: stampless"
     found = fitting[0]
     else_ = ", or layout: stampless if they are counts" if last < COUNTED else ""
     if step * NS[unit] >= 1e9 / FASTEST_BY_WORD_HZ:
         else_ += f", or stamp_unit: {unit} if they are right"
-    return f"They look like {WORDS[found]}, {hz(step * NS[found])}: say stamp_unit: {found} in recording{else_}"
+    return (
+        f"They look like {WORDS[found]}, {hz(step * NS[found])}: say stamp_unit: {found} in recording{else_}"
+    )
 
 
 def _cameras(names: Sequence[str]) -> str:

@@ -156,9 +156,9 @@ class RunLog:
             count = self.faults.total()
             yield Text(f"{count} cycles failed and said stop; most often ({times_seen}): {fault}", "bold red")
         if self.late:
-            count = f"{self.late} of {self.cycles} cycles"
-            text = f"{count} said stop, as images were past max_frame_age_ms when their verdicts were out"
-            yield Text(f"{text}: fewer pixels or larger voxels, more cores, or a limit that the machine can bear", "bold red")
+            late = f"{self.late} of {self.cycles} cycles said stop"
+            text = f"{late}, as images were past max_frame_age_ms when their verdicts were out"
+            yield Text(f"{text}: larger voxels, fewer pixels or more cores make a pass shorter", "bold red")
         for reason in self.stops.values():
             yield Text(f"Every motion was stopped: {reason}", "bold red")
         if self.stops:

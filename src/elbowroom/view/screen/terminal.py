@@ -68,6 +68,7 @@ class TerminalView:
         self._live = live
         self._last_screen: RenderableType | None = None
         self._last_shown_s = float("-inf")
+        self._told: set[tuple[str, tuple[str, ...]]] = set()
 
     def __enter__(self) -> "TerminalView":
         return self
@@ -100,6 +101,8 @@ class TerminalView:
         """Notes a pass and, if it is time, shows it."""
         result = done.result
         self.log.add(result, done.source_ms)
+        if self._live is None:
+            self._tell(result)
         now = time.perf_counter()
         if now - self._last_shown_s < (REFRESH_S if self._live is not None else PLAIN_EVERY_S):
             return
@@ -109,6 +112,13 @@ class TerminalView:
             self._live.update(self._last_screen, refresh=True)
         else:
             self.console.print(self.line(result), soft_wrap=True, highlight=False, markup=False)
+
+    def _tell(self, result: CycleResult) -> None:
+        """Prints what was found about the input once a kind and a camera: plain lines come too seldom for it."""
+        for finding in result.findings:
+            if (finding.kind, finding.about) not in self._told:
+                self._told.add((finding.kind, finding.about))
+                self.note(f"{result.stamp_ns / 1e9:.2f} s: {finding.text}")
 
     def end(self) -> None:
         """Ends the screen and prints what the run came to."""
