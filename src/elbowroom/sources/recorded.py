@@ -12,9 +12,11 @@ from elbowroom.sources.layouts.folder import Folder
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
 from elbowroom.sources.layouts.seven_scenes import SevenScenesFrames
+from elbowroom.sources.layouts.stampless import Stampless
 from elbowroom.sources.times.company import findings_of
 from elbowroom.sources.times.joints import joint_findings
 from elbowroom.sources.times.meeting import Meeting
+from elbowroom.sources.times.numbers import padding_findings
 
 Joints = Mapping[str, float] | JointRecord
 """Positions by name that hold throughout [m or rad], or a record of them."""
@@ -116,6 +118,8 @@ def time_findings(site: Site) -> tuple[Finding, ...]:
         SiteError, FrameError, JointsError: as `moments`.
     """
     layout = layout_of(site) if site.entry.recording is not None else None
+    if isinstance(layout, Stampless):
+        return padding_findings({name: [i.path for i in row] for name, row in layout.by_camera().items()})
     if not isinstance(layout, Folder):
         return ()
     layout.moments()

@@ -35,6 +35,11 @@ class _Heard:
     greatest_ns: int
     steps_ns: deque[int] = field(default_factory=lambda: deque(maxlen=REMEMBERED))
 
+    @property
+    def usual_step_ns(self) -> int:
+        """The median of the latest steps [ns]; there is one."""
+        return sorted(self.steps_ns)[len(self.steps_ns) // 2]
+
 
 @dataclass(slots=True, eq=False)
 class Clocks:
@@ -111,7 +116,7 @@ class Clocks:
         stamps = {frame.camera: frame.stamp_ns for frame in young if frame.stamp_ns is not None}
         if len(stamps) < 2:
             return
-        steps = [float(np.median(h.steps_ns)) for h in self._heard.values() if h.steps_ns]
+        steps = [h.usual_step_ns for h in self._heard.values() if h.steps_ns]
         limit = max(SKEW_STEPS * max(steps), SKEW_NS) if steps else UNKNOWN_STEP_NS
         oldest, newest = min(stamps, key=stamps.__getitem__), max(stamps, key=stamps.__getitem__)
         skew = stamps[newest] - stamps[oldest]

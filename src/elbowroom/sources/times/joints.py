@@ -24,7 +24,7 @@ FASTEST_ROWS_HZ = 20_000
 """No machine tells its joints more often."""
 SCARCE = 0.1
 """Where joints are known at less than this share of the images, another unit is tried."""
-TOO_FAST, SLOW_ENOUGH = 5.0, 1.5
+TOO_FAST, SLOW_ENOUGH = 10.0, 1.5
 """Speeds above so many times full speed are none; those below so many times may be."""
 
 

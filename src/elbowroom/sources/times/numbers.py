@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import SiteError
+from elbowroom.finding import Finding
 
 SHOWN = 4
 
@@ -30,16 +31,48 @@ def counters(paths: Sequence[Path]) -> NDArray[np.int64] | None:
         shape (n,); None: there is none, or several that are no date.
     """
     found = [re.findall(r"[0-9]+", path.as_posix()) for path in paths]
-    if len(paths) < 2 or len({len(numbers) for numbers in found}) != 1:
+    column = _counting_column(found)
+    if column is not None:
+        return np.array([int(numbers[column]) for numbers in found], dtype=np.int64)
+    if len(paths) < 2:
         return None
-    columns = np.array([[int(number) % 2**62 for number in numbers] for numbers in found], dtype=np.int64)
-    changing = (columns != columns[0]).any(axis=0)
-    if not changing.any():
-        return None
-    if changing.sum() == 1:
-        return columns[:, int(np.argmax(changing))]
     times = [_time_in(path.name) for path in paths]
-    return np.array(times, dtype=np.int64) if all(time is not None for time in times) else None
+    if any(time is None for time in times) or len(set(times)) == 1:
+        return None
+    return np.array(times, dtype=np.int64)
+
+
+def _counting_column(found: Sequence[Sequence[str]]) -> int | None:
+    """Of the numbers in each name the only one that changes; None: there is none, or there are several."""
+    if len(found) < 2 or len({len(numbers) for numbers in found}) != 1:
+        return None
+    changing = [n for n in range(len(found[0])) if len({int(numbers[n]) for numbers in found}) > 1]
+    # what 64 bits do not hold counts nothing
+    return changing[0] if len(changing) == 1 and max(int(row[changing[0]]) for row in found) < 2**62 else None
+
+
+def padding_findings(rows: Mapping[str, Sequence[Path]]) -> tuple[Finding, ...]:
+    """What is said where cameras write the number of one moment in different ways: 9 and 09.
+
+    Args:
+        rows: by camera, in order; they agree.
+    """
+    texts = {}
+    for name, row in rows.items():
+        found = [re.findall(r"[0-9]+", path.as_posix()) for path in row]
+        column = _counting_column(found)
+        if column is not None:
+            texts[name] = [numbers[column] for numbers in found]
+    for name, row in texts.items():
+        for lead, others in texts.items():
+            for number, other in zip(row, others, strict=False):
+                if number != other and int(number) == int(other):
+                    text = (
+                        f"camera {name} writes {number} where camera {lead} writes {other}: images are in order "
+                        "of their numbers"
+                    )
+                    return (Finding("names", (name, lead), text, False),)
+    return ()
 
 
 def require_agreement(site: Path, rows: Mapping[str, Sequence[Path]], listed: Collection[str] = ()) -> None:
