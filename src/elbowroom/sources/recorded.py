@@ -13,10 +13,10 @@ from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
 from elbowroom.sources.layouts.seven_scenes import SevenScenesFrames
 from elbowroom.sources.layouts.stampless import Stampless
-from elbowroom.sources.times.company import findings_of
 from elbowroom.sources.times.joints import joint_findings
 from elbowroom.sources.times.meeting import Meeting
 from elbowroom.sources.times.numbers import padding_findings
+from elbowroom.sources.times.oddities import findings_of
 
 Joints = Mapping[str, float] | JointRecord
 """Positions by name that hold throughout [m or rad], or a record of them."""

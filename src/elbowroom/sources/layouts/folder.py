@@ -14,7 +14,7 @@ from elbowroom.site.paths import inside
 from elbowroom.site.recording_entry import StampedFolder, StampUnit
 from elbowroom.site.site import Site
 from elbowroom.sources.layouts.image import Image
-from elbowroom.sources.times.company import require_company
+from elbowroom.sources.times.company import require_company, require_dates
 from elbowroom.sources.times.joints import of_machine, require_meeting
 from elbowroom.sources.times.meeting import Meeting
 from elbowroom.sources.times.series import Series
@@ -43,6 +43,7 @@ class Folder:
             FrameError: two images of a camera at one time, or a name that is no time.
         """
         meeting = self.meeting
+        require_dates(self.site.path, meeting)
         require_company(self.site.path, meeting)
         return [
             [images[index] for images, index in zip(self._rows.values(), column, strict=True) if index >= 0]
@@ -60,7 +61,8 @@ class Folder:
             raise SiteError(
                 f"{self.site.path}: recording: no frames; expected {self.folder}/<camera>/<stamp_ns>.png"
             )
-        return Meeting(series, round(self.recording.max_skew_ms * 1e6))
+        declared = self.recording.stamp_unit is not None
+        return Meeting(series, round(self.recording.max_skew_ms * 1e6), declared)
 
     def by_camera(self) -> dict[str, list[Image]]:
         """Each camera's images by rising time; none if it has no folder. Raises as `moments`."""

@@ -1,27 +1,12 @@
 """Whether the cameras of a recording keep each other company in time."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
-
 from elbowroom.errors import SiteError
-from elbowroom.finding import Finding
 from elbowroom.sources.times.cause import Span, cause_text
 from elbowroom.sources.times.meeting import Meeting
-from elbowroom.sources.times.series import Series, length_text, span_text, time_text
-from elbowroom.sources.times.stamp import NS, WORDS, hz
-
-LOST_SHARE, LOST_LEAST = 0.02, 3
-"""A camera that lacks more of its images than this is named."""
-APART_STEPS = 5
-"""Beginnings and ends that lie farther apart than so many steps are looked at."""
-FAST, FASTEST = 1e-3, 0.1
-"""A clock that runs fast or slow by between these shares."""
-BURST, BURST_SHARE = 0.2, 0.05
-"""Steps shorter than this share of the usual one come in bursts, if so many do."""
-RARE_HZ = 1 / 10
-"""Slower than this, another unit is likelier, if it gives what cameras do."""
+from elbowroom.sources.times.series import Series, length_text, span_text
+from elbowroom.sources.times.stamp import NS, WORDS
 
 
 def require_company(site: Path, meeting: Meeting) -> None:
@@ -34,33 +19,52 @@ def require_company(site: Path, meeting: Meeting) -> None:
     if len(heard) < 2 or ((meeting.taken() >= 0).sum(axis=0) > 1).any():
         return
     odd = next(row for row in heard if row is not meeting.lead)
-    raise SiteError(f"{site}: recording: no moment has images of two cameras: {_never(meeting, odd)}")
+    raise SiteError(f"{site}: recording: no moment has images of two cameras: {never_text(meeting, odd)}")
 
 
-def findings_of(meeting: Meeting) -> tuple[Finding, ...]:
-    """All that is odd about when a recording's images were taken; none of it keeps moments from being judged."""
-    found = [*_who_never_meets(meeting), *_unit(meeting), *_gaps(meeting)]
-    for row in meeting.series:
-        if len(row):
-            found += [*_too_many_steps(meeting, row), *_lost(meeting, row), *_bursts(row)]
-        if len(row) and row is not meeting.lead:
-            found += _offset(meeting, row)
-    return tuple(found)
+def require_dates(site: Path, meeting: Meeting) -> None:
+    """Refuses single images that are dates in a coarser unit, where that would put them too far apart for one moment.
+
+    Args:
+        site: the site's file, to be named.
+        meeting: of its recording, as nanoseconds.
+
+    Raises:
+        SiteError: names the unit.
+    """
+    if meeting.declared or meeting.lead.step_ns is not None:
+        return
+    heard = [row for row in meeting.series if len(row)]
+    first, last = min(row.first_ns for row in heard), max(row.last_ns for row in heard)
+    skew = int(meeting.skews_ns().max())
+    for unit, factor in NS.items():
+        if (
+            factor > 1
+            and skew * factor > meeting.max_skew_ns
+            and Span(first * factor, last * factor).are_dates
+        ):
+            raise SiteError(
+                f"{site}: recording: stamps look like {WORDS[unit]} ({span_text(first * factor, last * factor)}), and "
+                f"then images of one moment are {length_text(skew * factor)} apart; say stamp_unit: {unit} in "
+                "recording, or stamp_unit: ns if they are right"
+            )
 
 
-def _never(meeting: Meeting, odd: Series) -> str:
+def never_text(meeting: Meeting, odd: Series) -> str:
+    """That a camera's images never meet those of the leading one, with both spans of time and the likely cause.
+
+    Args:
+        meeting: of the recording.
+        odd: of the camera.
+    """
     lead = meeting.lead
-    skew = length_text(meeting.max_skew_ns)
+    skew = length_text(meeting.limit_ns(odd))
     nearest = int(meeting.nearest_ns(odd).min())
     said = (
         f"images of camera {odd.camera} ({odd.span}) are never within {skew} of those of camera {lead.camera} "
         f"({lead.span}); "
     )
-    if (
-        lead.first_ns - nearest <= odd.last_ns
-        and odd.first_ns <= lead.last_ns + nearest
-        and _is_close(meeting, odd)
-    ):
+    if _is_close(meeting, odd):
         return f"{said}the nearest two are {length_text(nearest)} apart: is max_skew_ms too small?"
     these, others = Span(odd.first_ns, odd.last_ns), Span(lead.first_ns, lead.last_ns)
     return f"{said}{cause_text(these, others)}"
@@ -70,122 +74,3 @@ def _is_close(meeting: Meeting, odd: Series) -> bool:
     """Whether a camera's nearest image is no farther off than images usually are apart."""
     steps = [step for step in (odd.step_ns, meeting.lead.step_ns) if step is not None]
     return bool(steps) and int(meeting.nearest_ns(odd).min()) <= max(steps)
-
-
-def _who_never_meets(meeting: Meeting) -> Iterator[Finding]:
-    taken = meeting.taken()
-    for row, index in zip(meeting.series, taken, strict=True):
-        if len(row) and (index < 0).all():
-            text = f"{_never(meeting, row)}. As it is, {row.camera} disputes all that it looks at"
-            yield Finding("clock", (row.camera,), text, False)
-
-
-def _too_many_steps(meeting: Meeting, row: Series) -> Iterator[Finding]:
-    count = meeting.too_many_steps(row)
-    if count:
-        step = row.step_ns or meeting.lead.step_ns or 0.0
-        text = (
-            f"camera {row.camera} is left out of {count} of {len(meeting.lead)} moments: its nearest image is more "
-            f"than three of its steps of {length_text(step)} away, though within max_skew_ms, "
-            f"{length_text(meeting.max_skew_ns)}"
-        )
-        yield Finding("skew", (row.camera,), text, False)
-
-
-def _unit(meeting: Meeting) -> Iterator[Finding]:
-    """Stamps that are possible, but likelier in another unit."""
-    step, lead = meeting.lead.step_ns, meeting.lead
-    micro = lead.first_ns * NS["us"], lead.last_ns * NS["us"]
-    if Span(*micro).are_dates:
-        text = f"stamps read as microseconds would be {span_text(*micro)}: if they are, say stamp_unit: us in recording"
-        yield Finding("unit", (), text, False)
-    if step is not None and 1e9 / step < RARE_HZ and len(lead) > 2:
-        for unit, factor in NS.items():
-            if factor > 1 and 1 <= 1e9 * factor / step <= 120:
-                text = (
-                    f"{hz(step)}; were these stamps a {factor:,}th of that, it would be {hz(step / factor)}: is "
-                    f"stamp_unit right, {WORDS[unit]} for nanoseconds?"
-                )
-                yield Finding("unit", (), text, False)
-
-
-def _gaps(meeting: Meeting) -> Iterator[Finding]:
-    lead = meeting.lead
-    long = np.flatnonzero(lead.steps_ns > meeting.gap_ns)
-    if not len(long):
-        return
-    worst = int(long[np.argmax(lead.steps_ns[long])])
-    before, after = int(lead.stamps_ns[worst]), int(lead.stamps_ns[worst + 1])
-    more = f", the longest of {len(long)} such gaps" if len(long) > 1 else ""
-    set_ = not Span(before, before).are_dates and Span(after, after).are_dates
-    why = ": was the clock set in between?" if set_ else ""
-    text = (
-        f"no image for {length_text(after - before)} after moment {worst} ({time_text(before)} to {time_text(after)})"
-        f"{more}{why}; monitor skips it"
-    )
-    yield Finding("gap", (), text, False)
-
-
-def _lost(meeting: Meeting, row: Series) -> Iterator[Finding]:
-    """Images that a camera lacks among its own, where the others have theirs."""
-    step = row.step_ns
-    if step is None or step <= 0 or len(row) < 10:
-        return
-    steps = row.steps_ns
-    missing = np.where(steps <= meeting.gap_ns, np.rint(steps / step) - 1, 0).clip(0)
-    lost, whole = int(missing.sum()), int(missing.sum()) + len(row)
-    if lost >= LOST_LEAST and lost > LOST_SHARE * whole:
-        text = f"camera {row.camera} lacks {lost} of {whole} images ({_how_often(missing)}): there it counts as lost"
-        yield Finding("lost", (row.camera,), text, False)
-
-
-def _how_often(missing: np.ndarray) -> str:
-    at = np.flatnonzero(missing > 0)
-    every = np.diff(at)
-    if len(at) > 2 and every.min() == every.max() and (missing[at] == 1).all():
-        return f"every {int(every[0]) + 1}th"
-    longest = int(missing.max())
-    return f"at {len(at)} places, up to {longest} in a row" if longest > 1 else f"at {len(at)} places"
-
-
-def _bursts(row: Series) -> Iterator[Finding]:
-    step = row.step_ns
-    if step is None or len(row) < 20:
-        return
-    share = float((row.steps_ns < BURST * step).mean())
-    if share > BURST_SHARE:
-        text = (
-            f"camera {row.camera}: {100 * share:.0f} % of its images follow the one before within a fifth of the usual "
-            f"{length_text(step)}: stamps look like times of arrival; they must be times of exposure"
-        )
-        yield Finding("burst", (row.camera,), text, False)
-
-
-def _offset(meeting: Meeting, row: Series) -> Iterator[Finding]:
-    """A clock that is constantly off, or runs fast or slow, beside the leading camera's."""
-    lead = meeting.lead
-    step, usual = row.step_ns, lead.step_ns
-    if step is None or usual is None or len(row) < 10 or abs(len(row) - len(lead)) > 0.02 * len(lead) + 1:
-        return
-    begins, ends = row.first_ns - lead.first_ns, row.last_ns - lead.last_ns
-    far = max(APART_STEPS * max(step, usual), 2 * meeting.max_skew_ns)
-    length, whole = row.last_ns - row.first_ns, lead.last_ns - lead.first_ns
-    ratio = length / whole - 1
-    if abs(begins) > far and abs(ends - begins) < 0.1 * abs(begins) + 2 * usual:
-        way = "later" if begins > 0 else "earlier"
-        text = (
-            f"camera {row.camera} begins and ends {length_text(begins)} {way} than camera {lead.camera}, with as many "
-            "images: is its clock off by that?"
-        )
-        yield Finding("clock", (row.camera,), text, False)
-    elif (
-        FAST < abs(ratio) < FASTEST
-        and abs(ends - begins) > far
-        and abs(step / usual - 1 - ratio) < 0.3 * abs(ratio)
-    ):
-        way = "fast" if ratio > 0 else "slow"
-        text = (
-            f"the clock of camera {row.camera} seems to run {100 * abs(ratio):.2g} % {way}: as many images as camera "
-            f"{lead.camera} in {length_text(length)} instead of {length_text(whole)}"
-        )
-        yield Finding("clock", (row.camera,), text, False)

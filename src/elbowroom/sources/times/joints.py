@@ -102,6 +102,13 @@ def require_meeting(path: Path, record: JointRecord, meeting: Meeting) -> None:
     """
     rows, images = _span(record), _images(meeting)
     step = usual_step_ns(record.stamps_ns)
+    known = float(_known(record, meeting.lead.stamps_ns).mean())
+    for unit, ns in NS.items():
+        if ns > 1 and known < SCARCE and _fits(rows, images, ns):
+            raise JointsError(
+                f"{path}: as nanoseconds, joints are known at {100 * known:.0f} % of the images, as {WORDS[unit]} from "
+                f"beginning to end: name that column stamp_{unit}"
+            )
     if step is not None and step < 1e9 / FASTEST_ROWS_HZ:
         fits = [unit for unit, ns in NS.items() if ns > 1 and 1 / 60 < 1e9 / (step * ns) <= FASTEST_ROWS_HZ]
         likely = (
@@ -110,13 +117,6 @@ def require_meeting(path: Path, record: JointRecord, meeting: Meeting) -> None:
             else "are they times?"
         )
         raise JointsError(f"{path}: as nanoseconds, {1e9 / step:,.0f} rows a second; {likely}")
-    known = float(_known(record, meeting.lead.stamps_ns).mean())
-    for unit, ns in NS.items():
-        if ns > 1 and known < SCARCE and _fits(rows, images, ns):
-            raise JointsError(
-                f"{path}: as nanoseconds, joints are known at {100 * known:.0f} % of the images, as {WORDS[unit]} from "
-                f"beginning to end: name that column stamp_{unit}"
-            )
     if known == 0 and not rows.covers(images):
         raise JointsError(
             f"{path}: joints from {span_text(rows.first_ns, rows.last_ns)}, images from "

@@ -24,10 +24,12 @@ class Meeting:
     Args:
         series: of all cameras; one of them has images.
         max_skew_ns: images farther from that of the leading camera are of no use to its moment [ns].
+        declared: whether the site says in which unit stamps are.
     """
 
     series: Sequence[Series]
     max_skew_ns: int
+    declared: bool = False
 
     @property
     def lead(self) -> Series:
@@ -36,7 +38,7 @@ class Meeting:
 
     def taken(self) -> NDArray[np.int64]:
         """Which image of each camera is part of each moment, shape (cameras, moments); -1: none."""
-        return np.stack([self._near(row, self._limit_ns(row)) for row in self.series])
+        return np.stack([self._near(row, self.limit_ns(row)) for row in self.series])
 
     def nearest_ns(self, row: Series) -> NDArray[np.int64]:
         """How far a camera's nearest image is from each moment's leading one [ns], shape (moments,)."""
@@ -48,7 +50,7 @@ class Meeting:
         if not len(row):
             return 0
         away = self.nearest_ns(row)
-        return int(((away <= self.max_skew_ns) & (away > self._limit_ns(row))).sum())
+        return int(((away <= self.max_skew_ns) & (away > self.limit_ns(row))).sum())
 
     def skews_ns(self) -> NDArray[np.int64]:
         """Between the first and the last image of each moment [ns], shape (moments,)."""
@@ -66,7 +68,8 @@ class Meeting:
         """Nothing for longer than this is a gap [ns]."""
         return gap_ns(self.lead.step_ns)
 
-    def _limit_ns(self, row: Series) -> int:
+    def limit_ns(self, row: Series) -> int:
+        """How far a camera's image may be from a moment's leading one to be part of it [ns]."""
         steps = [step for step in (row.step_ns, self.lead.step_ns) if step is not None]
         return min(self.max_skew_ns, round(MAX_STEPS * max(steps))) if steps else self.max_skew_ns
 

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import SiteError
 from elbowroom.finding import Finding
+from elbowroom.sources.times.date import date_in
 
 SHOWN = 4
 
@@ -36,7 +36,7 @@ def counters(paths: Sequence[Path]) -> NDArray[np.int64] | None:
         return np.array([int(numbers[column]) for numbers in found], dtype=np.int64)
     if len(paths) < 2:
         return None
-    times = [_time_in(path.name) for path in paths]
+    times = [date_in(path.name) for path in paths]
     if any(time is None for time in times) or len(set(times)) == 1:
         return None
     return np.array(times, dtype=np.int64)
@@ -158,19 +158,3 @@ def _disagree(
 def _shown(numbers: Sequence[int]) -> str:
     more = f" and {len(numbers) - SHOWN} more" if len(numbers) > SHOWN else ""
     return f"{', '.join(map(str, numbers[:SHOWN]))}{more}"
-
-
-_DATE = re.compile(r"((?:19|20)\d\d)\D?(\d\d)\D?(\d\d)\D?(\d\d)\D?(\d\d)\D?(\d\d)(?:\D?(\d{1,9}))?(?!\d)")
-
-
-def _time_in(name: str) -> int | None:
-    """A date and time in a name [us since 1970]; None: there is none."""
-    found = _DATE.search(name)
-    if found is None:
-        return None
-    *date, fraction = found.groups()
-    try:
-        whole = datetime(*map(int, date), tzinfo=UTC)  # type: ignore[arg-type,misc]
-    except ValueError:
-        return None
-    return round(whole.timestamp()) * 1_000_000 + int((fraction or "0")[:6].ljust(6, "0"))
