@@ -84,7 +84,7 @@ def test_the_message_says_rate_unit_and_what_to_write():
     text = refusal(steady(33_333))
     assert "33333, which as nanoseconds is 30,000 images a second; depth cameras give at most 300" in text
     assert "They look like microseconds, 30.0 images a second: say stamp_unit: us in recording" in text
-    assert "say stamp_unit: ms" in refusal(steady(33, first=1_700_000_000_000), "us", True)
+    assert "say stamp_unit: ms" in refusal(steady(33_000, first=1_700_000_000_000_000), "us", True)
     assert "say stamp_unit: ms" in refusal(steady(5_000, first=1_700_000_000_000))
 
 
