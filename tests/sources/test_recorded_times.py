@@ -7,7 +7,7 @@ import pytest
 from elbowroom.cli.site import site_app
 from elbowroom.errors import InputError, JointsError, SiteError
 from elbowroom.site import Site
-from elbowroom.sources import moments, silent_cameras, time_findings, times_of
+from elbowroom.sources import Recorded, moments, silent_cameras, time_findings, times_of
 
 MS = 1_000_000
 US = 1_000
@@ -99,6 +99,15 @@ def test_a_camera_on_another_clock_is_said_and_is_not_called_silent(recorded, ca
         "images of camera south (5.000 s to 5.500 s) are never within 50 ms of those of camera north" in said
     )
     assert frames(site) == [[("north", stamp), ("west", stamp)] for stamp in even]
+
+
+def test_two_cameras_that_never_meet_are_refused_where_they_are_to_be_judged(recorded):
+    """Each camera alone may still be calibrated by what it saw of the machine."""
+    site = recorded(north=[EPOCH, EPOCH + 500 * MS], south=[5_000 * MS, 5_500 * MS])
+    with pytest.raises(SiteError, match="no moment has images of two cameras: images of camera south"):
+        iter(Recorded(site))
+    assert len(list(moments(site))) == 2
+    assert "never within 50 ms" in texts(site)
 
 
 def test_rate_skew_and_spans_are_in_the_row(recorded, tmp_path):

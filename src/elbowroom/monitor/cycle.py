@@ -109,8 +109,8 @@ class Cycle:
         if age_ms + took_ms <= limit_ns / 1e6:
             return None
         return (
-            f"its verdicts are out when the oldest image is {age_ms + took_ms:.0f} ms old, "
-            f"at most {limit_ns / 1e6:g} ms are allowed (max_frame_age_ms): the pass took {took_ms:.0f} ms"
+            f"the oldest image is {age_ms + took_ms:.0f} ms old when the verdicts are out, at most "
+            f"{limit_ns / 1e6:g} ms are allowed (max_frame_age_ms); the pass took {took_ms:.0f} ms"
         )
 
     def _space_of(self, snapshot: Snapshot, stage_ms: dict[str, float]) -> FreeSpace:

@@ -13,6 +13,7 @@ from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
 from elbowroom.sources.layouts.seven_scenes import SevenScenesFrames
 from elbowroom.sources.layouts.stampless import Stampless
+from elbowroom.sources.times.company import require_company
 from elbowroom.sources.times.joints import joint_findings
 from elbowroom.sources.times.meeting import Meeting
 from elbowroom.sources.times.numbers import padding_findings
@@ -40,7 +41,15 @@ class Recorded:
         return "reading"
 
     def __iter__(self) -> Iterator[Snapshot]:
-        """The moments, from the first one; raises as `moments`."""
+        """The moments, from the first one.
+
+        Raises:
+            SiteError: no moment has images of two cameras, though several have some: nothing could be judged.
+            InputError: as `moments`.
+        """
+        times = times_of(self.site)
+        if times is not None:
+            require_company(self.site.path, times)
         return moments(self.site, self.joints)
 
     def close(self) -> None:

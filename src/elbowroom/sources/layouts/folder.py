@@ -14,7 +14,7 @@ from elbowroom.site.paths import inside
 from elbowroom.site.recording_entry import StampedFolder, StampUnit
 from elbowroom.site.site import Site
 from elbowroom.sources.layouts.image import Image
-from elbowroom.sources.times.company import require_company, require_dates
+from elbowroom.sources.times.company import require_dates
 from elbowroom.sources.times.joints import of_machine, require_meeting
 from elbowroom.sources.times.meeting import Meeting
 from elbowroom.sources.times.series import Series
@@ -39,12 +39,11 @@ class Folder:
         """Images gathered around those of the camera that has most: of each other the nearest, within `max_skew_ms`.
 
         Raises:
-            SiteError: images of an unknown camera, none at all, steps that no camera makes, or cameras that never meet.
+            SiteError: images of an unknown camera, none at all, or steps that no camera makes.
             FrameError: two images of a camera at one time, or a name that is no time.
         """
         meeting = self.meeting
         require_dates(self.site.path, meeting)
-        require_company(self.site.path, meeting)
         return [
             [images[index] for images, index in zip(self._rows.values(), column, strict=True) if index >= 0]
             for column in meeting.taken().T
@@ -52,7 +51,7 @@ class Folder:
 
     @cached_property
     def meeting(self) -> Meeting:
-        """When each camera's images were taken, and who meets whom; raises as `moments`, but for who never meet."""
+        """When each camera's images were taken, and who meets whom; raises as `moments`."""
         series = tuple(
             Series(name, np.array([image.stamp_ns for image in row], dtype=np.int64))
             for name, row in self._rows.items()

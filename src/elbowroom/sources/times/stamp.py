@@ -53,7 +53,7 @@ def stamp_of(path: Path, unit: StampUnit) -> int:
         raise FrameError(
             f"{path}: name must be the time of exposure in whole nanoseconds, <stamp_ns>.png{_hint(path.stem)}"
         )
-    stamp = int(Decimal(path.stem) * NS[unit])
+    stamp = int(path.stem) * NS[unit] if "." not in path.stem else int(Decimal(path.stem) * NS[unit])
     if stamp >= 2**63:
         raise FrameError(
             f"{path}: {path.stem} {WORDS[unit]} are {stamp / 1e9 / 31_556_952:,.0f} years, more than 64 bits of "

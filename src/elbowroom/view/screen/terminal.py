@@ -220,7 +220,7 @@ def _stops(result: CycleResult) -> list[str]:
     lines = [f"Stop: {reason}. Stays until the monitor is started again." for reason in found]
     lines += [f"Stop: {finding.text}" for finding in result.findings if finding.stops]
     if result.late is not None:
-        lines.append(f"Stop, since {result.late}")
+        lines.append(f"Stop: {result.late}")
     return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
 
 
