@@ -52,6 +52,25 @@ def test_a_camera_that_died_is_no_part_of_what_came_later_though_the_limit_would
     assert made.too_many_steps(made.series[0]) == 2 and made.too_many_steps(made.lead) == 0
 
 
+def test_where_the_unit_is_not_sure_an_image_is_of_its_nearest_moment_alone():
+    """Microseconds with ten seconds between images look like nanoseconds of a camera with 100 images a second."""
+    live, died = [n * 10 * MS for n in range(6)], [n * 10 * MS for n in range(3)]
+    assert meeting(50 * MS, one=live, two=died).taken()[1].tolist() == [0, 1, 2, -1, -1, -1]
+    later = 10**11
+    sure = meeting(50 * MS, one=[later + n for n in live], two=[later + n for n in died])
+    assert sure.taken()[1].tolist() == [0, 1, 2, 2, 2, 2]
+    # half a step apart they still meet, and a camera half as fast meets all
+    assert meeting(50 * MS, one=live, two=[n + 5 * MS for n in live]).taken()[1].tolist() == [
+        0,
+        0,
+        1,
+        2,
+        3,
+        4,
+    ]
+    assert (meeting(50 * MS, one=live, two=live[::2]).taken() >= 0).all()
+
+
 def test_a_camera_without_images_is_no_part_of_any_moment():
     assert meeting(5, one=[1, 2], none=[]).taken().tolist() == [[0, 1], [-1, -1]]
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from elbowroom.sources.times.series import DATES_FROM_NS, DATES_TO_NS, length_text
+from elbowroom.sources.times.series import are_dates, length_text
 from elbowroom.sources.times.stamp import NS, WORDS
 
 ZONE_S = 900
@@ -26,7 +26,7 @@ class Span:
     @property
     def are_dates(self) -> bool:
         """Whether they lie between the years 2000 and 2100."""
-        return self.first_ns >= DATES_FROM_NS and self.last_ns < DATES_TO_NS
+        return are_dates(self.first_ns, self.last_ns)
 
     def covers(self, other: "Span", factor: float = 1.0) -> bool:
         """Whether they overlap if this one's numbers are multiplied.

@@ -6,11 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.sources.times.series import Series
+from elbowroom.sources.times.series import Series, are_dates
 
 MAX_STEPS = 3
 """An image more than so many usual steps away is of another moment, whatever `max_skew_ms` allows: between them its
 camera lost images. This limit does not hang on the unit of the stamps."""
+UNSURE_STEPS = 0.75
+"""Where stamps may be in another unit than nanoseconds, an image is of the moment that it is nearest to alone."""
+SECOND_NS = 1_000_000_000
 LONGEST_WAIT_S = 60.0
 SHORTEST_GAP_S = 5.0
 GAP_IN_STEPS = 20
@@ -64,6 +67,14 @@ class Meeting:
         return latest - earliest
 
     @property
+    def unsure(self) -> bool:
+        """Whether stamps may well be microseconds: the site does not say, and as nanoseconds all images lie within the
+        first second of their clock, or as microseconds they are dates.
+        """
+        first, last = self.lead.first_ns, self.lead.last_ns
+        return not self.declared and (last < SECOND_NS or are_dates(1_000 * first, 1_000 * last))
+
+    @property
     def gap_ns(self) -> int:
         """Nothing for longer than this is a gap [ns]."""
         return gap_ns(self.lead.step_ns)
@@ -71,7 +82,8 @@ class Meeting:
     def limit_ns(self, row: Series) -> int:
         """How far a camera's image may be from a moment's leading one to be part of it [ns]."""
         steps = [step for step in (row.step_ns, self.lead.step_ns) if step is not None]
-        return min(self.max_skew_ns, round(MAX_STEPS * max(steps))) if steps else self.max_skew_ns
+        most = UNSURE_STEPS if self.unsure else MAX_STEPS
+        return min(self.max_skew_ns, round(most * max(steps))) if steps else self.max_skew_ns
 
     def _near(self, row: Series, limit_ns: int) -> NDArray[np.int64]:
         if not len(row):

@@ -69,9 +69,12 @@ def _unit(meeting: Meeting) -> Iterator[Finding]:
             "say stamp_unit in recording"
         )
         yield Finding("unit", (), text, False)
-    micro = lead.first_ns * NS["us"], lead.last_ns * NS["us"]
-    if Span(*micro).are_dates and not meeting.declared:
-        text = f"stamps read as microseconds would be {span_text(*micro)}: if they are, say stamp_unit: us in recording"
+    if meeting.unsure and step is not None:
+        micro = span_text(lead.first_ns * NS["us"], lead.last_ns * NS["us"])
+        text = (
+            f"are stamps nanoseconds? As they are, images are from {lead.span}; as microseconds, from {micro}: say "
+            "stamp_unit: ns or us in recording. Until then an image counts for its nearest moment alone"
+        )
         yield Finding("unit", (), text, False)
     if step is not None and 1e9 / step < RARE_HZ and len(lead) > 2:
         for unit, factor in NS.items():

@@ -83,9 +83,18 @@ def span_text(first_ns: int, last_ns: int) -> str:
     return f"{first.removesuffix(' UTC')} to {last[day:]}"
 
 
+def are_dates(first_ns: int, last_ns: int) -> bool:
+    """Whether both lie between the years 2000 and 2100.
+
+    Args:
+        first_ns, last_ns: [ns].
+    """
+    return first_ns >= DATES_FROM_NS and last_ns < DATES_TO_NS
+
+
 def time_text(stamp_ns: int) -> str:
     """A time: "2023-11-14 22:13:20.500 UTC" from 2000 to 2100, otherwise seconds of its clock: "5.500 s"."""
-    if not DATES_FROM_NS <= stamp_ns < DATES_TO_NS:
+    if not are_dates(stamp_ns, stamp_ns):
         return f"{stamp_ns / 1e9:.3f} s"
     whole, rest = divmod(stamp_ns, 1_000_000_000)
     date = datetime.fromtimestamp(whole, UTC).strftime("%Y-%m-%d %H:%M:%S")

@@ -10,7 +10,7 @@ import numpy as np
 from elbowroom.errors import FrameError, SiteError
 from elbowroom.site.recording_entry import StampUnit
 from elbowroom.sources.times.date import date_in
-from elbowroom.sources.times.series import DATES_FROM_NS, DATES_TO_NS, usual_step_ns
+from elbowroom.sources.times.series import are_dates, usual_step_ns
 
 NS: Mapping[StampUnit, int] = {"ns": 1, "us": 1_000, "ms": 1_000_000, "s": 1_000_000_000}
 """Nanoseconds of each unit."""
@@ -114,7 +114,7 @@ def _likely(step: float, last: float, unit: StampUnit, others: Sequence[str]) ->
     """What stamps that step so fast most likely are, and what to do."""
     longer = [other for other in NS if NS[other] > NS[unit]]
     fitting = [other for other in longer if SLOWEST_HZ <= 1e9 / max(step * NS[other], 1e-9) <= FASTEST_HZ]
-    dates = [other for other in fitting if DATES_FROM_NS <= last * NS[other] < DATES_TO_NS]
+    dates = [other for other in fitting if are_dates(round(last * NS[other]), round(last * NS[other]))]
     fitting = dates or fitting
     counts = step <= 10 and last < COUNTED
     if others:
