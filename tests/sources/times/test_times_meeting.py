@@ -38,8 +38,14 @@ def test_of_each_camera_the_nearest_image_is_taken_if_it_is_near_enough(one, two
 @given(STAMPS, STAMPS, st.integers(0, 300), st.sampled_from([1, 1_000, 1_000_000]))
 def test_with_a_limit_that_says_nothing_the_unit_makes_no_difference(one, two, skew, unit):
     """What a limit in the wrong unit lets through, the cameras' own steps still keep out."""
-    small = meeting(10**12, one=one, two=two)
-    large = meeting(10**12 * unit, one=np.array(one) * unit, two=np.array(two) * unit)
+    small, large = (
+        Meeting(
+            (Series("one", np.array(one) * factor), Series("two", np.array(two) * factor)),
+            10**12 * factor,
+            True,
+        )
+        for factor in (1, unit)
+    )
     assert np.array_equal(small.taken(), large.taken())
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.sources.times.series import Series, are_dates
+from elbowroom.sources.times.series import Series
 
 MAX_STEPS = 3
 """An image more than so many usual steps away is of another moment, whatever `max_skew_ms` allows: between them its
@@ -14,6 +14,10 @@ camera lost images. This limit does not hang on the unit of the stamps."""
 UNSURE_STEPS = 0.75
 """Where stamps may be in another unit than nanoseconds, an image is of the moment that it is nearest to alone."""
 SECOND_NS = 1_000_000_000
+USUAL_HZ = 61
+"""Most depth cameras give no more images a second."""
+DATED_NS = 1_420_070_400 * SECOND_NS, 2_051_222_400 * SECOND_NS
+"""From 2015 to 2035 [ns since 1970]: when recordings are made. As microseconds the same numbers are 16 to 24 days."""
 LONGEST_WAIT_S = 60.0
 SHORTEST_GAP_S = 5.0
 GAP_IN_STEPS = 20
@@ -68,11 +72,14 @@ class Meeting:
 
     @property
     def unsure(self) -> bool:
-        """Whether stamps may well be microseconds: the site does not say, and as nanoseconds all images lie within the
-        first second of their clock, or as microseconds they are dates.
+        """Whether stamps may well be microseconds, where the site does not say: as nanoseconds all images are within the
+        first second of their clock and come faster than most cameras give them, or as microseconds they are dates.
         """
-        first, last = self.lead.first_ns, self.lead.last_ns
-        return not self.declared and (last < SECOND_NS or are_dates(1_000 * first, 1_000 * last))
+        if self.declared:
+            return False
+        first, last, step = self.lead.first_ns, self.lead.last_ns, self.lead.step_ns
+        dated = 1_000 * first > DATED_NS[0] and 1_000 * last < DATED_NS[1]
+        return dated or (last < SECOND_NS and step is not None and step < SECOND_NS / USUAL_HZ)
 
     @property
     def gap_ns(self) -> int:

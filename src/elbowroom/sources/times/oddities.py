@@ -12,8 +12,10 @@ from elbowroom.sources.times.meeting import Meeting
 from elbowroom.sources.times.series import Series, length_text, span_text, time_text
 from elbowroom.sources.times.stamp import NS, WORDS, hz
 
-LOST_SHARE, LOST_LEAST = 0.02, 3
-"""A camera that lacks more of its images than this is named."""
+LOST_SHARE, EVENLY_LEAST = 0.05, 4
+"""A camera that lacks more of its images than this is named, or so many at even distances."""
+SKEW_SHARE = 0.02
+"""And one that is left out of more moments than this because its nearest image is of another."""
 APART_STEPS, DRIFT_STEPS = 5, 2
 """Beginnings and ends that lie farther apart than so many steps are looked at: both alike, or the ends alone."""
 PRESENT_SHARE = 0.9
@@ -49,7 +51,7 @@ def _who_never_meets(meeting: Meeting) -> Iterator[Finding]:
 
 def _too_many_steps(meeting: Meeting, row: Series) -> Iterator[Finding]:
     count = meeting.too_many_steps(row)
-    if count:
+    if count > max(1, SKEW_SHARE * len(meeting.lead)):
         step = row.step_ns or meeting.lead.step_ns or 0.0
         text = (
             f"camera {row.camera} is left out of {count} of {len(meeting.lead)} moments: its nearest image is more "
@@ -111,8 +113,9 @@ def _lost(meeting: Meeting, row: Series) -> Iterator[Finding]:
     steps = row.steps_ns
     missing = np.where(steps <= meeting.gap_ns, np.rint(steps / step) - 1, 0).clip(0)
     lost, whole = int(missing.sum()), int(missing.sum()) + len(row)
-    if lost >= LOST_LEAST and lost > LOST_SHARE * whole:
-        text = f"camera {row.camera} lacks {lost} of {whole} images ({_how_often(missing)}): there it counts as lost"
+    often = _how_often(missing)
+    if lost > max(EVENLY_LEAST, LOST_SHARE * whole) or (lost >= EVENLY_LEAST and "evenly" in often):
+        text = f"camera {row.camera} lacks {lost} of {whole} images ({often}): there it counts as lost"
         yield Finding("lost", (row.camera,), text, False)
 
 
