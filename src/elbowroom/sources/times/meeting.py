@@ -72,7 +72,7 @@ class Meeting:
 
     @property
     def unsure(self) -> bool:
-        """Whether stamps may well be microseconds, where the site does not say: as nanoseconds all images are within the
+        """Whether stamps may well be microseconds, where the site does not say: as nanoseconds all images lie in the
         first second of their clock and come faster than most cameras give them, or as microseconds they are dates.
         """
         if self.declared:
