@@ -143,7 +143,9 @@ def _degrees(_: Rng, camera: DepthCamera) -> DepthCamera:
 def _moved(rng: Rng, camera: DepthCamera) -> DepthCamera:
     """By 40 cm in any direction."""
     way = rng.normal(size=3)
-    return _posed(camera, camera.world_from_camera @ exp(np.append(np.zeros(3), 0.4 * way / np.linalg.norm(way))))
+    return _posed(
+        camera, camera.world_from_camera @ exp(np.append(np.zeros(3), 0.4 * way / np.linalg.norm(way)))
+    )
 
 
 def _knocked(rng: Rng, camera: DepthCamera) -> DepthCamera:

@@ -2,9 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
 
 from elbowroom.geometry import Intrinsics
 from elbowroom.reconstruct.contradiction.eye import Array, Eye
@@ -14,9 +16,32 @@ SIZES = (2.0, 0.5, 4.0, 0.25, 3.0, 1 / 3, 1.5, 1 / 1.5)
 UNITS = {"millimetres": 1e-3, "centimetres": 1e-2, "inches": 0.0254, "kilometres": 1e3}
 """Of a place, by name [m]."""
 NEAR_M, FAR_M = 0.1, 15.0
-"""Places in metres are neither all as near to the world's origin as this, nor farther; others may be in another unit."""
+"""Of places in metres none are nearer to the world's origin, or farther; others may be in another unit."""
 DEPTHS = (10.0, 0.1, 4.0, 0.25, 5.0, 0.2, 8.0, 0.125, 2.0, 0.5, 1000.0, 1e-3)
 """By how much depths are too small where their unit is another."""
+MIRROR = "flip the images back, or mirror the world: diag(1, -1, 1, 1) on both sides of each pose, fy above 0"
+ADVICE = {
+    "inverse": "world_from_camera takes camera to world: write the inverse",
+    "axes": "world_from_camera is of OpenCV's axes, x right, y down, z forward: turn the poses",
+    "transposed": "write the rotation's transpose",
+    "translation": "write the camera's own place as the translation",
+    "upside down": MIRROR,
+    "left right": MIRROR,
+    "roll": "turn the images or the poses",
+    "handedness": "the world is right-handed: convert poses as a whole, not their places alone",
+    "world": "give all poses in one world frame",
+    "quaternion": "read the numbers in their order",
+    "angles": "convert angles once",
+    "unit": "places are in metres",
+    "lens": "give the lens of the images as they are",
+    "depth kind": "give depth_kind as the sensor delivers it",
+    "depth unit": "give depth_scale_m as the sensor delivers it",
+    "exchanged": "exchange the poses, or the images",
+    "shifted": "give each camera its own pose",
+}
+"""What to do, by kind."""
+
+Undo = Callable[[Eye], Eye | None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,7 +49,7 @@ class Mistake:
     """One that fits what the cameras see.
 
     Args:
-        kind: in one or two words that stay the same: "inverse", "axes", "lens".
+        kind: a key of `ADVICE`.
         looks: as a sentence goes on after the cameras' names: "poses look like camera-from-world".
         cure: what was tried, as a sentence goes on after "with": "the inverse".
         undone: how a camera sees that was described with this mistake; None: it cannot have been.
@@ -33,160 +58,163 @@ class Mistake:
     kind: str
     looks: str
     cure: str
-    undone: Callable[[Eye], Eye | None]
+    undone: Undo
+
+    @property
+    def advice(self) -> str:
+        """What to do."""
+        return ADVICE[self.kind]
 
 
+@cache
 def mistakes() -> tuple[Mistake, ...]:
-    """All that one camera's description can be undone of alone; what people do most comes first."""
-    return (*_frames(), *_images(), *_mirrors(), *_turns(), *_quaternions(), *_units(), *_lenses(), *_depths())
+    """All that one camera's description can be undone of alone."""
+    return (
+        *_frames(),
+        *_images(),
+        *_rolls(),
+        *_worlds(),
+        *_rotations(),
+        *_units(),
+        *_lenses(),
+        *_depths(),
+    )
 
 
-def _turned(rotation: ArrayLike) -> Callable[[Eye], Eye]:
-    """The camera's own axes are others: given axes times a fixed matrix."""
+def _axes(rotation: ArrayLike) -> Undo:
+    """The camera's own axes are others: those given, times a fixed matrix."""
     matrix = np.array(rotation, dtype=float)
     return lambda eye: replace(eye, axes=eye.axes @ matrix)
-
-
-def _frames() -> tuple[Mistake, ...]:
-    return (
-        Mistake("inverse", "look like camera-from-world", "the inverse", _inverse),
-        Mistake(
-            "axes",
-            "look like those of OpenGL or Blender cameras (y up, z backward)",
-            "y and z turned round",
-            _turned(np.diag((1, -1, -1))),
-        ),
-        Mistake(
-            "axes",
-            "look like those of the housing (x forward, z up), not of the optical frame",
-            "optical axes",
-            _turned(((0, 0, 1), (-1, 0, 0), (0, -1, 0))),
-        ),
-        Mistake(
-            "axes",
-            "look like optical frames that were turned from a housing once too often",
-            "that turn undone",
-            _turned(((0, -1, 0), (0, 0, -1), (1, 0, 0))),
-        ),
-        Mistake(
-            "transposed",
-            "have their rotation transposed",
-            "the rotation transposed",
-            lambda eye: replace(eye, axes=eye.axes.T),
-        ),
-        Mistake(
-            "translation",
-            "have the translation of camera-from-world beside the rotation of world-from-camera",
-            "the place -R t",
-            lambda eye: replace(eye, centre=-eye.axes @ eye.centre),
-        ),
-        Mistake(
-            "translation",
-            "have the rotation of camera-from-world beside the place of the camera, and a sign lost",
-            "the place -t",
-            lambda eye: replace(eye, centre=-eye.centre),
-        ),
-    )
 
 
 def _inverse(eye: Eye) -> Eye:
     return replace(eye, axes=eye.axes.T, centre=-eye.axes.T @ eye.centre)
 
 
-def _images() -> tuple[Mistake, ...]:
+def _frames() -> tuple[Mistake, ...]:
+    housing = np.array(((0, 0, 1), (-1, 0, 0), (0, -1, 0)))
+    opengl = "pose is of OpenGL's or Blender's camera axes (y up, z backward)"
+    body = "pose is of the housing (x forward, z up), not of the optical frame"
+    twice = "pose was turned from the housing to the optical frame once too often"
+    place = "pose has the translation of camera-from-world beside the rotation of world-from-camera"
     return (
+        Mistake("inverse", "pose looks like camera-from-world", "the inverse", _inverse),
+        Mistake("axes", opengl, "y and z turned round", _axes(np.diag((1, -1, -1)))),
+        Mistake("axes", body, "the optical axes", _axes(housing)),
+        Mistake("axes", twice, "that turn undone", _axes(housing.T)),
+        Mistake("transposed", "rotation is transposed", "its transpose", _transposed),
         Mistake(
-            "upside down",
-            "see upside down: images flipped, or fy was negative and lost its sign",
-            "the image's rows reversed",
-            _turned(np.diag((1, -1, 1))),
+            "translation", place, "the place -R t", lambda eye: replace(eye, centre=-eye.axes @ eye.centre)
         ),
         Mistake(
-            "left right",
-            "see left for right: images flipped, or a left-handed world",
-            "the image's columns reversed",
-            _turned(np.diag((-1, 1, 1))),
-        ),
-        *(
-            Mistake(
-                "roll",
-                f"are turned by {angle} degrees about the optical axis against their images",
-                f"a turn by {angle} degrees",
-                _turned(_about_z(np.radians(angle))),
-            )
-            for angle in (180, 90, -90)
+            "translation",
+            "place has the wrong sign",
+            "the place -t",
+            lambda eye: replace(eye, centre=-eye.centre),
         ),
     )
 
 
-def _mirrors() -> tuple[Mistake, ...]:
-    """A world of the other hand: one axis reversed in places and rotations."""
+def _transposed(eye: Eye) -> Eye:
+    return replace(eye, axes=eye.axes.T)
+
+
+def _images() -> tuple[Mistake, ...]:
+    upside = "images are upside down against the pose (flipped, or fy was negative and lost its sign)"
+    sideways = "images have left and right exchanged against the pose (flipped, or of a left-handed world)"
+    return (
+        Mistake("upside down", upside, "rows reversed", _axes(np.diag((1, -1, 1)))),
+        Mistake("left right", sideways, "columns reversed", _axes(np.diag((-1, 1, 1)))),
+    )
+
+
+def _rolls() -> tuple[Mistake, ...]:
     return tuple(
         Mistake(
-            "handedness",
-            f"are of a world whose {axis} axis is reversed (left-handed)",
-            f"{axis} reversed in place and rotation",
-            _mirrored(np.diag([-1.0 if n == number else 1.0 for n in range(3)])),
+            "roll",
+            f"pose is turned by {angle} degrees about the optical axis against the images",
+            f"a turn by {angle} degrees",
+            _axes(_turn("z", angle)),
         )
-        for number, axis in enumerate("xyz")
+        for angle in (180, 90, -90)
     )
 
 
-def _mirrored(mirror: Array) -> Callable[[Eye], Eye]:
+def _worlds() -> tuple[Mistake, ...]:
+    """A world of the other hand, one axis reversed in places and rotations; or one whose axes are named otherwise."""
+    mirrored = (
+        Mistake(
+            "handedness",
+            f"pose is of a left-handed world, its {axis} axis reversed",
+            f"{axis} reversed in place and rotation",
+            _mirrored(np.diag([-1.0 if axis == other else 1.0 for other in "xyz"])),
+        )
+        for axis in "xyz"
+    )
+    turned = (
+        Mistake(
+            "world",
+            f"pose is of a world turned by {angle} degrees about {axis}",
+            f"a turn of the world by {-angle} degrees about {axis}",
+            _of_world(_turn(axis, -angle)),
+        )
+        for axis in "xyz"
+        for angle in (90, -90, 180)
+    )
+    return (*mirrored, *turned)
+
+
+def _mirrored(mirror: Array) -> Undo:
     return lambda eye: replace(eye, axes=mirror @ eye.axes @ mirror, centre=mirror @ eye.centre)
 
 
-def _turns() -> tuple[Mistake, ...]:
-    """A world whose axes are named otherwise, as y up for z up."""
-    return tuple(
-        Mistake(
-            "world",
-            f"are of a world turned by {angle} degrees about {axis}",
-            f"a turn of the world by {-angle} degrees about {axis}",
-            _of_world(_about(number, np.radians(-angle))),
-        )
-        for number, axis in enumerate("xyz")
-        for angle in (90, -90, 180)
-    )
-
-
-def _of_world(rotation: Array) -> Callable[[Eye], Eye]:
+def _of_world(rotation: Array) -> Undo:
     return lambda eye: replace(eye, axes=rotation @ eye.axes, centre=rotation @ eye.centre)
 
 
-def _quaternions() -> tuple[Mistake, ...]:
-    def reordered(order: tuple[int, ...]) -> Callable[[Eye], Eye]:
-        return lambda eye: replace(eye, axes=_rotation_of(_quaternion_of(eye.axes)[list(order)]))
-
+def _rotations() -> tuple[Mistake, ...]:
+    """Rotations that were made of other numbers than these are."""
+    small = "rotation was made of angles in radians as if they were degrees"
     return (
-        Mistake("quaternion", "were read from quaternions w x y z as x y z w", "w first", reordered((1, 2, 3, 0))),
-        Mistake("quaternion", "were read from quaternions x y z w as w x y z", "w last", reordered((3, 0, 1, 2))),
-        *(
-            Mistake(
-                "angles",
-                "were made of angles in radians as if they were degrees",
-                f"angles {order} in radians",
-                _as_degrees(order),
-            )
-            for order in ("zyx", "xyz")
+        Mistake(
+            "quaternion", "quaternion w x y z was read as x y z w", "w read first", _reordered((3, 0, 1, 2))
         ),
+        Mistake(
+            "quaternion", "quaternion x y z w was read as w x y z", "w read last", _reordered((1, 2, 3, 0))
+        ),
+        Mistake("angles", small, "angles z y x in radians", _radians("ZYX")),
+        Mistake("angles", small, "angles x y z in radians", _radians("XYZ")),
     )
 
 
-def _as_degrees(order: str) -> Callable[[Eye], Eye]:
-    """Angles that were turned from degrees to radians though they were radians: small ones, made large again."""
+def _reordered(order: tuple[int, ...]) -> Undo:
+    """The numbers of a quaternion, x y z w, taken in another order."""
 
-    def undone(eye: Eye) -> Eye:
-        first, second, third = ("xyz".index(axis) for axis in order)
-        angles = np.degrees(_angles_of(eye.axes, order))
-        turns = [_about(axis, angle) for axis, angle in zip((first, second, third), angles, strict=True)]
-        return replace(eye, axes=turns[0] @ turns[1] @ turns[2])
+    def undone(eye: Eye) -> Eye | None:
+        if np.linalg.det(eye.axes) < 0:
+            return None
+        numbers = Rotation.from_matrix(eye.axes).as_quat()
+        return replace(eye, axes=Rotation.from_quat(numbers[list(order)]).as_matrix())
+
+    return undone
+
+
+def _radians(order: str) -> Undo:
+    """Small angles made large again."""
+
+    def undone(eye: Eye) -> Eye | None:
+        if np.linalg.det(eye.axes) < 0:
+            return None
+        angles = Rotation.from_matrix(eye.axes).as_euler(order, degrees=True)
+        if np.abs(angles).max() > np.pi + 0.01:
+            return None
+        return replace(eye, axes=Rotation.from_euler(order, angles).as_matrix())
 
     return undone
 
 
 def _units() -> tuple[Mistake, ...]:
-    def scaled(factor: float) -> Callable[[Eye], Eye | None]:
+    def scaled(factor: float) -> Undo:
         def undone(eye: Eye) -> Eye | None:
             away = float(np.linalg.norm(eye.centre))
             meant = away > FAR_M if factor < 1 else away < NEAR_M
@@ -195,129 +223,57 @@ def _units() -> tuple[Mistake, ...]:
         return undone
 
     return tuple(
-        Mistake("unit", f"have places in {name}", f"places in metres (times {factor:g})", scaled(factor))
+        Mistake("unit", f"place is in {name}", f"metres (times {factor:g})", scaled(factor))
         for name, factor in UNITS.items()
     )
 
 
 def _lenses() -> tuple[Mistake, ...]:
-    return (
-        *(
-            Mistake(
-                "lens",
-                f"have the lens of an image {ratio:.3g} times as large",
-                f"fx, fy, cx, cy divided by {ratio:.3g}",
-                _lens_of(1 / ratio),
-            )
-            for ratio in SIZES
-        ),
+    sizes = (
         Mistake(
             "lens",
-            "have fx and fy or cx and cy exchanged",
-            "them exchanged",
-            lambda eye: replace(
-                eye,
-                intrinsics=Intrinsics(
-                    eye.intrinsics.fy,
-                    eye.intrinsics.fx,
-                    eye.intrinsics.cy,
-                    eye.intrinsics.cx,
-                    eye.intrinsics.distortion,
-                ),
-            ),
-        ),
+            f"lens is of an image {ratio:.3g} times as large",
+            f"fx, fy, cx and cy divided by {ratio:.3g}",
+            _lens_of(1 / ratio),
+        )
+        for ratio in SIZES
     )
+    turned = "lens is that of an image turned by 90 degrees"
+    return (*sizes, Mistake("lens", turned, "fx and fy, cx and cy exchanged", _lens_turned))
 
 
-def _lens_of(factor: float) -> Callable[[Eye], Eye]:
+def _lens_of(factor: float) -> Undo:
     def undone(eye: Eye) -> Eye:
         k = eye.intrinsics
         # pixel centres lie at whole numbers
         cx, cy = ((at + 0.5) * factor - 0.5 for at in (k.cx, k.cy))
-        return replace(
-            eye, intrinsics=replace(k, fx=k.fx * factor, fy=k.fy * factor, cx=cx, cy=cy)
-        )
+        return replace(eye, intrinsics=replace(k, fx=k.fx * factor, fy=k.fy * factor, cx=cx, cy=cy))
 
     return undone
 
 
+def _lens_turned(eye: Eye) -> Eye:
+    k = eye.intrinsics
+    return replace(eye, intrinsics=Intrinsics(k.fy, k.fx, k.cy, k.cx, k.distortion))
+
+
 def _depths() -> tuple[Mistake, ...]:
-    def scaled(factor: float) -> Callable[[Eye], Eye]:
+    def scaled(factor: float) -> Undo:
         return lambda eye: replace(eye, scale=eye.scale * factor)
 
-    return (
+    units = (
         Mistake(
-            "depth kind",
-            "have the wrong depth_kind",
-            "planar and radial exchanged",
-            lambda eye: replace(eye, radial=not eye.radial),
-        ),
-        *(
-            Mistake(
-                "depth unit",
-                f"read depths {1 / factor:.4g} times too large" if factor < 1 else f"read depths {factor:.4g} times too small",
-                f"depth_scale_m times {factor:.4g}",
-                scaled(factor),
-            )
-            for factor in DEPTHS
-        ),
-    )
-
-
-def _about(axis: int, angle: float) -> Array:
-    """Rotation about a coordinate axis, shape (3, 3)."""
-    c, s = np.cos(angle), np.sin(angle)
-    rotation = np.eye(3)
-    n, m = (axis + 1) % 3, (axis + 2) % 3
-    rotation[n, n], rotation[n, m], rotation[m, n], rotation[m, m] = c, -s, s, c
-    return rotation
-
-
-def _about_z(angle: float) -> Array:
-    return _about(2, angle)
-
-
-def _quaternion_of(rotation: Array) -> Array:
-    """Unit quaternion (w, x, y, z) of a rotation: the eigenvector of Bar-Itzhack 2000."""
-    (a, b, c), (d, e, f), (g, h, i) = rotation
-    k = np.array(
-        (
-            (a + e + i, h - f, c - g, d - b),
-            (h - f, a - e - i, b + d, c + g),
-            (c - g, b + d, e - a - i, f + h),
-            (d - b, c + g, f + h, i - a - e),
+            "depth unit",
+            f"depths are {max(factor, 1 / factor):g} times too {'small' if factor > 1 else 'large'}",
+            f"depth_scale_m times {factor:g}",
+            scaled(factor),
         )
+        for factor in DEPTHS
     )
-    return np.linalg.eigh(k)[1][:, -1]
+    kind = "depth_kind is the other one, planar for radial or radial for planar"
+    other = Mistake("depth kind", kind, "that", lambda eye: replace(eye, radial=not eye.radial))
+    return (other, *units)
 
 
-def _rotation_of(quaternion: Array) -> Array:
-    """Rotation of a unit quaternion (w, x, y, z), shape (3, 3)."""
-    w, x, y, z = quaternion
-    return np.array(
-        (
-            (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-        )
-    )
-
-
-def _angles_of(rotation: Array, order: str) -> Array:
-    """Angles of rotations about three axes that make a rotation one after the other, shape (3,) [rad]."""
-    if order == "zyx":
-        pitch = -np.arcsin(np.clip(rotation[2, 0], -1, 1))
-        return np.array(
-            (
-                np.arctan2(rotation[1, 0], rotation[0, 0]),
-                pitch,
-                np.arctan2(rotation[2, 1], rotation[2, 2]),
-            )
-        )
-    return np.array(
-        (
-            np.arctan2(-rotation[1, 2], rotation[2, 2]),
-            np.arcsin(np.clip(rotation[0, 2], -1, 1)),
-            np.arctan2(-rotation[0, 1], rotation[0, 0]),
-        )
-    )
+def _turn(axis: str, degrees: float) -> Array:
+    return np.asarray(Rotation.from_euler(axis, degrees, degrees=True).as_matrix())

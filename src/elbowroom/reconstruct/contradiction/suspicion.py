@@ -15,13 +15,13 @@ SUSPECT = 0.02
 """A camera of whose comparisons at least this share is a contradiction is looked at more closely."""
 FEW = 24
 """Fewer comparisons than this say nothing; so many are added to those of each camera, as agreeing."""
-LONELY = 0.05
+LONELY = 0.1
 """A camera that is compared less than this part of what is usual has hardly a view in common with the others."""
 FITS, FITS_WELL = 0.12, 0.004
 """A mistake explains contradictions if, undone, at most this part of their share is left, or this share of all,"""
 KEEPS = 0.6
 """and at least this part of what agreed before agrees then, too."""
-FINDS, FINDS_WELL = 0.2, 0.01
+FINDS, FINDS_WELL = 0.2, 0.03
 """It explains why a camera is lonely if, undone, this part of what is usual agrees, and no larger share contradicts."""
 PARTNERS = 8
 """A mistake is tried against so many other cameras at most."""
@@ -56,15 +56,17 @@ class Suspicion:
 
     Args:
         cameras: their numbers.
-        mistake: that explains it; None: none of those that are known.
+        mistake: that explains it.
         before: comparisons as they are said to see.
-        after: comparisons if the mistake is undone; None: no mistake explains it.
+        after: comparisons if the mistake is undone.
+        gain: contradictions less, and agreements more, of all pairs of these cameras and others.
     """
 
     cameras: tuple[int, ...]
-    mistake: Mistake | None
+    mistake: Mistake
     before: Share
-    after: Share | None
+    after: Share
+    gain: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -155,13 +157,13 @@ def share_of(pairs: Pairs, cameras: Collection[int], partners: Collection[int]) 
 def _best(views: Views, now: Standing, named: Collection[int]) -> tuple[Suspicion, Mapping[int, Eye]] | None:
     """The mistake that explains most of cameras that were not named yet."""
     best: tuple[float, Suspicion, Mapping[int, Eye]] | None = None
-    for trial in trials(views.eyes, now.contradicting, now.lonely):
+    for trial in trials(views.eyes, views.typical_m, now.contradicting, now.lonely):
         if not set(trial.others).isdisjoint(named):
             continue
         suspicion = _tried(views, now, trial)
-        if suspicion is None or suspicion.after is None:
+        if suspicion is None:
             continue
-        gain = suspicion.after.agrees / len(trial.others) / (suspicion.after.through + FEW)
+        gain = suspicion.gain
         if best is None or gain > best[0]:
             best = gain, suspicion, trial.others
     return None if best is None else best[1:]
@@ -178,12 +180,16 @@ def _tried(views: Views, now: Standing, trial: Trial) -> Suspicion | None:
     after = share_of(
         views.pairs_if({camera: trial.others[camera] for camera in asked}, partners), asked, partners
     )
-    pairs = len(asked) * (len(asked) - 1) / 2 + len(asked) * (len(partners) - len(asked))
-    return (
-        Suspicion(tuple(cameras), trial.mistake, before, after)
-        if _explains(before, after, now.usual * pairs)
-        else None
-    )
+    if not _explains(before, after, now.usual * _pairs(len(asked), len(partners))):
+        return None
+    gain = before.through - after.through + after.agrees - before.agrees
+    scale = _pairs(len(cameras), len(cameras) + len(rest)) / _pairs(len(asked), len(partners))
+    return Suspicion(tuple(cameras), trial.mistake, before, after, gain * scale)
+
+
+def _pairs(cameras: int, among: int) -> float:
+    """How many pairs of cameras there are of which one at least is of a part."""
+    return max(cameras * (cameras - 1) / 2 + cameras * (among - cameras), 1.0)
 
 
 def _explains(before: Share, after: Share, usual: float) -> bool:

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
 
+import numpy as np
+
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.contradiction.eye import Eye
@@ -53,6 +55,14 @@ class Views:
         )
 
     @cached_property
+    def typical_m(self) -> tuple[float, ...]:
+        """What each camera measures in the middle of all that it measures [m]; 1 where that is nothing."""
+        return tuple(
+            float(np.median(sample.depth_m)) * eye.scale if len(sample.depth_m) else 1.0
+            for eye, sample in zip(self.eyes, self.samples, strict=True)
+        )
+
+    @cached_property
     def points(self) -> tuple[Points, ...]:
         """What each camera measured, in the world."""
         return tuple(
@@ -97,5 +107,9 @@ class Views:
                 continue
             eye = others.get(looker, self.eyes[looker])
             through, agrees, hidden = seen_by(eye, self.samples[looker], together(measured), count)
-            pairs.through[:, looker], pairs.agrees[:, looker], pairs.hidden[:, looker] = through, agrees, hidden
+            pairs.through[:, looker], pairs.agrees[:, looker], pairs.hidden[:, looker] = (
+                through,
+                agrees,
+                hidden,
+            )
         return pairs
