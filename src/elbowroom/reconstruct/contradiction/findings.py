@@ -8,6 +8,7 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.contradiction.eye import Eye
+from elbowroom.reconstruct.contradiction.pairs import Pairs
 from elbowroom.reconstruct.contradiction.suspicion import (
     FEW,
     Share,
@@ -25,6 +26,8 @@ LIMIT = 0.2
 """A camera of whose comparisons with others a larger share is contradicted stops everything,"""
 COMPARED = 64
 """if so many comparisons were made: fewer are a warning."""
+LEAST = 10
+"""Fewer contradictions than this are not worth a warning."""
 WARNED, BESIDE_OTHERS = 0.06, 8.0
 """A camera is warned of whose share is larger than this, and so many times that of the others among each other."""
 MANY = 4
@@ -64,6 +67,17 @@ def found_in(views: Views) -> tuple[Finding, ...]:
     )
 
 
+def beyond_limit(eyes: Sequence[Eye], pairs: Pairs) -> tuple[Finding, ...]:
+    """Cameras that contradict others beyond a limit; nobody looks for the reason.
+
+    Args:
+        eyes: how all cameras are said to see.
+        pairs: counted between them, at moments near each other.
+    """
+    now = standing(pairs)
+    return unexplained(eyes, now, set(), share_of(pairs, now.core, now.core)) if now.suspects else ()
+
+
 def unexplained(eyes: Sequence[Eye], now: Standing, named: set[int], others: Share) -> tuple[Finding, ...]:
     """Cameras that contradict others beyond a limit, whatever the reason.
 
@@ -77,8 +91,10 @@ def unexplained(eyes: Sequence[Eye], now: Standing, named: set[int], others: Sha
         (camera, share)
         for camera, share in zip(now.contradicting, now.shares, strict=True)
         if camera not in named
-        and share.compared >= FEW
-        and (_stops(share) or share.value > max(WARNED, BESIDE_OTHERS * others.value))
+        and share.through >= LEAST
+        and (_stops(share) or share.value > max(LEAST = 10
+"""Fewer contradictions than this are not worth a warning."""
+WARNED, BESIDE_OTHERS * others.value))
     ]
     if 2 * len(worst) > len(eyes) or len(eyes) == 2:
         return _of_all(eyes, worst)

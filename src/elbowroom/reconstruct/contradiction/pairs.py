@@ -18,6 +18,10 @@ SPEED_M_S, FARTHEST_M = 2.0, 0.3
 """Between two exposures things may have moved by so much: speed [m/s], and no more than so far [m]."""
 
 Counts = NDArray[np.int64]
+Counted = tuple[Counts, Counts, Counts]
+"""Through, agrees and hidden."""
+NOTHING: Counted = (np.zeros(1, dtype=np.int64),) * 3
+"""Of any number of cameras."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,6 +47,16 @@ class Pairs:
         return type(self)(
             self.through + other.through, self.agrees + other.agrees, self.hidden + other.hidden
         )
+
+    def put(self, looker: int, counts: Counted) -> None:
+        """What a camera says of the others' points is this, whatever it said before.
+
+        Args:
+            looker: its number.
+            counts: through, agrees and hidden by owner, as of `seen_by`.
+        """
+        for kept, new in zip((self.through, self.agrees, self.hidden), counts, strict=True):
+            kept[:, looker] = new
 
     def both_ways(self) -> Self:
         """Whoever measured and whoever looked: symmetric."""
@@ -93,7 +107,7 @@ def together(parts: Sequence[Points]) -> Points:
     )
 
 
-def seen_by(eye: Eye, sample: Sample, points: Points, cameras: int) -> tuple[Counts, Counts, Counts]:
+def seen_by(eye: Eye, sample: Sample, points: Points, cameras: int) -> Counted:
     """How many of each camera's points a camera sees past, agrees with, and has something before.
 
     Args:

@@ -39,6 +39,16 @@ class Sample:
     v: Array
     depth_m: Array
 
+    @classmethod
+    def none(cls, image: Image, stamp_ns: int | None) -> "Sample":
+        """An image to look things up in, without points of its own.
+
+        Args:
+            image: shape (height, width) [m].
+            stamp_ns: time of exposure; None: unknown.
+        """
+        return cls(image, stamp_ns, *np.zeros((3, 0)))
+
 
 def sample_of(eye: Eye, depth_m: Image, stamp_ns: int | None = None, samples: int = SAMPLES) -> Sample:
     """Takes a sample of an image.
@@ -51,7 +61,7 @@ def sample_of(eye: Eye, depth_m: Image, stamp_ns: int | None = None, samples: in
     """
     u, v = places(eye.width, eye.height, LOOKED_AT * samples // SAMPLES)
     if not len(u):
-        return Sample(depth_m, stamp_ns, *np.zeros((3, 0)))
+        return Sample.none(depth_m, stamp_ns)
     rows, columns = v + _CROSS[:, :1], u + _CROSS[:, 1:]
     here, left, right, above, below = _valid(eye, depth_m[rows, columns])
     with np.errstate(divide="ignore", invalid="ignore"):

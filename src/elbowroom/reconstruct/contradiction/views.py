@@ -106,10 +106,5 @@ class Views:
             if not measured:
                 continue
             eye = others.get(looker, self.eyes[looker])
-            through, agrees, hidden = seen_by(eye, self.samples[looker], together(measured), count)
-            pairs.through[:, looker], pairs.agrees[:, looker], pairs.hidden[:, looker] = (
-                through,
-                agrees,
-                hidden,
-            )
+            pairs.put(looker, seen_by(eye, self.samples[looker], together(measured), count))
         return pairs
