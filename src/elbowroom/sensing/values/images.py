@@ -51,13 +51,16 @@ def found_in(images: Sequence[Thinned], grid: VoxelGrid, *, of_all: bool = True)
     if not images:
         return []
     findings = look_at_content(images, of_all=of_all)
-    findings += look_at_inverses(_without(images, findings))
-    usable = _without(images, findings)
-    findings += look_at_sentinels(usable, grid)
-    return findings + (look_at_units(_without(usable, findings), grid) if of_all else [])
+    findings += look_at_inverses(_returning(_without(images, findings)))
+    findings += look_at_sentinels(_returning(_without(images, findings)), grid)
+    return findings + (look_at_units(_without(images, findings), grid) if of_all else [])
 
 
 def _without(images: Sequence[Thinned], findings: Sequence[Finding]) -> list[Thinned]:
-    """The images of cameras of which nothing was found that stops, and that have a return."""
+    """The images of cameras of which nothing was found that stops."""
     stopped = {name for finding in findings if finding.stops for name in finding.about}
-    return [image for image in images if image.camera.name not in stopped and image.returns.any()]
+    return [image for image in images if image.camera.name not in stopped]
+
+
+def _returning(images: Sequence[Thinned]) -> list[Thinned]:
+    return [image for image in images if image.returns.any()]

@@ -22,8 +22,12 @@ WIDEST_DEG, NARROWEST_DEG = 170.0, 10.0
 UNEQUAL = 1.3
 """Pixels of depth cameras are square; focal lengths that differ by more are said."""
 MIDDLE = (0.25, 0.75)
-ALIKE = 0.08
+ALIKE = 0.05
 """A principal point fits another size if both sides ask for the same factor, to this share."""
+EXCHANGED = 0.02
+"""Off the middle by less than this share, once cx and cy are exchanged."""
+FACTORS = (0.2, 0.25, 1 / 3, 0.4, 0.5, 0.6, 2 / 3, 0.75, 1.5, 1.6, 5 / 3, 2.0, 2.25, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+"""By which images are made smaller and larger: 1280 to 640, 1920 to 1280."""
 COVERED, USED = 0.9, 0.9
 """Less of the pinhole image, or of the camera's own, is said."""
 BETTER = 0.2
@@ -89,16 +93,17 @@ def _principal_point(camera: DepthCamera) -> Iterator[Finding]:
     across, down = (k.cx + 0.5) / camera.width, (k.cy + 0.5) / camera.height
     size = f"cx {k.cx:g}, cy {k.cy:g} in an image of {camera.width} x {camera.height} pixels"
     inside = all(MIDDLE[0] <= share <= MIDDLE[1] for share in (across, down))
-    exchanged = (k.cy + 0.5) / camera.width, (k.cx + 0.5) / camera.height
-    if camera.width != camera.height and all(abs(share - 0.5) < 0.04 for share in exchanged):
-        if abs(across - 0.5) > 0.06 or abs(down - 0.5) > 0.06:
-            text = f"{size}: they look exchanged, cx belongs to the width and cy to the height"
-            yield Finding(CENTRE, (camera.name,), text, stops=True)
-        return
-    if inside:
+    off = _off_middle(across, down)
+    exchanged = _off_middle((k.cy + 0.5) / camera.width, (k.cx + 0.5) / camera.height)
+    if exchanged < EXCHANGED and off > 3 * exchanged and off > 2 * EXCHANGED:
+        text = f"{size}: they look exchanged, cx belongs to the width and cy to the height"
+        yield Finding(CENTRE, (camera.name,), text, stops=True)
         return
     factor = across + down  # of the image's size, if the point is in its middle
     alike = abs(across - down) <= ALIKE * max(across, down, 1e-9) and factor > 0.05
+    usual = alike and any(abs(factor / each - 1) < ALIKE / 2 for each in FACTORS)
+    if inside and not usual:
+        return
     if alike:
         wide, high = round(camera.width * factor), round(camera.height * factor)
         text = (
@@ -112,7 +117,11 @@ def _principal_point(camera: DepthCamera) -> Iterator[Finding]:
             "that the intrinsics are of this size of image"
         )
     outside = not (0 <= across <= 1 and 0 <= down <= 1)
-    yield Finding(CENTRE, (camera.name,), text, stops=alike or outside)
+    yield Finding(CENTRE, (camera.name,), text, stops=usual or outside)
+
+
+def _off_middle(across: float, down: float) -> float:
+    return max(abs(across - 0.5), abs(down - 0.5))
 
 
 def _distortion(camera: DepthCamera) -> Iterator[Finding]:
