@@ -14,6 +14,8 @@ from elbowroom.geometry.transforms import invert_rigid, nearest_rigid
 
 DepthKind = Literal["planar", "radial"]
 MAX_SIDE_PX = 16384
+AT_THE_END = 1e-6
+"""Depths within this share of the greatest range are at it: units of float32 are that wide."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,7 +30,7 @@ class DepthCamera:
         depth_kind: "planar" (distance along the optical axis) or "radial" (distance from the camera centre).
         noise: sigma of depth over depth; None: exact.
         margin: goes before the margin of the call that uses this camera; None: the call's.
-        min_depth_m, max_depth_m: what lies outside is no return [m, in the camera's kind of depth].
+        min_depth_m, max_depth_m: what lies outside, or at the greatest, is no return [m, in the camera's kind of depth].
         flying_pixels: whether steps in depth carve only to the nearer side; None: only where there is a noise model.
 
     Raises:
@@ -68,6 +70,11 @@ class DepthCamera:
         object.__setattr__(self, "world_from_camera", pose)
         if self.flying_pixels is None:
             object.__setattr__(self, "flying_pixels", self.noise is not None)
+
+    @property
+    def deepest_m(self) -> float:
+        """The greatest depth that is a return [m]: just short of `max_depth_m`, which drivers write where there is none."""
+        return self.max_depth_m * (1.0 - AT_THE_END)
 
     @property
     def camera_from_world(self) -> NDArray[np.float64]:

@@ -67,7 +67,7 @@ def planar_images(camera: DepthCamera, frames: Sequence[DepthFrame], step: int |
     depth = np.zeros((len(frames), small.height, small.width), dtype=np.float32)
     for row, frame in enumerate(frames):
         raw = frame.depth_m
-        valid = (raw > 0) & (raw >= camera.min_depth_m) & (raw <= camera.max_depth_m) & (raw < np.inf)
+        valid = (raw > 0) & (raw >= camera.min_depth_m) & (raw <= camera.deepest_m) & (raw < np.inf)
         clean = np.where(valid, raw, np.float32(0))
         depth[row] = (
             _interpolated(clean, *look)

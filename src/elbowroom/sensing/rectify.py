@@ -63,11 +63,11 @@ def rectify(camera: DepthCamera, frame: DepthFrame) -> tuple[DepthCamera, Depth,
             f"its camera has {camera.width} x {camera.height}"
         )
     if not camera.intrinsics.is_distorted:
-        depth = _valid_only(frame.depth_m, camera.min_depth_m, camera.max_depth_m)
+        depth = _valid_only(frame.depth_m, camera.min_depth_m, camera.deepest_m)
         return rectified(camera), depth, depth
     least, greatest = np.empty_like(frame.depth_m), np.empty_like(frame.depth_m)
     index_map = index_map_of(camera.intrinsics, camera.width, camera.height)
-    bounds_of_contributors(frame.depth_m, index_map, camera.min_depth_m, camera.max_depth_m, least, greatest)
+    bounds_of_contributors(frame.depth_m, index_map, camera.min_depth_m, camera.deepest_m, least, greatest)
     return rectified(camera), least, greatest
 
 

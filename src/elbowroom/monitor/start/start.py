@@ -1,11 +1,13 @@
 """The start of a run: all that it needs is made, and compiled by doing it once."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import bits
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.loop import Loop
+from elbowroom.monitor.start.looking import looks_of
 from elbowroom.monitor.start.watching import checks_of
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
@@ -27,7 +29,8 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
     machine, motions = room.machine_and_motions()
     cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
     pace = Pace().wait if isinstance(room.source, Recorded) else None
-    loop = Loop(room, checks_of(room, begin), cycle, pace)
+    checks = replace(checks_of(room, begin), looks=looks_of(room))
+    loop = Loop(room, checks, cycle, pace)
     _warm_up(loop, begin)
     return loop
 

@@ -37,6 +37,11 @@ class Image(NamedTuple):
         name = camera.name
         return cls(camera, stamp_ns, path, site.depth_scale_m(name), site.depth_bias_m(name))
 
+    @property
+    def unit_m(self) -> float | None:
+        """Metres per unit, where depths are whole multiples of it."""
+        return self.scale_m if self.bias_m == 0 else None
+
     def read(self) -> DepthFrame:
         """The frame.
 

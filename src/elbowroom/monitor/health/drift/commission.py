@@ -83,7 +83,7 @@ class Commissioning:
             if number >= self.frames:
                 raise CalibrationError(f"commission: more than the {self.frames} frames that were announced")
             usable = (frame.depth_m >= max(camera.min_depth_m, UNIT_M)) & (
-                frame.depth_m <= camera.max_depth_m
+                frame.depth_m <= camera.deepest_m
             )
             usable &= frame.depth_m < 65535 * UNIT_M
             if self.machine is not None:
