@@ -84,7 +84,7 @@ def reconstruct(
     snapshot = Snapshot.taken(frames, None if machine is None else joints, now_ns, max_age_ns)
     if looks:
         frames_by_camera(cameras, frames)  # a frame of another size cannot be looked at
-        require_plausible(grid, cameras, frames)
+        require_plausible(grid, cameras, frames, terms.margin)
     with parallel.threads(threads):
         return free_space_of(grid, cameras, snapshot, machine, terms, focus=focus, timer=timer)
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
+from elbowroom.reconstruct.contradiction.findings import contradictions
 from elbowroom.sensing.values import look_at_images, look_at_setting
 from elbowroom.site import Site
 from elbowroom.sources.cameras import cameras_of
@@ -28,6 +29,7 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
         for group in _some(layout_of(site).moments()):
             frames = [image.read() for image in group]
             found += look_at_images(grid, cameras, frames, {image.camera.name: image.unit_m for image in group})
+            found += contradictions(cameras, frames, site.margin())
     return once(found)
 
 

@@ -1,6 +1,6 @@
 """Contradictions between cameras in words: who contradicts, how much, what it most likely is, what to do."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from elbowroom.reconstruct.contradiction.pairs import Pairs
 from elbowroom.reconstruct.contradiction.suspicion import (
     FEW,
     Share,
-    Standing,
     Suspicion,
     explained,
     share_of,
@@ -60,10 +59,10 @@ def found_in(views: Views) -> tuple[Finding, ...]:
     if len(views.eyes) < 2 or not standing(views.pairs).suspects:
         return ()
     suspicions, left = explained(views)
-    now, named = standing(left.pairs), {camera for each in suspicions for camera in each.cameras}
+    named = {camera for each in suspicions for camera in each.cameras}
     return (
         *(_of_mistake(views.eyes, suspicion) for suspicion in suspicions),
-        *unexplained(views.eyes, now, named, share_of(left.pairs, now.core, now.core)),
+        *unexplained(views.eyes, left.pairs, named),
     )
 
 
@@ -74,31 +73,37 @@ def beyond_limit(eyes: Sequence[Eye], pairs: Pairs) -> tuple[Finding, ...]:
         eyes: how all cameras are said to see.
         pairs: counted between them, at moments near each other.
     """
-    now = standing(pairs)
-    return unexplained(eyes, now, set(), share_of(pairs, now.core, now.core)) if now.suspects else ()
+    return unexplained(eyes, pairs, set())
 
 
-def unexplained(eyes: Sequence[Eye], now: Standing, named: set[int], others: Share) -> tuple[Finding, ...]:
+def unexplained(eyes: Sequence[Eye], pairs: Pairs, named: Collection[int]) -> tuple[Finding, ...]:
     """Cameras that contradict others beyond a limit, whatever the reason.
 
     Args:
         eyes: how all cameras are said to see.
-        now: who contradicts whom.
+        pairs: counted between them.
         named: cameras that something was found about already.
-        others: what those that are left compare with each other.
     """
+    now = standing(pairs)
     worst = [
         (camera, share)
         for camera, share in zip(now.contradicting, now.shares, strict=True)
-        if camera not in named
-        and share.through >= LEAST
-        and (_stops(share) or share.value > max(LEAST = 10
-"""Fewer contradictions than this are not worth a warning."""
-WARNED, BESIDE_OTHERS * others.value))
+        if camera not in named and _is_told(share, _others(pairs, camera))
     ]
     if 2 * len(worst) > len(eyes) or len(eyes) == 2:
         return _of_all(eyes, worst)
-    return tuple(_of_one(eyes, camera, share, others) for camera, share in worst)
+    return tuple(_of_one(eyes, camera, share, _others(pairs, camera)) for camera, share in worst)
+
+
+def _others(pairs: Pairs, camera: int) -> Share:
+    """What all but one camera compare among each other."""
+    rest = [other for other in range(len(pairs.through)) if other != camera]
+    return share_of(pairs, rest, rest)
+
+
+def _is_told(share: Share, others: Share) -> bool:
+    is_beside = share.value > max(WARNED, BESIDE_OTHERS * others.value)
+    return share.through >= LEAST and (_stops(share) or is_beside)
 
 
 def _of_mistake(eyes: Sequence[Eye], suspicion: Suspicion) -> Finding:
