@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from elbowroom.cli.options import JsonFile, SitePath
+from elbowroom.cli.site_mask import mask
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
     from elbowroom.geometry import DepthCamera, VoxelGrid
     from elbowroom.site import Site
 
-site_app = typer.Typer(help="Write a site file, or check one.", no_args_is_help=True)
+site_app = typer.Typer(help="Write a site file, check one, or find masks.", no_args_is_help=True)
+site_app.command(epilog="Example: elbowroom site mask my_room.yaml --out masks")(mask)
 
 
 @site_app.command(epilog="Example: elbowroom site new my_room.yaml")

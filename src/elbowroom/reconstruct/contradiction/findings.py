@@ -27,7 +27,7 @@ COMPARED = 64
 """if so many comparisons were made: fewer are a warning."""
 LEAST = 10
 """Fewer contradictions than this are not worth a warning."""
-WARNED, BESIDE_OTHERS = 0.06, 8.0
+WARNED, BESIDE_OTHERS = 0.1, 8.0
 """A camera is warned of whose share is larger than this, and so many times that of the others among each other."""
 MANY = 4
 """More cameras than this are counted, not listed."""

@@ -74,6 +74,16 @@ def sample_of(eye: Eye, depth_m: Image, stamp_ns: int | None = None, samples: in
     return Sample(depth_m, stamp_ns, u[taken].astype(float), v[taken].astype(float), here[taken])
 
 
+def seen_part(mask: NDArray[np.bool_] | None, depth_m: Image) -> Image:
+    """An image without what is masked.
+
+    Args:
+        mask: of pixels that say nothing, shape (height, width); None: none do.
+        depth_m: shape (height, width) [m].
+    """
+    return depth_m if mask is None else np.where(mask, np.float32(0), depth_m)
+
+
 def about(eye: Eye, image: Image, u: Array, v: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
     """The least and the greatest depth about places in an image, and which places it says anything of.
 

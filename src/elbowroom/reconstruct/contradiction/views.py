@@ -11,7 +11,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.contradiction.eye import Eye
 from elbowroom.reconstruct.contradiction.pairs import Pairs, Points, points_of, seen_by, together
-from elbowroom.reconstruct.contradiction.sample import SAMPLES, Sample, sample_of
+from elbowroom.reconstruct.contradiction.sample import SAMPLES, Sample, sample_of, seen_part
 from elbowroom.sensing import DepthFrame
 
 
@@ -43,13 +43,14 @@ class Views:
             margin: of cameras without one of their own.
             samples: how many pixels of each image are looked at.
         """
+        masks = {camera.name: camera.mask for camera in cameras}
         given = {frame.camera: frame for frame in frames}
         eyes = tuple(Eye.of(camera, margin) for camera in cameras if camera.name in given)
         seen = (given[eye.name] for eye in eyes)
         return cls(
             eyes,
             tuple(
-                sample_of(eye, frame.depth_m, frame.stamp_ns, samples)
+                sample_of(eye, seen_part(masks[eye.name], frame.depth_m), frame.stamp_ns, samples)
                 for eye, frame in zip(eyes, seen, strict=True)
             ),
         )

@@ -26,7 +26,27 @@ ALIKE = 0.05
 """A principal point fits another size if both sides ask for the same factor, to this share."""
 EXCHANGED = 0.02
 """Off the middle by less than this share, once cx and cy are exchanged."""
-FACTORS = (0.2, 0.25, 1 / 3, 0.4, 0.5, 0.6, 2 / 3, 0.75, 1.5, 1.6, 5 / 3, 2.0, 2.25, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+FACTORS = (
+    0.2,
+    0.25,
+    1 / 3,
+    0.4,
+    0.5,
+    0.6,
+    2 / 3,
+    0.75,
+    1.5,
+    1.6,
+    5 / 3,
+    2.0,
+    2.25,
+    2.5,
+    3.0,
+    4.0,
+    5.0,
+    6.0,
+    8.0,
+)
 """By which images are made smaller and larger: 1280 to 640, 1920 to 1280."""
 COVERED, USED = 0.9, 0.9
 """Less of the pinhole image, or of the camera's own, is said."""
@@ -163,7 +183,10 @@ def _better_order(camera: DepthCamera) -> tuple[str, float]:
             "k1 k2 k3 p1 p2 k4 k5 k6": (c[0], c[1], c[3], c[4], c[2], c[5], c[6], c[7]),
         }
         if len(c) == 8
-        else {"k1 k2 k3 p1 p2": (c[0], c[1], c[3], c[4], c[2]), "p1 p2 k1 k2 k3": (c[2], c[3], c[0], c[1], c[4])}
+        else {
+            "k1 k2 k3 p1 p2": (c[0], c[1], c[3], c[4], c[2]),
+            "p1 p2 k1 k2 k3": (c[2], c[3], c[0], c[1], c[4]),
+        }
     )
     best, words = 0.0, ""
     for name, order in orders.items():

@@ -80,7 +80,10 @@ def _spikes(image: Thinned, grid: VoxelGrid) -> list[Spike]:
     for _ in range(MOST):
         if not counts.size:
             break
-        most = int(np.argmax(counts[values > values[-1] * (1 - AROUND)]) + np.argmax(values > values[-1] * (1 - AROUND)))
+        most = int(
+            np.argmax(counts[values > values[-1] * (1 - AROUND)])
+            + np.argmax(values > values[-1] * (1 - AROUND))
+        )
         value, count = float(values[most]), int(counts[most])
         above = counts[values > value].sum()
         if count < SHARE * image.here.size or above > ABOVE * counts.sum():
@@ -89,7 +92,12 @@ def _spikes(image: Thinned, grid: VoxelGrid) -> list[Spike]:
         if around > LONELY * count:
             break
         found.append(
-            Spike(value, count / image.here.size, _joined(image, values[most]), _outside(image, values[most], grid))
+            Spike(
+                value,
+                count / image.here.size,
+                _joined(image, values[most]),
+                _outside(image, values[most], grid),
+            )
         )
         values, counts = values[:most], counts[:most]
     return found
@@ -142,9 +150,7 @@ def _at_the_end(image: Thinned) -> list[Finding]:
     share = float(np.mean(_near(image.here, end)))
     if share < SHARE:
         return []
-    text = (
-        f"{share:.0%} of the pixels are exactly {end:g} m, the camera's max_depth_m: taken as no return, not as a surface"
-    )
+    text = f"{share:.0%} of the pixels are exactly {end:g} m, the camera's max_depth_m: taken as no return, not as a surface"
     return [Finding("at max_depth_m", (image.camera.name,), text, stops=False)]
 
 

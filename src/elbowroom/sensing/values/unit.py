@@ -140,7 +140,10 @@ def _advice(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str:
     said = "check the scale" if unit is None else f"check depth_scale_m, which is {unit:g} m a unit"
     # rooms are about as large as their grids: the usual unit by which rays end nearest to where they leave it
     factors = (
-        {f"depths {factor:g} times as large": factor for factor in (0.001, 0.01, 0.1, 0.25, 0.5, 2, 4, 10, 1000)}
+        {
+            f"depths {factor:g} times as large": factor
+            for factor in (0.001, 0.01, 0.1, 0.25, 0.5, 2, 4, 10, 1000)
+        }
         if unit is None
         else {f"depth_scale_m {each:g}": each / unit for each in UNITS_M if each != unit}
     )
