@@ -10,6 +10,7 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.sensing import DepthFrame
 from elbowroom.sensing.values import look_at_images, look_at_setting
+from elbowroom.sensing.values.content import CONSTANT
 
 FIRST = 3
 """Moments of the same cameras and grid that are looked at; then they are known to be usable."""
@@ -63,7 +64,9 @@ def require_plausible(
     findings = found_at(grid, cameras, frames)
     refuse(findings)
     for finding in findings:
-        warnings.warn(finding.text, ValueWarning, stacklevel=3)
+        # a wall made by hand is what one tries the library with
+        if finding.kind != CONSTANT:
+            warnings.warn(finding.text, ValueWarning, stacklevel=3)
     passed.moments += 1
 
 
