@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.finding import Finding
 from elbowroom.sensing.values.thinned import Thinned
 
-EMPTY, MASK, BYTES, ROUGHNESS = "no returns", "mask", "byte order", "no surfaces"
+EMPTY, MASK, BYTES, ROUGHNESS, CONSTANT = "no returns", "mask", "byte order", "no surfaces", "constant"
 GREATEST_8_BIT = 255
 LEAST_UNIT_M = 4e-4
 """Units from here on make 255 of them nearer than sensors measure."""
@@ -19,7 +19,7 @@ LEAST_PAIRS = 100
 
 
 def look_at_content(images: Sequence[Thinned], *, of_all: bool = True) -> list[Finding]:
-    """Images without returns, masks and 8-bit pictures, bytes in the wrong order.
+    """Images without returns or with one number everywhere, masks and 8-bit pictures, bytes in the wrong order.
 
     Args:
         images: one of each camera.
@@ -29,7 +29,7 @@ def look_at_content(images: Sequence[Thinned], *, of_all: bool = True) -> list[F
     findings = [_empty(image, of_all and len(empty) == len(images)) for image in empty]
     for image in images:
         if image.given.any():
-            findings += _small_codes(image) or _rough(image)
+            findings += _small_codes(image) or _constant(image) or _rough(image)
     return findings
 
 
@@ -61,6 +61,15 @@ def _small_codes(image: Thinned) -> list[Finding]:
     )
     text = f"{what}, not depth in units of {unit:g} m. Give the sensor's own 16-bit depth image"
     return [Finding(MASK, (image.camera.name,), text, stops=True)]
+
+
+def _constant(image: Thinned) -> list[Finding]:
+    """One number wherever there is one: what no sensor delivers."""
+    depth = image.here[image.given]
+    if depth.size < LEAST_PAIRS or depth.min() != depth.max():
+        return []
+    text = f"every pixel that has a depth says exactly {float(depth[0]):.6g} m: no sensor measures so; is it the depth image?"
+    return [Finding(CONSTANT, (image.camera.name,), text, stops=False)]
 
 
 def _rough(image: Thinned) -> list[Finding]:

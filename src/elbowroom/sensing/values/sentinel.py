@@ -13,6 +13,7 @@ from elbowroom.sensing.values.thinned import Thinned, way_through
 KIND = "sentinel"
 SHARE = 0.02
 """Of all pixels: what one exact number must fill before it is looked at closely."""
+LEAST_PIXELS = 40
 AROUND, LONELY = 0.07, 0.05
 """Values this near to it, as a share of it, are fewer than this share of its count: sensors scatter, sentinels do not."""
 ABOVE = 0.005
@@ -86,7 +87,7 @@ def _spikes(image: Thinned, grid: VoxelGrid) -> list[Spike]:
         )
         value, count = float(values[most]), int(counts[most])
         above = counts[values > value].sum()
-        if count < SHARE * image.here.size or above > ABOVE * counts.sum():
+        if count < max(SHARE * image.here.size, LEAST_PIXELS) or above > ABOVE * counts.sum():
             break
         around = counts[np.abs(values - value) <= AROUND * value].sum() - count
         if around > LONELY * count:
@@ -104,7 +105,9 @@ def _spikes(image: Thinned, grid: VoxelGrid) -> list[Spike]:
 
 
 def _joined(image: Thinned, value: np.float32) -> float:
-    """Of the places where the value ends at another return, the share where the step is small; 0: there are none."""
+    """Of the places where the value ends at another return, the share where the step is small; 1: there are none, as of a
+    wall that fills the image.
+    """
     small = edges = 0
     is_it = image.here == value
     for beside in (image.right, image.below):
@@ -113,7 +116,7 @@ def _joined(image: Thinned, value: np.float32) -> float:
         near, far = np.minimum(image.here, beside)[at_edge], np.maximum(image.here, beside)[at_edge]
         small += int(np.count_nonzero(far - near < SMALL_STEP * far))
         edges += near.size
-    return small / edges if edges else 0.0
+    return small / edges if edges else 1.0
 
 
 def _outside(image: Thinned, value: np.float32, grid: VoxelGrid) -> float:

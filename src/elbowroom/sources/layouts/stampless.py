@@ -57,6 +57,8 @@ class Stampless:
 
     def _files_of(self, camera: str) -> list[Path]:
         given = self.recording.files.get(camera, f"{camera}/*.png")
+        if camera not in self.recording.files and not any(self.folder.glob(given)):
+            given = f"{camera}/*.pgm"
         what = f"{self.site.path}: recording.files.{camera}"
         if not isinstance(given, str):
             doubled = sorted({name for name in given if given.count(name) > 1})
@@ -65,5 +67,5 @@ class Stampless:
             return [self.folder / inside(self.folder, name) for name in given]
         paths = sorted(self.folder.glob(inside(self.folder, given)))
         if not paths:
-            raise SiteError(f"{what}: no file {given} in {self.folder}; expected 16-bit PNG images")
+            raise SiteError(f"{what}: no file {given} in {self.folder}; expected 16-bit PNG or PGM images")
         return paths
