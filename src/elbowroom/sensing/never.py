@@ -11,8 +11,8 @@ from elbowroom.sensing.frame import DepthFrame
 
 LEAST_SHARE = 0.002
 """Regions smaller than this share of the image are not masked: single pixels that are lost are no region."""
-RIM_PX = 1
-"""So near to a pixel that ever returned none is masked [px]."""
+BLOCK = np.ones((3, 3), dtype=np.bool_)
+"""A pixel is masked only with others in such a block of which none ever returned: threads and specks are no region."""
 
 Mask = NDArray[np.bool_]
 
@@ -44,13 +44,14 @@ class Never:
         return 1.0 - float(self.returned.mean())
 
     def mask(self, inside: bool = False) -> tuple[Mask, int]:
-        """What may be masked, and in how many regions: no pixel that ever returned, nor its neighbours, nor specks.
+        """What may be masked, and in how many regions: no pixel that ever returned, no threads, no specks.
 
         Args:
             inside: regions as well that do not touch the image's border.
         """
-        never = ndimage.binary_erosion(~self.returned, np.ones((3, 3)), iterations=RIM_PX, border_value=1)
-        labels, _ = ndimage.label(never, np.ones((3, 3)))
+        wide = np.pad(~self.returned, 1, mode="edge")
+        never = ndimage.binary_opening(wide, BLOCK)[1:-1, 1:-1]
+        labels, _ = ndimage.label(never, BLOCK)
         sizes = np.bincount(labels.reshape(-1))
         at_border = np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]])
         kept = np.flatnonzero(sizes >= LEAST_SHARE * labels.size) if inside else np.unique(at_border)

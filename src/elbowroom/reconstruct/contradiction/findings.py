@@ -12,6 +12,7 @@ from elbowroom.reconstruct.contradiction.pairs import Pairs
 from elbowroom.reconstruct.contradiction.suspicion import (
     FEW,
     Share,
+    Standing,
     Suspicion,
     explained,
     share_of,
@@ -29,6 +30,8 @@ LEAST = 10
 """Fewer contradictions than this are not worth a warning."""
 WARNED, BESIDE_OTHERS = 0.1, 8.0
 """A camera is warned of whose share is larger than this, and so many times that of the others among each other."""
+USUAL = 40
+"""A camera that shares no view with others is told of if of these two agree in so many points."""
 MANY = 4
 """More cameras than this are counted, not listed."""
 SEEN_THROUGH = "one measured a surface and the other sees through it"
@@ -92,7 +95,10 @@ def unexplained(eyes: Sequence[Eye], pairs: Pairs, named: Collection[int]) -> tu
     ]
     if 2 * len(worst) > len(eyes) or len(eyes) == 2:
         return _of_all(eyes, worst)
-    return tuple(_of_one(eyes, camera, share, _others(pairs, camera)) for camera, share in worst)
+    return (
+        *(_of_one(eyes, camera, share, _others(pairs, camera)) for camera, share in worst),
+        *_alone(eyes, now, named),
+    )
 
 
 def _others(pairs: Pairs, camera: int) -> Share:
@@ -130,7 +136,19 @@ def _of_one(eyes: Sequence[Eye], camera: int, share: Share, others: Share) -> Fi
         f"{name}: {_percent(share)} of {share.compared} comparisons with other cameras contradict, {SEEN_THROUGH} "
         f"(the others among each other: {_percent(others)}); {likely}: {CORRECT}"
     )
-    return Finding(KIND, (name,), text, _stops(share))
+    return Finding(KIND, (name,), text, _stops(share) or twin is not None)
+
+
+def _alone(eyes: Sequence[Eye], now: Standing, named: Collection[int]) -> tuple[Finding, ...]:
+    """Cameras that share no view with others, where these share theirs."""
+    if len(now.core) < 2 or now.usual < USUAL:
+        return ()
+    why = (
+        f"shares no view with the other cameras, of which two agree in {now.usual:.0f} points, so that nothing checks its "
+        "pose; if it looks into the same room, pose or lens are not what the site says"
+    )
+    names = (eyes[camera].name for camera in now.lonely if camera not in named)
+    return tuple(Finding(KIND, (name,), f"{name}: {why}", False) for name in names)
 
 
 def _of_all(eyes: Sequence[Eye], worst: Sequence[tuple[int, Share]]) -> tuple[Finding, ...]:
