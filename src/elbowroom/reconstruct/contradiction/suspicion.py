@@ -112,9 +112,17 @@ def standing(pairs: Pairs) -> Standing:
         out.append(core.pop(worst))
     agrees = both.agrees[np.ix_(core, core)].sum(axis=1)
     usual = float(np.median(agrees)) if core else 0.0
-    alone = [camera for camera, own in zip(core, agrees, strict=True) if own < max(LONELY * usual, FEW)]
-    kept = tuple(camera for camera in core if camera not in alone)
-    return Standing(tuple(out), tuple(shares), tuple(alone), kept, usual / max(len(core) - 1, 1))
+    few = max(LONELY * usual, FEW)
+    alone = [camera for camera, own in zip(core, agrees, strict=True) if own < few]
+    alone += [camera for camera, share in zip(out, shares, strict=True) if share.compared < few]
+    told = [(camera, share) for camera, share in zip(out, shares, strict=True) if camera not in alone]
+    return Standing(
+        contradicting=tuple(camera for camera, _ in told),
+        shares=tuple(share for _, share in told),
+        lonely=tuple(alone),
+        core=tuple(camera for camera in core if camera not in alone),
+        usual=usual / max(len(core) - 1, 1),
+    )
 
 
 def explained(views: Views) -> tuple[list[Suspicion], Views]:
