@@ -3,6 +3,8 @@
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from elbowroom.geometry import DepthCamera, Intrinsics
 
 
@@ -21,5 +23,6 @@ def with_joined_pixels(camera: DepthCamera, least_px: int) -> DepthCamera:
     )
     width, height, mask = camera.width // step, camera.height // step, camera.mask
     if mask is not None:
-        mask = mask[: height * step, : width * step].reshape(height, step, width, step).any(axis=(1, 3))
+        squares = mask[: height * step, : width * step].reshape(height, step, width, step)
+        mask = np.asarray(squares.any(axis=(1, 3)))
     return replace(camera, width=width, height=height, intrinsics=intrinsics, mask=mask)

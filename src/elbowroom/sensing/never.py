@@ -54,6 +54,6 @@ class Never:
         labels, _ = ndimage.label(never, BLOCK)
         sizes = np.bincount(labels.reshape(-1))
         at_border = np.concatenate([labels[0], labels[-1], labels[:, 0], labels[:, -1]])
-        kept = np.flatnonzero(sizes >= LEAST_SHARE * labels.size) if inside else np.unique(at_border)
-        kept = [int(label) for label in kept if label and sizes[label] >= LEAST_SHARE * labels.size]
+        regions = np.arange(len(sizes)) if inside else np.unique(at_border)
+        kept = [int(label) for label in regions if label and sizes[label] >= LEAST_SHARE * labels.size]
         return np.isin(labels, kept), len(kept)

@@ -12,7 +12,6 @@ from elbowroom.reconstruct.contradiction.pairs import Pairs
 from elbowroom.reconstruct.contradiction.suspicion import (
     FEW,
     Share,
-    Standing,
     Suspicion,
     explained,
     share_of,
@@ -66,6 +65,7 @@ def found_in(views: Views) -> tuple[Finding, ...]:
     return (
         *(_of_mistake(views.eyes, suspicion) for suspicion in suspicions),
         *unexplained(views.eyes, left.pairs, named),
+        *_alone(left, named),
     )
 
 
@@ -95,10 +95,7 @@ def unexplained(eyes: Sequence[Eye], pairs: Pairs, named: Collection[int]) -> tu
     ]
     if 2 * len(worst) > len(eyes) or len(eyes) == 2:
         return _of_all(eyes, worst)
-    return (
-        *(_of_one(eyes, camera, share, _others(pairs, camera)) for camera, share in worst),
-        *_alone(eyes, now, named),
-    )
+    return tuple(_of_one(eyes, camera, share, _others(pairs, camera)) for camera, share in worst)
 
 
 def _others(pairs: Pairs, camera: int) -> Share:
@@ -139,15 +136,17 @@ def _of_one(eyes: Sequence[Eye], camera: int, share: Share, others: Share) -> Fi
     return Finding(KIND, (name,), text, _stops(share) or twin is not None)
 
 
-def _alone(eyes: Sequence[Eye], now: Standing, named: Collection[int]) -> tuple[Finding, ...]:
+def _alone(views: Views, named: Collection[int]) -> tuple[Finding, ...]:
     """Cameras that share no view with others, where these share theirs."""
+    now = standing(views.pairs)
     if len(now.core) < 2 or now.usual < USUAL:
         return ()
     why = (
         f"shares no view with the other cameras, of which two agree in {now.usual:.0f} points, so that nothing checks its "
         "pose; if it looks into the same room, pose or lens are not what the site says"
     )
-    names = (eyes[camera].name for camera in now.lonely if camera not in named)
+    alone = (n for n in now.lonely if n not in named and len(views.samples[n].u) >= COMPARED)
+    names = (views.eyes[camera].name for camera in alone)
     return tuple(Finding(KIND, (name,), f"{name}: {why}", False) for name in names)
 
 

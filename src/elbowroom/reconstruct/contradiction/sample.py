@@ -113,7 +113,12 @@ def about(eye: Eye, image: Image, u: Array, v: Array) -> tuple[Array, Array, NDA
 
 
 def places(width: int, height: int, samples: int) -> tuple[Whole, Whole]:
-    """Columns and rows of about so many pixels, evenly over an image, each with neighbours on all sides."""
+    """Columns and rows of about so many pixels, evenly over an image, each with neighbours on all sides.
+
+    Args:
+        width, height: of the image [px].
+        samples: how many.
+    """
     across = max(1, round(np.sqrt(samples * width / height)))
     down = max(1, round(samples / across))
     u = np.unique(((np.arange(across) + 0.5) * width / across).astype(np.intp))
