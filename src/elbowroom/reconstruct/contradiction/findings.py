@@ -142,8 +142,8 @@ def _alone(views: Views, named: Collection[int]) -> tuple[Finding, ...]:
     if len(now.core) < 2 or now.usual < USUAL:
         return ()
     why = (
-        f"shares no view with the other cameras, of which two agree in {now.usual:.0f} points, so that nothing checks its "
-        "pose; if it looks into the same room, pose or lens are not what the site says"
+        f"shares no view with the other cameras, of which two agree in {now.usual:.0f} points, so that nothing "
+        "checks its pose; if it looks into the same room, pose or lens are not what the site says"
     )
     alone = (n for n in now.lonely if n not in named and len(views.samples[n].u) >= COMPARED)
     names = (views.eyes[camera].name for camera in alone)
