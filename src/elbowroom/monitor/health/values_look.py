@@ -21,13 +21,20 @@ class ValuesLook:
         grid: the watched box.
         cameras: of the room.
         units_m: metres per unit of the files that images are read from, by camera; none of those that are not files.
+        said: what was found before, of the site; it is said to the end.
     """
 
     name = "values"
 
-    def __init__(self, grid: VoxelGrid, cameras: Sequence[DepthCamera], units_m: Mapping[str, float]) -> None:
+    def __init__(
+        self,
+        grid: VoxelGrid,
+        cameras: Sequence[DepthCamera],
+        units_m: Mapping[str, float],
+        said: Sequence[Finding] = (),
+    ) -> None:
         self._grid, self._cameras, self._units_m = grid, {camera.name: camera for camera in cameras}, units_m
-        self._setting = look_at_setting(grid, cameras)
+        self._setting = (*said, *look_at_setting(grid, cameras))
         self._of_all: list[Finding] = []
         self._of_one: dict[str, list[Finding]] = {}
         self._heard = 0

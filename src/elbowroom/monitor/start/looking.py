@@ -2,10 +2,12 @@
 
 from elbowroom.monitor.health.checks import Look
 from elbowroom.monitor.health.values_look import ValuesLook
+from elbowroom.site.plausible import look_at_site
 from elbowroom.sources import Room
 from elbowroom.sources.looked import units_of
 
 
 def looks_of(room: Room) -> tuple[Look, ...]:
     """All looks at what a room's source brings."""
-    return (ValuesLook(room.grid, room.cameras, units_of(room.site, room.cameras)),)
+    said = tuple(look_at_site(room.site))
+    return (ValuesLook(room.grid, room.cameras, units_of(room.site, room.cameras), said),)
