@@ -173,7 +173,7 @@ def _better_order(camera: DepthCamera) -> tuple[str, float]:
         if covered > best:
             best, words = covered, name
     tangential = max(abs(c[2]), abs(c[3])) > TANGENTIAL
-    return (words, best) if best >= given + (0.0 if tangential else BETTER) and words else ("", 0.0)
+    return (words, best) if words and best >= (0.8 * given if tangential else given + BETTER) else ("", 0.0)
 
 
 @lru_cache(maxsize=CAMERAS_KEPT)
