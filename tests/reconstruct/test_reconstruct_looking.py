@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference import values_room as room
 
 from elbowroom.errors import ImplausibleError, InputError, ValueWarning
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.looking import FIRST, require_plausible
 from elbowroom.sensing import DepthFrame
+from reference import values_room as room
 
 
 def frames(scale=1.0):

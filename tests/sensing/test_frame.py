@@ -8,7 +8,9 @@ from elbowroom.sensing import DepthFrame
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-@pytest.mark.parametrize("view", [lambda a: a, lambda a: a[:], lambda a: a[::-1, ::2], lambda a: np.asfortranarray(a)])
+@pytest.mark.parametrize(
+    "view", [lambda a: a, lambda a: a[:], lambda a: a[::-1, ::2], lambda a: np.asfortranarray(a)]
+)
 def test_a_frame_keeps_its_pixels_when_a_buffer_is_filled_again(dtype, view):
     buffer = np.full((6, 8), 2.0, dtype)
     given = view(buffer)

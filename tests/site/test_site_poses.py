@@ -45,7 +45,9 @@ def test_numbers_of_few_digits_are_a_rotation_and_other_lengths_are_refused():
     ],
 )
 def test_there_is_one_way_to_say_a_pose(more):
-    with pytest.raises(ValueError, match="exactly one of world_from_camera, pose_file, or position_m with look_at_m"):
+    with pytest.raises(
+        ValueError, match="exactly one of world_from_camera, pose_file, or position_m with look_at_m"
+    ):
         entry(**more)
 
 
@@ -58,7 +60,12 @@ def test_a_matrix_written_column_by_column_is_named_as_such(tmp_path):
             {
                 "name": "a",
                 "world_from_camera": pose.T.tolist(),
-                **{"width": 160, "height": 120, "fx": 80.0, "fy": 80.0, "cx": 79.5, "cy": 59.5},
+                "width": 160,
+                "height": 120,
+                "fx": 80.0,
+                "fy": 80.0,
+                "cx": 79.5,
+                "cy": 59.5,
             }
         ],
     }

@@ -1,4 +1,3 @@
-# ruff: noqa: E501  (tables of one case a line)
 """Numbers that the field does not allow are refused, with the unit that they most likely are in."""
 
 import json
@@ -68,7 +67,10 @@ def test_what_the_field_does_not_allow_is_refused_with_its_likely_unit(tmp_path,
 
 @pytest.mark.parametrize(
     ("path", "value"),
-    [("camera_defaults.depth_scale_m", unit) for unit in (0.001, 0.0002, 0.00025, 0.0001, 1 / 256, 0.000125, 0.01)]
+    [
+        ("camera_defaults.depth_scale_m", unit)
+        for unit in (0.001, 0.0002, 0.00025, 0.0001, 1 / 256, 0.000125, 0.01)
+    ]
     + [
         ("camera_defaults.max_depth_m", 80.0),
         ("grid.voxel_size_m", 0.005),

@@ -43,7 +43,9 @@ def test_headers_with_any_white_space_and_comments_are_read(tmp_path, header):
 def test_what_another_program_writes_is_read_as_it_reads_it(tmp_path):
     cv2.imwrite(str(tmp_path / "b.pgm"), RAW)
     np.testing.assert_array_equal(read_depth_image(tmp_path / "b.pgm", 8, 6), RAW)
-    np.testing.assert_array_equal(cv2.imread(str(written(tmp_path, b"P5\n8 6\n65535\n")), cv2.IMREAD_UNCHANGED), RAW)
+    np.testing.assert_array_equal(
+        cv2.imread(str(written(tmp_path, b"P5\n8 6\n65535\n")), cv2.IMREAD_UNCHANGED), RAW
+    )
 
 
 def test_the_format_is_told_by_the_content_not_by_the_name(tmp_path):

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import yaml
 from PIL import Image
-from reference import values_room as room
 
 from elbowroom.cli import run
 from elbowroom.site import Site
 from elbowroom.sources import looked_at
+from reference import values_room as room
 
 
 def site_of(tmp_path, scene, **more):
@@ -21,12 +21,18 @@ def site_of(tmp_path, scene, **more):
     content = {
         "grid": {"origin_m": list(scene.grid.origin_m), "shape": list(scene.grid.shape), "voxel_size_m": 0.1},
         "camera_defaults": {
-            **{"width": room.WIDTH, "height": room.HEIGHT, "fx": k.fx, "fy": k.fy, "cx": k.cx, "cy": k.cy},
+            "width": room.WIDTH,
+            "height": room.HEIGHT,
+            "fx": k.fx,
+            "fy": k.fy,
+            "cx": k.cx,
+            "cy": k.cy,
             "depth_scale_m": scene.units_m["ne"],
             **more,
         },
         "cameras": [
-            {"name": camera.name, "world_from_camera": camera.world_from_camera.tolist()} for camera in scene.cameras
+            {"name": camera.name, "world_from_camera": camera.world_from_camera.tolist()}
+            for camera in scene.cameras
         ],
         "recording": {
             "layout": "stampless",
@@ -54,7 +60,7 @@ def test_images_of_another_unit_stop_check_and_reconstruct_with_one_line(tmp_pat
     said = capsys.readouterr().out
     assert "cannot be meant so" in said and "depth_scale_m 0.00025" in said
     assert '"stops":true' in (tmp_path / "rows.json").read_text()
-    assert run(["reconstruct", str(path), "--out", str(tmp_path / "out")]) == 1
+    assert run(["reconstruct", str(path), "--out", str(tmp_path / "out")]) == 2
     assert "Most likely the unit of depth" in capsys.readouterr().err
     assert not list((tmp_path / "out").glob("*.npz"))
 
@@ -71,7 +77,7 @@ def test_the_greatest_range_written_for_nothing_is_said_and_is_no_surface(tmp_pa
 
 @pytest.mark.parametrize(("fx", "said"), [(160.0, "principal point"), (0.5, "field of view")])
 def test_a_wrong_lens_stops_before_any_image_is_read(tmp_path, fx, said):
-    path = site_of(tmp_path, room.scene(), **{"fx": fx, "fy": fx, "cx": 2 * fx - 0.5, "cy": 1.5 * fx - 0.5})
+    path = site_of(tmp_path, room.scene(), fx=fx, fy=fx, cx=2 * fx - 0.5, cy=1.5 * fx - 0.5)
     for name in room.EYES:
         (tmp_path / f"{name}.png").write_bytes(b"")
     assert kinds(path) == {(said, True)}

@@ -65,8 +65,8 @@ def reconstruct(
         focus: blocks of 4 voxels that are looked at, of `motion.blocks_in_reach`; all others stay unseen. None: all.
         threads: None: all cores. The result does not depend on it.
         timer: called with the name of each stage, returns a context manager around it; None: nobody measures.
-        looks: whether values are looked at, at the first moments of these cameras: units, numbers that stand for no return,
-            lenses and poses that cannot be meant so.
+        looks: whether values are looked at, at the first moments of these cameras: units, numbers that stand for no
+            return, lenses and poses that cannot be meant so.
 
     Returns:
         The space; it keeps the images, for `FreeSpace.explain` and to look again (`FreeSpace.released` lets go).

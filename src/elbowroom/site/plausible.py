@@ -1,4 +1,4 @@
-"""Numbers of a site file that are within what the field allows, and most likely not meant so: speeds, a machine's place."""
+"""Numbers of a site file that the field allows, and that are most likely not meant so: speeds, a machine's place."""
 
 import math
 import xml.etree.ElementTree as ET
@@ -35,13 +35,15 @@ def _speed(name: str, entry: JointEntry, urdf_rad_s: float | None) -> Iterator[F
     about, deg_s = (name,), entry.max_speed_deg_s
     if deg_s is not None and urdf_rad_s is not None and abs(deg_s - urdf_rad_s) <= SAME * urdf_rad_s:
         text = (
-            f"joint {name}: max_speed_deg_s is {deg_s:g}, the number of the URDF, which is in radians a second: that is "
+            f"joint {name}: max_speed_deg_s is {deg_s:g}, the number of the URDF, which is in radians a second: "
+            "that is "
             f"{math.degrees(urdf_rad_s):.4g} degrees a second, and brakes over so much longer a way"
         )
         yield Finding(SPEED, about, text, stops=True)
     elif deg_s is not None and (deg_s < SLOW_DEG_S or _is_turns(deg_s)):
         text = (
-            f"joint {name}: max_speed_deg_s is {deg_s:g}; if that is radians a second, write {math.degrees(deg_s):.4g}: "
+            f"joint {name}: max_speed_deg_s is {deg_s:g}; if that is radians a second, write "
+            f"{math.degrees(deg_s):.4g}: "
             "braking ways are too short otherwise"
         )
         yield Finding(SPEED, about, text, stops=False)
@@ -87,6 +89,10 @@ def _base(site: Site) -> Iterator[Finding]:
     if away <= FAR_M:
         return
     unit = unit_of_length(grid, place)
-    likely = f"most likely world_from_base is in {unit}, and must be in metres" if unit else "check world_from_base"
+    likely = (
+        f"most likely world_from_base is in {unit}, and must be in metres"
+        if unit
+        else "check world_from_base"
+    )
     text = f"machine {machine.name}: its base stands {away:.4g} m from the grid; {likely}"
     yield Finding(PLACE, (machine.name,), text, stops=bool(unit))

@@ -28,7 +28,9 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
     if site.entry.recording is not None and not any(finding.stops for finding in found):
         for group in _some(layout_of(site).moments()):
             frames = [image.read() for image in group]
-            found += look_at_images(grid, cameras, frames, {image.camera.name: image.unit_m for image in group})
+            found += look_at_images(
+                grid, cameras, frames, {image.camera.name: image.unit_m for image in group}
+            )
     return once(found)
 
 

@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
-from reference import values_room as room
 
 from elbowroom.monitor.health.values_look import FIRST, ValuesLook
-from elbowroom.sensing import DepthFrame, Snapshot
+from elbowroom.sensing import Snapshot
+from reference import values_room as room
 
 
 def snapshot(scene, **other):
@@ -40,7 +40,9 @@ def test_a_sentinel_that_comes_later_is_found_within_a_round_and_forgotten_when_
         look.hear(snapshot(scene))
     depth = np.where(scene.frames[2].depth_m > 3.8, 10.0, scene.frames[2].depth_m)
     heard = [look.hear(snapshot(scene, sw=depth)) for _ in room.EYES]
-    assert [(finding.kind, finding.about, finding.stops) for finding in heard[-1]] == [("sentinel", ("sw",), True)]
+    assert [(finding.kind, finding.about, finding.stops) for finding in heard[-1]] == [
+        ("sentinel", ("sw",), True)
+    ]
     healed = [look.hear(snapshot(scene)) for _ in room.EYES]
     assert healed[-1] == ()
 
@@ -50,7 +52,9 @@ def test_a_covered_camera_is_a_warning():
     look = look_of(scene)
     black = np.zeros((room.HEIGHT, room.WIDTH), np.float32)
     for _ in range(FIRST + 4):
-        assert [(finding.about, finding.stops) for finding in look.hear(snapshot(scene, ne=black))] == [(("ne",), False)]
+        assert [(finding.about, finding.stops) for finding in look.hear(snapshot(scene, ne=black))] == [
+            (("ne",), False)
+        ]
 
 
 def test_a_moment_without_frames_says_nothing():

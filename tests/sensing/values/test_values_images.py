@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference import values_room as room
 
 from elbowroom.errors import FrameError
 from elbowroom.evaluate.looks.wrong import WRONG
 from elbowroom.sensing import DepthFrame
 from elbowroom.sensing.values import look_at_images
+from reference import values_room as room
 
 OF_IMAGES = [
     name
@@ -49,9 +49,13 @@ def test_each_kind_of_wrong_image_is_named_and_stops(kind, noise_m):
 @pytest.mark.parametrize("camera", sorted(room.EYES))
 def test_one_camera_with_a_sentinel_is_named_alone(camera):
     scene = room.scene(noise_m=0.002)
-    codes = {name: np.where(raw > 4000, 9000, raw) if name == camera else raw for name, raw in scene.codes.items()}
+    codes = {
+        name: np.where(raw > 4000, 9000, raw) if name == camera else raw for name, raw in scene.codes.items()
+    }
     findings = replace(scene, codes=codes).findings()
-    assert [(finding.kind, finding.about, finding.stops) for finding in findings] == [("sentinel", (camera,), True)]
+    assert [(finding.kind, finding.about, finding.stops) for finding in findings] == [
+        ("sentinel", (camera,), True)
+    ]
     assert "exactly 9 m (raw 9000)" in findings[0].text and "max_depth_m: 9" in findings[0].text
 
 
@@ -71,8 +75,10 @@ def test_a_floor_seen_from_straight_above_is_no_sentinel():
     assert look_at_images(room.GRID, [camera], [DepthFrame("top", 0, depth)]) == ()
 
 
-def test_a_wall_that_fills_the_image_is_said_to_be_no_measurement_and_does_not_stop():
-    camera = room.camera_at("one", (0.0, 0.0, 1.4), (1.0, 0.0, 1.4))
+def test_a_wall_that_fills_the_image_is_one_only_for_a_camera_that_faces_it():
+    facing = room.camera_at("one", (0.0, 0.0, 1.4), (1.0, 0.0, 1.4))
+    assert look_at_images(room.GRID, [facing], [DepthFrame("one", 0, np.full((120, 160), 1.8))]) == ()
+    camera = room.camera_at("one", (0.0, 0.0, 1.4), (1.0, 0.3, 1.2))
     found = look_at_images(room.GRID, [camera], [DepthFrame("one", 0, np.full((120, 160), 1.8))])
     assert [(finding.kind, finding.stops) for finding in found] == [("constant", False)]
 
@@ -85,7 +91,9 @@ def test_no_returns_at_all_stop_and_those_of_one_camera_do_not():
     assert [(f.about, f.stops) for f in replace(scene, codes=one).findings()] == [(("ne",), False)]
 
 
-@pytest.mark.parametrize(("said", "meant"), [(0.001, 0.00025), (0.001, 0.0001), (0.001, 0.01), (0.0001, 0.001)])
+@pytest.mark.parametrize(
+    ("said", "meant"), [(0.001, 0.00025), (0.001, 0.0001), (0.001, 0.01), (0.0001, 0.001)]
+)
 def test_the_unit_that_fits_is_suggested(said, meant):
     true = room.scene(unit_m=meant)
     (finding,) = replace(true, units_m=dict.fromkeys(true.units_m, said)).findings()

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference import values_room as room
 
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.sensing.values import look_at_setting
+from reference import values_room as room
 
 AZURE = (3.13, 2.32, 8.0e-05, -5.0e-05, 0.13, 3.46, 3.35, 0.66)
 """k1 k2 p1 p2 k3 k4 k5 k6, about as a rational lens of a time-of-flight camera has them."""

@@ -1,4 +1,4 @@
-"""Rows of the looks: one for each room that is right, one for each kind and room that is wrong, and what they come to."""
+"""Rows of the looks: one for each room that is right, one for each that was made wrong, and what they come to."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain

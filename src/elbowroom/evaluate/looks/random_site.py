@@ -82,7 +82,9 @@ def _furniture(rng: np.random.Generator, size: NDArray[np.float64]) -> tuple[Sol
         middle = rng.uniform(-0.4, 0.4, 2) * (size[:2] - extent[:2])
         foot = float(rng.choice((0.0, 0.0, 0.7)))
         lower = np.array([*(middle - extent[:2] / 2), foot])
-        boxes.append(_solid(f"box {number}", lower, np.minimum(lower + extent, (np.inf, np.inf, size[2] - 0.1))))
+        boxes.append(
+            _solid(f"box {number}", lower, np.minimum(lower + extent, (np.inf, np.inf, size[2] - 0.1)))
+        )
     return tuple(boxes)
 
 
@@ -90,8 +92,12 @@ def _people(rng: np.random.Generator, size: NDArray[np.float64]) -> tuple[Solid,
     solids: list[Solid] = []
     for number in range(int(rng.integers(0, 4))):
         x, y = rng.uniform(-0.35, 0.35, 2) * size[:2]
-        person = Person(f"person {number}", Walk((0.0, 0.0), (0.1, 0.1), 10.0), float(rng.uniform(1.55, 1.95)))
-        solids += person.solids(Stance(float(x), float(y), float(rng.uniform(0, 6.28)), float(rng.uniform(0, 6.28))))
+        person = Person(
+            f"person {number}", Walk((0.0, 0.0), (0.1, 0.1), 10.0), float(rng.uniform(1.55, 1.95))
+        )
+        solids += person.solids(
+            Stance(float(x), float(y), float(rng.uniform(0, 6.28)), float(rng.uniform(0, 6.28)))
+        )
     return tuple(solids)
 
 
@@ -149,7 +155,12 @@ def _pose(rng: np.random.Generator, size: NDArray[np.float64], how: float) -> ND
         return looking_at((float(x), float(y), float(size[2] - 0.1)), (float(x), float(y), 0.0))
     side = int(rng.integers(4))
     along = float(rng.uniform(-0.9, 0.9))
-    x, y = ((half[0], along * half[1]), (-half[0], along * half[1]), (along * half[0], half[1]), (along * half[0], -half[1]))[side]
+    x, y = (
+        (half[0], along * half[1]),
+        (-half[0], along * half[1]),
+        (along * half[0], half[1]),
+        (along * half[0], -half[1]),
+    )[side]
     z = float(rng.uniform(0.4, size[2] - 0.1))
     if how < TOP_DOWN + ALONG_AXES:
         at = (-x, y, z) if side < 2 else (x, -y, z)

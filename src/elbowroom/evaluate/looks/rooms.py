@@ -45,7 +45,9 @@ def package_scenes() -> Iterator[Scene]:
     """The simulated room at a few times, and the thesis' six, exact and with noise."""
     grid = VoxelGrid.covering((-2.0, -2.0, 0.0), (2.0, 2.0, 2.5), 0.05)
     room = InterventionRoom()
-    moments: list[tuple[str, Moment]] = [(f"room at {time_s:g} s", room.at(time_s)) for time_s in (0.0, 47.0, 210.0)]
+    moments: list[tuple[str, Moment]] = [
+        (f"room at {time_s:g} s", room.at(time_s)) for time_s in (0.0, 47.0, 210.0)
+    ]
     moments += [(each.name, setup(each.number).at(room.machine)) for each in SETUPS]
     for name, moment in moments:
         for noise in ("exact", "tof", "realsense_d435"):

@@ -37,7 +37,8 @@ class Scene:
     def frames(self) -> list[DepthFrame]:
         """The frames, as the site's images are read."""
         return [
-            DepthFrame.from_raw(name, None, codes, scale_m=self.units_m[name]) for name, codes in self.codes.items()
+            DepthFrame.from_raw(name, None, codes, scale_m=self.units_m[name])
+            for name, codes in self.codes.items()
         ]
 
     def findings(self) -> tuple[Finding, ...]:

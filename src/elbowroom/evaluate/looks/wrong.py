@@ -116,7 +116,11 @@ def _lens(camera: DepthCamera, **changes: float) -> DepthCamera:
 def _full_size(camera: DepthCamera, factor: float) -> DepthCamera:
     k = camera.intrinsics
     return _lens(
-        camera, fx=k.fx * factor, fy=k.fy * factor, cx=(k.cx + 0.5) * factor - 0.5, cy=(k.cy + 0.5) * factor - 0.5
+        camera,
+        fx=k.fx * factor,
+        fy=k.fy * factor,
+        cx=(k.cx + 0.5) * factor - 0.5,
+        cy=(k.cy + 0.5) * factor - 0.5,
     )
 
 
@@ -141,8 +145,12 @@ WRONG: Mapping[str, Wrong] = {
     "micrometres as millimetres": Wrong(other_unit(1000), ("unit", "metres")),
     "millimetres as tenths": Wrong(other_unit(0.1), UNIT),
     "millimetres as micrometres": Wrong(other_unit(0.001), ("unit", "no returns")),
-    "bits shifted by 3": Wrong(of_codes(lambda raw, unit, rng: np.minimum(raw.astype(float) * 8, 65528 * (raw > 0))), ()),
-    "bits shifted by 4": Wrong(of_codes(lambda raw, unit, rng: np.minimum(raw.astype(float) * 16, 65520 * (raw > 0))), ()),
+    "bits shifted by 3": Wrong(
+        of_codes(lambda raw, unit, rng: np.minimum(raw.astype(float) * 8, 65528 * (raw > 0))), ()
+    ),
+    "bits shifted by 4": Wrong(
+        of_codes(lambda raw, unit, rng: np.minimum(raw.astype(float) * 16, 65520 * (raw > 0))), ()
+    ),
     "bytes exchanged": Wrong(of_codes(lambda raw, unit, rng: raw.byteswap()), ("byte order", "no surfaces")),
     "no return is 10 m": Wrong(sentinel(value_m=10.0), SENTINEL),
     "no return is 65533": Wrong(sentinel(code=65533), SENTINEL),
@@ -151,30 +159,44 @@ WRONG: Mapping[str, Wrong] = {
         sentinel(code=None),
         SENTINEL,
     ),
-    "a mask of 0 and 255": Wrong(of_codes(lambda raw, unit, rng: np.where(raw > np.median(raw), 255, 0)), ("mask",)),
+    "a mask of 0 and 255": Wrong(
+        of_codes(lambda raw, unit, rng: np.where(raw > np.median(raw), 255, 0)), ("mask",)
+    ),
     "an 8-bit picture": Wrong(
         of_codes(lambda raw, unit, rng: _scaled(raw, raw.astype(float), 255)), ("mask", "no returns")
     ),
     "disparity of 16 bits": Wrong(
         of_codes(lambda raw, unit, rng: _scaled(raw, _inverse(raw), 60000)), ("disparity", "no returns")
     ),
-    "disparity of 12 bits": Wrong(of_codes(lambda raw, unit, rng: _scaled(raw, _inverse(raw), 4095)), ("disparity",)),
+    "disparity of 12 bits": Wrong(
+        of_codes(lambda raw, unit, rng: _scaled(raw, _inverse(raw), 4095)), ("disparity",)
+    ),
     "all black": Wrong(of_codes(lambda raw, unit, rng: raw * 0.0), ("no returns",)),
-    "all one number": Wrong(of_codes(lambda raw, unit, rng: raw * 0.0 + 20.0 / unit), ("sentinel", "unit", "no returns")),
+    "all one number": Wrong(
+        of_codes(lambda raw, unit, rng: raw * 0.0 + 20.0 / unit), ("sentinel", "unit", "no returns")
+    ),
     "noise": Wrong(of_codes(lambda raw, unit, rng: rng.integers(1, 65535, raw.shape)), ("no surfaces",)),
     "poses in millimetres": Wrong(of_cameras(lambda camera, rng: _placed(camera, 1000)), ("pose",)),
     "poses in centimetres": Wrong(of_cameras(lambda camera, rng: _placed(camera, 100)), ("pose",)),
     "poses in inches": Wrong(of_cameras(lambda camera, rng: _placed(camera, 1 / 0.0254)), ("pose",)),
-    "lens of twice the size": Wrong(of_cameras(lambda camera, rng: _full_size(camera, 2)), ("principal point",)),
-    "lens of four times the size": Wrong(of_cameras(lambda camera, rng: _full_size(camera, 4)), ("principal point",)),
-    "lens of half the size": Wrong(of_cameras(lambda camera, rng: _full_size(camera, 0.5)), ("principal point",)),
-    "lens of an image of size 1": Wrong(of_cameras(lambda camera, rng: _unit_image(camera)), ("field of view",)),
-    "focal length in millimetres": Wrong(of_cameras(lambda camera, rng: _lens(camera, fx=1.93, fy=1.93)), ("field of view",)),
+    "lens of twice the size": Wrong(
+        of_cameras(lambda camera, rng: _full_size(camera, 2)), ("principal point",)
+    ),
+    "lens of four times the size": Wrong(
+        of_cameras(lambda camera, rng: _full_size(camera, 4)), ("principal point",)
+    ),
+    "lens of half the size": Wrong(
+        of_cameras(lambda camera, rng: _full_size(camera, 0.5)), ("principal point",)
+    ),
+    "lens of an image of size 1": Wrong(
+        of_cameras(lambda camera, rng: _unit_image(camera)), ("field of view",)
+    ),
+    "focal length in millimetres": Wrong(
+        of_cameras(lambda camera, rng: _lens(camera, fx=1.93, fy=1.93)), ("field of view",)
+    ),
     "cx and cy exchanged": Wrong(
         of_cameras(lambda camera, rng: _lens(camera, cx=camera.intrinsics.cy, cy=camera.intrinsics.cx)),
         ("principal point",),
     ),
 }
-"""By name. What is wrong with one camera, or can be told only by what cameras contradict, is added by who looks for it."""
-
-
+"""By name."""

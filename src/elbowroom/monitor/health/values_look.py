@@ -52,10 +52,15 @@ class ValuesLook:
         return (*self._setting, *together(found, len(self._cameras)))
 
     def _look_at_all(self, snapshot: Snapshot) -> None:
-        images = [self._thinned(frame.camera, snapshot) for frame in snapshot.frames if frame.camera in self._cameras]
+        images = [
+            self._thinned(frame.camera, snapshot)
+            for frame in snapshot.frames
+            if frame.camera in self._cameras
+        ]
         found = found_in(images, self._grid)
         self._of_one = {
-            image.camera.name: [each for each in found if each.about == (image.camera.name,)] for image in images
+            image.camera.name: [each for each in found if each.about == (image.camera.name,)]
+            for image in images
         }
         self._of_all = [each for each in found if len(each.about) > 1]
 

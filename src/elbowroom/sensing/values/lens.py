@@ -26,7 +26,27 @@ ALIKE = 0.05
 """A principal point fits another size if both sides ask for the same factor, to this share."""
 EXCHANGED = 0.02
 """Off the middle by less than this share, once cx and cy are exchanged."""
-FACTORS = (0.2, 0.25, 1 / 3, 0.4, 0.5, 0.6, 2 / 3, 0.75, 1.5, 1.6, 5 / 3, 2.0, 2.25, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+FACTORS = (
+    0.2,
+    0.25,
+    1 / 3,
+    0.4,
+    0.5,
+    0.6,
+    2 / 3,
+    0.75,
+    1.5,
+    1.6,
+    5 / 3,
+    2.0,
+    2.25,
+    2.5,
+    3.0,
+    4.0,
+    5.0,
+    6.0,
+    8.0,
+)
 """By which images are made smaller and larger: 1280 to 640, 1920 to 1280."""
 COVERED, USED = 0.9, 0.9
 """Less of the pinhole image, or of the camera's own, is said."""
@@ -63,26 +83,30 @@ def _focal(camera: DepthCamera) -> Iterator[Finding]:
     across, down = field_of_view_deg(camera)
     if max(across, down) > WIDEST_DEG:
         unit = (
-            f"for an image of size 1: times the image's size fx is {k.fx * camera.width:.4g}, fy {k.fy * camera.height:.4g}, "
+            f"for an image of size 1: times the image's size fx is {k.fx * camera.width:.4g}, fy "
+            f"{k.fy * camera.height:.4g}, "
             f"cx {k.cx * camera.width - 0.5:.4g}, cy {k.cy * camera.height - 0.5:.4g}"
             if 0 <= k.cx <= 1.5 and 0 <= k.cy <= 1.5
             else "in millimetres, or of another image: it must be in pixels of this image"
         )
         text = (
-            f"fx {k.fx:g}, fy {k.fy:g} on {size} is a field of view of {max(across, down):.0f} degrees; most likely the "
+            f"fx {k.fx:g}, fy {k.fy:g} on {size} is a field of view of {max(across, down):.0f} degrees; most "
+            "likely the "
             f"intrinsics are {unit}"
         )
         yield Finding(VIEW, (camera.name,), text, stops=True)
         return
     if max(across, down) < NARROWEST_DEG:
         text = (
-            f"fx {k.fx:g}, fy {k.fy:g} on {size} is a field of view of {across:.1f} x {down:.1f} degrees; no depth camera "
+            f"fx {k.fx:g}, fy {k.fy:g} on {size} is a field of view of {across:.1f} x {down:.1f} degrees; no "
+            "depth camera "
             "sees so little: most likely the intrinsics are of a larger image"
         )
         yield Finding(VIEW, (camera.name,), text, stops=max(across, down) < NARROWEST_DEG / 4)
     if max(k.fx, k.fy) > UNEQUAL * min(k.fx, k.fy):
         text = (
-            f"fx {k.fx:g} and fy {k.fy:g} differ by a factor of {max(k.fx, k.fy) / min(k.fx, k.fy):.2g}, pixels would not be "
+            f"fx {k.fx:g} and fy {k.fy:g} differ by a factor of {max(k.fx, k.fy) / min(k.fx, k.fy):.2g}, pixels "
+            "would not be "
             "square: check both, and that both belong to this size of image"
         )
         yield Finding(FOCAL, (camera.name,), text, stops=False)
@@ -107,13 +131,16 @@ def _principal_point(camera: DepthCamera) -> Iterator[Finding]:
     if alike:
         wide, high = round(camera.width * factor), round(camera.height * factor)
         text = (
-            f"{size} is not its middle but that of an image of about {wide} x {high}: most likely the intrinsics are of that "
-            f"size; for this one fx is {k.fx / factor:.4g}, fy {k.fy / factor:.4g}, cx {(k.cx + 0.5) / factor - 0.5:.4g}, "
+            f"{size} is not its middle but that of an image of about {wide} x {high}: most likely the intrinsics "
+            "are of that "
+            f"size; for this one fx is {k.fx / factor:.4g}, fy {k.fy / factor:.4g}, cx "
+            f"{(k.cx + 0.5) / factor - 0.5:.4g}, "
             f"cy {(k.cy + 0.5) / factor - 0.5:.4g}"
         )
     else:
         text = (
-            f"{size} lies outside the middle half; for an image that was cut out, subtract where the cut begins, else check "
+            f"{size} lies outside the middle half; for an image that was cut out, subtract where the cut begins, "
+            "else check "
             "that the intrinsics are of this size of image"
         )
     outside = not (0 <= across <= 1 and 0 <= down <= 1)
@@ -135,17 +162,20 @@ def _distortion(camera: DepthCamera) -> Iterator[Finding]:
             f"its lens model covers {covered:.0%} of the image"
             f"{large if tangential > TANGENTIAL else ''}; "
             + (
-                f"in the order {words} the coefficients cover {other:.0%}: write them as k1 k2 p1 p2 k3 [k4 k5 k6], as OpenCV "
+                f"in the order {words} the coefficients cover {other:.0%}: write them as k1 k2 p1 p2 k3 [k4 k5 "
+                "k6], as OpenCV "
                 "does"
                 if words
-                else "check the coefficients, their order (k1 k2 p1 p2 k3 [k4 k5 k6]) and that they are of this lens; all "
+                else "check the coefficients, their order (k1 k2 p1 p2 k3 [k4 k5 k6]) and that they are of this "
+                "lens; all "
                 "beyond is not used"
             )
         )
         yield Finding(DISTORTION, (camera.name,), text, stops=bool(words) or tangential > TANGENTIAL)
     elif used < USED:
         text = (
-            f"{1 - used:.0%} of its image is not used: it lies beyond the pinhole image of the same size and focal length; "
+            f"{1 - used:.0%} of its image is not used: it lies beyond the pinhole image of the same size and "
+            "focal length; "
             "the rest of the room is not seen by it"
         )
         yield Finding(WIDE, (camera.name,), text, stops=False)
@@ -163,7 +193,10 @@ def _better_order(camera: DepthCamera) -> tuple[str, float]:
             "k1 k2 k3 p1 p2 k4 k5 k6": (c[0], c[1], c[3], c[4], c[2], c[5], c[6], c[7]),
         }
         if len(c) == 8
-        else {"k1 k2 k3 p1 p2": (c[0], c[1], c[3], c[4], c[2]), "p1 p2 k1 k2 k3": (c[2], c[3], c[0], c[1], c[4])}
+        else {
+            "k1 k2 k3 p1 p2": (c[0], c[1], c[3], c[4], c[2]),
+            "p1 p2 k1 k2 k3": (c[2], c[3], c[0], c[1], c[4]),
+        }
     )
     best, words = 0.0, ""
     for name, order in orders.items():

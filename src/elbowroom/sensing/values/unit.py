@@ -83,9 +83,7 @@ def _one(image: Thinned, ends: Ends, slack: float) -> list[Finding]:
     stands, about = _standing(ends, slack), (image.camera.name,)
     if stands.reach >= 2.5 and stands.behind >= 0.95 and stands.within <= 0.03:
         return [Finding(KIND, about, _too_far(stands, image, ends, slack), stops=False)]
-    if stands.reach <= 0.1:
-        return [Finding(KIND, about, _too_near(stands, image, ends, slack), stops=False)]
-    return []
+    return []  # one that is too near may look at a cabinet, and frees nothing
 
 
 def _ends(image: Thinned, grid: VoxelGrid) -> Ends:
@@ -118,15 +116,18 @@ def _standing(ends: Ends, slack: float, factor: float = 1.0) -> Standing:
 def _too_far(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str:
     return (
         f"{stands.behind:.0%} of what looks through the grid ends behind it, {stands.median_m:.3g} m away (median), "
-        f"{stands.reach:.2g} times as far as the grid's end: all before it reads free. Most likely the unit of depth: "
-        f"{_advice(stands, image, ends, slack)}. If there is truly nothing in the box, let it reach to a floor or wall "
+        f"{stands.reach:.2g} times as far as the grid's end: all before it reads free. Most likely the unit of "
+        "depth: "
+        f"{_advice(stands, image, ends, slack)}. If there is truly nothing in the box, let it reach to a floor or "
+        "wall "
         "that cameras see"
     )
 
 
 def _too_near(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str:
     return (
-        f"what looks through the grid ends {stands.median_m:.3g} m away (median), at {stands.reach:.0%} of the way to the "
+        f"what looks through the grid ends {stands.median_m:.3g} m away (median), at {stands.reach:.0%} of the "
+        "way to the "
         "grid's end: next to nothing can read free. Most likely the unit of depth, or something before the lens: "
         f"{_advice(stands, image, ends, slack)}"
     )
@@ -140,7 +141,10 @@ def _advice(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str:
     said = "check the scale" if unit is None else f"check depth_scale_m, which is {unit:g} m a unit"
     # rooms are about as large as their grids: the usual unit by which rays end nearest to where they leave it
     factors = (
-        {f"depths {factor:g} times as large": factor for factor in (0.001, 0.01, 0.1, 0.25, 0.5, 2, 4, 10, 1000)}
+        {
+            f"depths {factor:g} times as large": factor
+            for factor in (0.001, 0.01, 0.1, 0.25, 0.5, 2, 4, 10, 1000)
+        }
         if unit is None
         else {f"depth_scale_m {each:g}": each / unit for each in UNITS_M if each != unit}
     )
