@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from elbowroom.monitor.health.values_look import FIRST, ValuesLook
+from elbowroom.monitor.health.values_look import EVERY, FIRST, ValuesLook
 from elbowroom.sensing import Snapshot
 from reference import values_room as room
 
@@ -21,14 +21,14 @@ def look_of(scene, **more):
 def test_images_as_they_should_be_are_passed_in_silence():
     scene = room.scene(noise_m=0.002)
     look = look_of(scene)
-    assert all(look.hear(snapshot(scene)) == () for _ in range(FIRST + 5))
+    assert all(look.hear(snapshot(scene)) == () for _ in range(FIRST + 5 * EVERY))
 
 
 def test_a_unit_is_found_at_the_first_moment_and_stays():
     scene = room.scene(unit_m=0.00025)
     look = look_of(replace(scene, units_m=dict.fromkeys(scene.units_m, 0.001)))
     wrong = replace(scene, units_m=dict.fromkeys(scene.units_m, 0.001))
-    for _ in range(FIRST + 5):
+    for _ in range(FIRST + 5 * EVERY):
         (finding,) = look.hear(snapshot(wrong))
         assert finding.stops and finding.kind == "unit"
 
@@ -39,11 +39,11 @@ def test_a_sentinel_that_comes_later_is_found_within_a_round_and_forgotten_when_
     for _ in range(FIRST):
         look.hear(snapshot(scene))
     depth = np.where(scene.frames[2].depth_m > 3.8, 10.0, scene.frames[2].depth_m)
-    heard = [look.hear(snapshot(scene, sw=depth)) for _ in room.EYES]
+    heard = [look.hear(snapshot(scene, sw=depth)) for _ in range(EVERY * len(room.EYES))]
     assert [(finding.kind, finding.about, finding.stops) for finding in heard[-1]] == [
         ("sentinel", ("sw",), True)
     ]
-    healed = [look.hear(snapshot(scene)) for _ in room.EYES]
+    healed = [look.hear(snapshot(scene)) for _ in range(EVERY * len(room.EYES))]
     assert healed[-1] == ()
 
 
@@ -51,7 +51,7 @@ def test_a_covered_camera_is_a_warning():
     scene = room.scene()
     look = look_of(scene)
     black = np.zeros((room.HEIGHT, room.WIDTH), np.float32)
-    for _ in range(FIRST + 4):
+    for _ in range(FIRST + 4 * EVERY):
         assert [(finding.about, finding.stops) for finding in look.hear(snapshot(scene, ne=black))] == [
             (("ne",), False)
         ]

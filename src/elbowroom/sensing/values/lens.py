@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera, Intrinsics
-from elbowroom.sensing.rectify import index_map_of
+from elbowroom.sensing.rectify import IndexMap, index_map_of
 
 VIEW, FOCAL, CENTRE, DISTORTION, WIDE = (
     "field of view",
@@ -229,7 +229,7 @@ def lens_shares(intrinsics: Intrinsics, width: int, height: int) -> tuple[float,
     return float(np.mean(seen)), float(np.mean(used))
 
 
-def _corners(index: NDArray, seen: NDArray[np.bool_]) -> Iterator[tuple[NDArray, NDArray, int]]:
+def _corners(index: IndexMap, seen: NDArray[np.bool_]) -> Iterator[tuple[NDArray, NDArray, int]]:
     first_u, last_u, first_v, last_v = (edge[seen].astype(np.int64) for edge in index)
     yield first_v, first_u, 1
     yield first_v, last_u + 1, -1

@@ -57,7 +57,7 @@ class Stampless:
 
     def _files_of(self, camera: str) -> list[Path]:
         given = self.recording.files.get(camera, f"{camera}/*.png")
-        if camera not in self.recording.files and not any(self.folder.glob(given)):
+        if camera not in self.recording.files and not any(self.folder.glob(f"{camera}/*.png")):
             given = f"{camera}/*.pgm"
         what = f"{self.site.path}: recording.files.{camera}"
         if not isinstance(given, str):
