@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from elbowroom.errors import ImplausibleError, InputError, ValueWarning
+from elbowroom.geometry import VoxelGrid
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.looking import FIRST, require_plausible
 from elbowroom.sensing import DepthFrame
@@ -50,3 +51,11 @@ def test_a_depth_at_the_greatest_range_frees_nothing():
         depth = np.full((room.HEIGHT, room.WIDTH), end, np.float32)
         space = reconstruct(room.GRID, cameras, [DepthFrame("ne", 0, depth)], rule="any", looks=False)
         assert not space.free.any()
+
+
+def test_a_grid_in_which_nothing_is_a_surface_is_said():
+    """A box in mid-air, before walls that are not far: no unit tells, and still nothing in it was seen."""
+    grid = VoxelGrid((-0.6, -0.6, 1.9), (12, 12, 3), 0.1)
+    with pytest.warns(ValueWarning, match="nothing in it is a surface"):
+        space = reconstruct(grid, room.cameras(), frames(), rule="any")
+    assert space.free.all()

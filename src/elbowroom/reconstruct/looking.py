@@ -8,6 +8,7 @@ from functools import lru_cache
 from elbowroom.errors import ImplausibleError, ValueWarning
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.sensing import DepthFrame
 from elbowroom.sensing.values import look_at_images, look_at_setting
 
@@ -42,8 +43,8 @@ def found_at(
     return (*setting, *look_at_images(grid, cameras, frames, units_m))
 
 
-def require_plausible(grid: VoxelGrid, cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]) -> None:
-    """Looks at the first moments of these cameras.
+def require_plausible(grid: VoxelGrid, cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]) -> bool:
+    """Looks at the first moments of these cameras; whether this is one of them.
 
     Args:
         grid: the watched box.
@@ -57,12 +58,13 @@ def require_plausible(grid: VoxelGrid, cameras: Sequence[DepthCamera], frames: S
     """
     passed = _passed(grid, tuple(cameras))
     if passed.moments >= FIRST:
-        return
+        return False
     findings = found_at(grid, cameras, frames)
     refuse(findings)
     for finding in findings:
         warnings.warn(finding.text, ValueWarning, stacklevel=3)
     passed.moments += 1
+    return True
 
 
 def refuse(findings: Sequence[Finding]) -> None:
@@ -70,6 +72,21 @@ def refuse(findings: Sequence[Finding]) -> None:
     texts = [finding.text for finding in findings if finding.stops]
     if texts:
         raise ImplausibleError("; ".join(texts))
+
+
+def found_in_space(space: FreeSpace) -> tuple[Finding, ...]:
+    """Whether all of it is free and nothing in it is a surface: then nothing was seen that stands there.
+
+    Args:
+        space: all of the grid, without a focus.
+    """
+    if space.surface.any() or not space.free.all():
+        return ()
+    text = (
+        "all of the grid is free and nothing in it is a surface, no floor and no wall: if that is not so, check the unit of "
+        "depth, and numbers that stand for no return; if it is, let the grid reach to a surface that cameras see"
+    )
+    return (Finding("no surface", (), text, stops=False),)
 
 
 @lru_cache(maxsize=GROUPS_KEPT)
