@@ -83,8 +83,8 @@ def found_in_space(space: FreeSpace) -> tuple[Finding, ...]:
     if space.surface.any() or not space.free.all():
         return ()
     text = (
-        "all of the grid is free and nothing in it is a surface, no floor and no wall: if that is not so, check the unit of "
-        "depth, and numbers that stand for no return; if it is, let the grid reach to a surface that cameras see"
+        "all of the grid is free and nothing in it is a surface, no floor and no wall: if that is not so, check the "
+        "unit of depth, and numbers that stand for no return; if it is, let the grid reach to a surface that is seen"
     )
     return (Finding("no surface", (), text, stops=False),)
 

@@ -17,6 +17,9 @@ def looks(
     wrong: Annotated[
         int, typer.Option(min=0, metavar="COUNT", help="Random sites that are made wrong in each kind.")
     ] = 20,
+    rooms: Annotated[
+        bool, typer.Option(help="Also the recordings and the rooms of the package, which are right.")
+    ] = True,
     data: Annotated[
         Path | None,
         typer.Option(
@@ -35,9 +38,11 @@ def looks(
     from elbowroom.evaluate.due import sentence
     from elbowroom.evaluate.examples import EXAMPLES
     from elbowroom.evaluate.looks.looks import DUE, looks_summary, right_rows, wrong_rows
+    from elbowroom.evaluate.looks.rooms import package_scenes, recorded_scenes
 
     folder = data or Path(os.environ.get("ELBOWROOM_DATA", "../shared/data"))
-    rows = chain(right_rows(EXAMPLES, folder, sites), wrong_rows(wrong))
+    known = chain(recorded_scenes(EXAMPLES, folder), package_scenes()) if rooms else ()
+    rows = chain(right_rows(sites, known), wrong_rows(wrong))
     show = as_table(
         {
             "kind": "{kind}",

@@ -1,8 +1,7 @@
 """Rows of the looks: one for each room that is right, one for each that was made wrong, and what they come to."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -11,7 +10,7 @@ import numpy as np
 from elbowroom.errors import InputError
 from elbowroom.evaluate.due import Due, where
 from elbowroom.evaluate.looks.random_site import random_site
-from elbowroom.evaluate.looks.rooms import package_scenes, random_scenes, recorded_scenes
+from elbowroom.evaluate.looks.rooms import random_scenes
 from elbowroom.evaluate.looks.scene import Scene
 from elbowroom.evaluate.looks.wrong import WRONG, Wrong
 from elbowroom.reconstruct.looking import found_at
@@ -25,14 +24,14 @@ DUE = (
 )
 
 
-def right_rows(examples: Path | None, data: Path | None, count: int) -> Iterator[Row]:
+def right_rows(count: int, rooms: Iterable[Scene] = ()) -> Iterator[Row]:
     """Of rooms that are right: anything that is found is a false alarm.
 
     Args:
-        examples, data: folders of site files and of their recordings; None: without.
         count: of random sites.
+        rooms: others, before them.
     """
-    for scene in chain(recorded_scenes(examples, data), package_scenes(), random_scenes(count)):
+    for scene in chain(rooms, random_scenes(count)):
         findings = scene.findings()
         took_ms = _ms(scene)
         yield {

@@ -12,10 +12,7 @@ from elbowroom.simulate import SETUPS, InterventionRoom, Moment, render, setup, 
 from elbowroom.site import Site
 from elbowroom.sources.layouts.layout import layout_of
 
-OF_EACH = 3
-"""Moments of each recording: first, middle, last."""
 UNIT_M = 0.0002
-SEEDS = 3
 
 
 def recorded_scenes(examples: Path | None, data: Path | None) -> Iterator[Scene]:
@@ -52,10 +49,9 @@ def package_scenes() -> Iterator[Scene]:
     for name, moment in moments:
         for noise in ("exact", "tof", "realsense_d435"):
             cameras = wall_cameras(21, (2.4, 0.4), size="qqvga", noise=NOISE_PRESETS.get(noise))
-            for seed in range(1 if noise == "exact" else SEEDS):
-                frames = render(cameras, moment, seed=seed)
-                codes = {frame.camera: as_codes(frame.depth_m, UNIT_M) for frame in frames}
-                yield Scene(f"{name}, {noise}", grid, cameras, codes, dict.fromkeys(codes, UNIT_M))
+            frames = render(cameras, moment)
+            codes = {frame.camera: as_codes(frame.depth_m, UNIT_M) for frame in frames}
+            yield Scene(f"{name}, {noise}", grid, cameras, codes, dict.fromkeys(codes, UNIT_M))
 
 
 def random_scenes(count: int) -> Iterator[Scene]:
