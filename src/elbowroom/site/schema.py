@@ -35,7 +35,9 @@ class GridEntry(Entry):
         if (self.upper_m is None) == (self.shape is None):
             raise ValueError("exactly one of upper_m and shape")
         shape = self.shape or (0, 0, 0)
-        upper = self.upper_m or [low + n * self.voxel_size_m for low, n in zip(self.origin_m, shape, strict=True)]
+        upper = self.upper_m or [
+            low + n * self.voxel_size_m for low, n in zip(self.origin_m, shape, strict=True)
+        ]
         span = max(high - low for low, high in zip(self.origin_m, upper, strict=True))
         if span > LARGEST_ROOM_M:
             raise ValueError(
