@@ -17,7 +17,7 @@ from elbowroom.finding import Finding
 from elbowroom.monitor import Tolerance
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.site_file import write_commissioned
-from elbowroom.monitor.health.model import model_findings
+from elbowroom.reconstruct.model_findings import model_findings
 from elbowroom.sensing import Snapshot
 from elbowroom.site import Site
 from elbowroom.sources import Room, open_room
