@@ -5,13 +5,13 @@ import numpy as np
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
 from elbowroom.machine.samples import ROUNDING_M, BodySamples, body_samples
+from elbowroom.machine.shape import Shape
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.triangles import list_patches
 
 
-@kept
 def skin_of(machine: Machine, voxel_size_m: float) -> Skin:
-    """The skin of a machine's checked links for voxels of a size; made once per machine and size, then kept.
+    """The skin of a machine's checked links for voxels of a size; made once per shape and size, then kept.
 
     Args:
         machine: whose links.
@@ -20,13 +20,15 @@ def skin_of(machine: Machine, voxel_size_m: float) -> Skin:
     Raises:
         MachineError: as `body_samples`.
     """
-    return _skin(machine, body_samples(machine, voxel_size_m))
+    return _skin(machine.shape, body_samples(machine, voxel_size_m))
 
 
-def _skin(machine: Machine, samples: BodySamples) -> Skin:
+@kept
+def _skin(shape: Shape, samples: BodySamples) -> Skin:
+    links = shape.within(samples.bound_m)
     counts = samples.cluster_stop - samples.cluster_start
-    triangles = np.concatenate([link.triangles for link in machine.links])
-    stops = np.cumsum([0] + [len(link.faces) for link in machine.links])
+    triangles = np.concatenate([link.triangles for link in links])
+    stops = np.cumsum([0] + [len(link.faces) for link in links])
     sizes = np.zeros(len(samples.points), dtype=np.int32)
     _list(samples, triangles, stops, sizes, False)
     patches = np.zeros(sizes.sum(), dtype=np.int32)
@@ -40,6 +42,7 @@ def _skin(machine: Machine, samples: BodySamples) -> Skin:
         centre=samples.cluster_centre,
         radius=samples.cluster_radius,
         cover=samples.cover_m,
+        off=samples.bound_m,
         triangles=triangles,
         patches=patches,
         patch_start=np.concatenate([[0], np.cumsum(sizes)]),
