@@ -68,4 +68,4 @@ def _thinned(surface: Surface, bound_m: float, rounds: int) -> Surface:
 def _link(name: str, surface: Surface, lines: NDArray[np.int64]) -> Link:
     faces = np.concatenate([surface.faces, lines])
     used, numbers = np.unique(faces, return_inverse=True)
-    return Link(name, surface.points[used], numbers.reshape(-1, 3))
+    return Link(name, surface.points[used], numbers.reshape(-1, 3).astype(np.int32))

@@ -1,13 +1,19 @@
 """A machine's surface as the sweep takes it: samples to look with, triangles to decide."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.geometry.kept import kept
+from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
 from elbowroom.machine.samples import ROUNDING_M, BodySamples, body_samples
 from elbowroom.machine.shape import Shape
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.triangles import list_patches
+
+_Array = NDArray[Any]
 
 
 def skin_of(machine: Machine, voxel_size_m: float) -> Skin:
@@ -29,10 +35,16 @@ def _skin(shape: Shape, samples: BodySamples) -> Skin:
     counts = samples.cluster_stop - samples.cluster_start
     triangles = np.concatenate([link.triangles for link in links])
     stops = np.cumsum([0] + [len(link.faces) for link in links])
+    rows = np.unique(samples.cluster_link).tolist()
     sizes = np.zeros(len(samples.points), dtype=np.int32)
-    _list(samples, triangles, stops, sizes, False)
-    patches = np.zeros(sizes.sum(), dtype=np.int32)
-    _list(samples, triangles, stops, patches, True)
+    spread(lambda row: _list(samples, row, (triangles, stops), sizes, False), rows)
+    starts = np.concatenate([[0], np.cumsum(sizes)])
+    patches = np.zeros(starts[-1], dtype=np.int32)
+    firsts = samples.cluster_start[np.searchsorted(samples.cluster_link, rows)]
+    spread(
+        lambda pair: _list(samples, pair[0], (triangles, stops), patches[starts[pair[1]] :], True),
+        list(zip(rows, firsts, strict=True)),
+    )
     return Skin(
         points=samples.points,
         cluster_of=np.repeat(np.arange(counts.size, dtype=np.int32), counts),
@@ -45,24 +57,21 @@ def _skin(shape: Shape, samples: BodySamples) -> Skin:
         off=samples.bound_m,
         triangles=triangles,
         patches=patches,
-        patch_start=np.concatenate([[0], np.cumsum(sizes)]),
+        patch_start=starts,
     )
 
 
-def _list(
-    samples: BodySamples, triangles: np.ndarray, stops: np.ndarray, near: np.ndarray, fill: bool
-) -> None:
-    """Lists the patches link by link; `near` gets their sizes by sample, or the triangles' numbers."""
-    written = 0
-    for link in np.unique(samples.cluster_link):
-        first, last = np.searchsorted(samples.cluster_link, [link, link + 1])
-        written += list_patches(
-            samples.clusters,
-            samples.cover_m + ROUNDING_M,
-            first,
-            last,
-            triangles,
-            stops[link : link + 2],
-            near[written:] if fill else near,
-            fill,
-        )
+def _list(samples: BodySamples, row: int, of: tuple[_Array, _Array], near: _Array, fill: bool) -> None:
+    """Lists the patches of one link: their sizes by sample, or the triangles' numbers, one patch after another.
+
+    Args:
+        samples: of all links.
+        row: of the link.
+        of: the triangles of all links, and where those of each begin.
+        near: takes what is listed.
+        fill: whether it takes numbers.
+    """
+    triangles, stops = of
+    first, last = np.searchsorted(samples.cluster_link, [row, row + 1])
+    reach = samples.cover_m + ROUNDING_M
+    list_patches(samples.clusters, reach, first, last, triangles, stops[row : row + 2], near, fill)
