@@ -242,3 +242,26 @@ def touches_box(corners, lower, upper):
             if not polygon:
                 return False
     return True
+
+
+def fan_rise(ring, place, rng, count):
+    """The greatest difference in height, at many places, of a ring closed from its middle, and from a place.
+
+    `ring`: (k, 3), x, y and height over its middle, which lies at 0.
+    """
+    k = len(ring)
+    middle = [np.array([np.zeros(3), ring[n], ring[(n + 1) % k]]) for n in range(k)]
+    fan = [ring[[place, (place + n) % k, (place + n + 1) % k]] for n in range(1, k - 1)]
+    found = 0.0
+    for triangle in middle:
+        weights = np.concatenate([rng.dirichlet((0.4, 0.4, 0.4), count // k), np.eye(3)])
+        for x, y, height in weights @ triangle:
+            other = [_height(corners, x, y) for corners in fan]
+            found = max(found, min((abs(height - h) for h in other if h is not None), default=0.0))
+    return found
+
+
+def _height(corners, x, y):
+    """Height of a triangle over a place; None beside it."""
+    weights = np.linalg.solve(np.vstack([corners[:, :2].T, np.ones(3)]), [x, y, 1.0])
+    return weights @ corners[:, 2] if weights.min() >= -1e-9 else None

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
+from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
 from elbowroom.machine.kernels.body import Tree, place_links
 from elbowroom.machine.link import Link
@@ -101,6 +102,34 @@ class Machine:
             MachineError: the pose is not rigid.
         """
         return replace(self, world_from_base=np.asarray(world_from_base, dtype=np.float64))
+
+    def with_free_base(self, kind: FreeKind, name: str = "base") -> "Machine":
+        """The machine on a base that moves: where it stands is then among its joint positions, at each frame's time.
+
+        Args:
+            kind: "planar": joints `base/x`, `base/y` [m] and `base/yaw` [rad], as a platform drives in the plane of
+                `world_from_base`; "floating": `base/x`, `base/y`, `base/z`, `base/yaw`, `base/pitch`, `base/roll`, of
+                which nobody asks a motion.
+            name: instead of `base`.
+
+        Raises:
+            MachineError: a name that is taken.
+        """
+        return replace(
+            self, **on_free_base(Skeleton(self.links, self.joints, self.tree), kind, name)._asdict()
+        )
+
+    def free_positions(self, joint: str, parent_from_child: ArrayLike) -> dict[str, float]:
+        """The positions that put the link of a planar or floating joint at a pose, by name [m or rad].
+
+        Args:
+            joint: its name, such as `base`.
+            parent_from_child: where its link is in the one before, shape (4, 4), rigid.
+
+        Raises:
+            MachineError: no such joint, a pose that is not rigid, or one out of the plane of a planar joint.
+        """
+        return free_positions(Skeleton(self.links, self.joints, self.tree), joint, parent_from_child)
 
     @cached_property
     def link_names(self) -> tuple[str, ...]:

@@ -34,7 +34,7 @@ class Shape:
                 found = _shapes[key] = cls(tuple(links))
         return found
 
-    @property
+    @cached_property
     def is_fine(self) -> bool:
         """Whether it has more triangles than a voxel or a pixel needs."""
         return sum(len(link.faces) for link in self.links) > FINE_TRIANGLES
