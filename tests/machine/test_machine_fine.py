@@ -10,7 +10,6 @@ from elbowroom.machine import Link, Machine, body_samples, body_words, default_g
 from elbowroom.machine.kernels import samples as kernels
 from elbowroom.machine.rasterise import drawn_mesh, mesh_of, rasterise
 from elbowroom.motion import Motion, check_motions
-from elbowroom.motion.skin import skin_of
 from elbowroom.reconstruct import FreeSpace
 
 URDF = """<robot name="fine"><link name="foot"/>

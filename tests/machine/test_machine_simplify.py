@@ -115,15 +115,15 @@ def test_a_link_of_few_triangles_or_none_stays_as_it_is():
 @given(seeds, st.integers(3, 9))
 def test_how_far_a_fan_lies_off_is_the_greatest_difference_in_height(seed, corners):
     rng = np.random.default_rng(seed)
-    angles = (np.arange(corners) + rng.uniform(0.1, 0.9, corners)) * 2 * np.pi / corners
+    angles = (np.arange(corners) + rng.uniform(0.3, 0.7, corners)) * 2 * np.pi / corners
     away = rng.uniform(0.3, 1, corners)
     ring = np.column_stack([away * np.cos(angles), away * np.sin(angles), rng.uniform(-1, 1, corners)])
     places = [p for p in range(corners) if kernels._quality(ring, corners, p) >= kernels.LEAST_QUALITY]
     for place in places:
         found = kernels._moved(ring, corners, place, np.inf)
-        looked = naive.fan_rise(ring, place, rng, 300)
-        assert found >= looked - 1e-12
-        assert found <= looked + 0.3
+        looked = naive.fan_rise(ring, place, rng, 80)
+        assert found >= looked - 1e-9
+        assert found <= looked + 0.1
 
 
 def test_a_fold_is_no_fan():

@@ -139,8 +139,8 @@ def body_samples(machine: Machine, voxel_size_m: float, *, unchecked: bool = Fal
 def _samples(shape: Shape, voxel_size_m: float, rows: tuple[int, ...]) -> BodySamples:
     cover_m = COVER_IN_VOXELS * voxel_size_m
     for row in rows:
-        _require_few(shape.links[row], voxel_size_m, cover_m)
-    name = _name_of([shape.links[row] for row in rows], rows, voxel_size_m)
+        _require_few(shape.links[row], shape.areas[row], voxel_size_m)
+    name = _name_of(shape, rows, voxel_size_m)
     bound_m = shape.bound(BOUND_IN_COVERS * cover_m)
     sizes = _Sizes(voxel_size_m, cover_m, bound_m)
     arrays = kept_arrays(name, lambda: _arrays(shape.within(bound_m), rows, sizes))
@@ -149,11 +149,10 @@ def _samples(shape: Shape, voxel_size_m: float, rows: tuple[int, ...]) -> BodySa
     return BodySamples(voxel_size_m, cover_m, bound_m, **arrays)  # type: ignore[arg-type]
 
 
-def _name_of(links: Sequence[Link], rows: Sequence[int], voxel_size_m: float) -> str:
-    """Of the arrays of some links, in these rows: all that they depend on, their making included."""
-    parts = [f"{voxel_size_m!r} {rows}".encode(), *(link.triangles.tobytes() for link in links), _making()]
+def _name_of(shape: Shape, rows: Sequence[int], voxel_size_m: float) -> str:
+    """Of the arrays of the links in some rows: all that they depend on, their making included."""
     digest = hashlib.sha256()
-    for part in parts:
+    for part in (f"{voxel_size_m!r} {rows}".encode(), shape.digest, _making()):
         digest.update(len(part).to_bytes(8, "little") + part)
     return f"body-{digest.hexdigest()}"
 
@@ -266,19 +265,26 @@ def interior_points(link: Link, voxel_size_m: float) -> NDArray[np.float64]:
 def _lattice(link: Link, voxel_size_m: float) -> tuple[float, NDArray[np.float64], NDArray[np.int64]]:
     """Edge of the cells in which a link's inside is found, their least corner, how many there are along each axis."""
     edge = 0.9999 * voxel_size_m / (2 * np.sqrt(3))
-    lower = link.vertices[link.faces].min(axis=(0, 1)) - 1.5 * edge
-    counts = np.floor((link.vertices[link.faces].max(axis=(0, 1)) - lower) / edge).astype(np.int64) + 2
+    used = np.zeros(len(link.vertices), dtype=np.bool_)
+    used[link.faces] = True
+    corners = link.vertices[used]
+    lower = corners.min(axis=0) - 1.5 * edge
+    counts = np.floor((corners.max(axis=0) - lower) / edge).astype(np.int64) + 2
     return edge, lower, counts
 
 
-def _require_few(link: Link, voxel_size_m: float, cover_m: float) -> None:
+def _require_few(link: Link, area: float, voxel_size_m: float) -> None:
     """Refuses a link for which too much memory would be taken, before any is.
+
+    Args:
+        link: with geometry.
+        area: of its surface [m^2].
+        voxel_size_m: edge of a voxel [m].
 
     Raises:
         MachineError: its bounding box has more than `MAX_CELLS` cells, or its surface more than `MAX_PIECES` pieces.
     """
-    a, b, c = np.moveaxis(link.triangles, 1, 0)
-    pieces = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 / (PITCH_IN_COVERS * cover_m) ** 2
+    pieces = area / (PITCH_IN_COVERS * COVER_IN_VOXELS * voxel_size_m) ** 2
     cells = np.prod(_lattice(link, voxel_size_m)[2].astype(float))
     if not (pieces <= MAX_PIECES and cells <= MAX_CELLS):
         raise MachineError(_too_large(link, voxel_size_m))

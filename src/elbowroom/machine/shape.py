@@ -1,10 +1,14 @@
 """The links of a machine wherever they are: what is made of them is made once, at whatever place the machine stands."""
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from threading import RLock
 from weakref import WeakValueDictionary
+
+import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.link import Link
@@ -38,6 +42,21 @@ class Shape:
     def is_fine(self) -> bool:
         """Whether it has more triangles than a voxel or a pixel needs."""
         return sum(len(link.faces) for link in self.links) > FINE_TRIANGLES
+
+    @cached_property
+    def areas(self) -> NDArray[np.float64]:
+        """Of each link's surface, shape (n_links,) [m^2]."""
+        corners = [np.moveaxis(link.triangles, 1, 0) for link in self.links]
+        return np.array([np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 for a, b, c in corners])
+
+    @cached_property
+    def digest(self) -> bytes:
+        """A check sum of all links' triangles."""
+        digest = hashlib.sha256()
+        for link in self.links:
+            for array in (link.vertices, link.faces):
+                digest.update(len(array).to_bytes(8, "little") + array.tobytes())
+        return digest.digest()
 
     def bound(self, most_m: float) -> float:
         """How far the surfaces of `within(most_m)` may lie from the links' own: `most_m` or less, 0 if not fine [m]."""

@@ -38,15 +38,38 @@ def coarser(link: Link) -> tuple[Link, ...]:
 
 def _joined(link: Link) -> tuple[Surface, NDArray[np.int64]]:
     """A link's triangles with corners at one place made one; faces of two corners that are no other face's edge."""
-    points, of = np.unique(link.vertices, axis=0, return_inverse=True)
-    faces = of.reshape(-1)[link.faces].astype(np.int64)
-    pairs = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
-    apart = pairs[..., 0] != pairs[..., 1]
-    edges = np.where(apart, pairs[..., 0] * len(points) + pairs[..., 1], -1)
-    whole = apart.all(axis=1)
-    lines, edge = faces[~whole], edges[~whole].max(axis=1, initial=-1)
-    there = np.where(edge >= 0, np.isin(edge, edges[whole]), np.isin(lines[:, 0], faces[whole]))
-    return Surface(points, np.ascontiguousarray(faces[whole]), np.zeros(int(whole.sum()))), lines[~there]
+    points, of = _places(link.vertices)
+    faces = of[link.faces]
+    whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    surface = Surface(points, np.ascontiguousarray(faces[whole]), np.zeros(int(whole.sum())))
+    lines = faces[~whole]
+    if len(lines):
+        edges = surface.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+        number = len(points) * edges.min(axis=1) + edges.max(axis=1)
+        first, last = lines.min(axis=1), lines.max(axis=1)
+        there = np.where(first == last, np.isin(first, edges), np.isin(len(points) * first + last, number))
+        lines = lines[~there]
+    return surface, lines
+
+
+def _places(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Each place that some corners are at once, shape (n, 3), and for each corner its place."""
+    # zero has two signs
+    given = vertices + 0.0
+    mixed = given.view(np.uint64) * np.array(
+        [0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64
+    )
+    _, first, of = np.unique(
+        (mixed ^ (mixed >> np.uint64(29))).sum(axis=1), return_index=True, return_inverse=True
+    )
+    # in the order in which they come: neighbours in space are mostly neighbours there
+    order = np.argsort(first)
+    points, of = given[first[order]], np.argsort(order)[of]
+    if (points[of] == given).all():
+        return points, of
+    # two places of one number
+    points, of = np.unique(given, axis=0, return_inverse=True)
+    return points, of.reshape(-1)
 
 
 def _thinned(surface: Surface, bound_m: float, rounds: int) -> Surface:
