@@ -3,7 +3,7 @@
 import os
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -83,7 +83,7 @@ def _in_turns(works: dict[int, Callable[[], object]], rounds: int) -> dict[int, 
     return times
 
 
-def _explaining(machine: Machine, cameras: list[DepthCamera]) -> Callable[[], object]:
+def _explaining(machine: Machine, cameras: Sequence[DepthCamera]) -> Callable[[], object]:
     joints = machine.nearest_to_zero()
     seen = [rasterise(machine, camera, joints) for camera in cameras]
     images = [np.where(np.isfinite(depth), depth, WALL_M).astype(np.float32) for depth in seen]
