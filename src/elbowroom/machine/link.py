@@ -1,6 +1,6 @@
 """A rigid part of the machine: a triangle mesh in a frame of its own."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
@@ -27,7 +27,7 @@ class Surface:
             object.__setattr__(self, name, array)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Link:
     """A link and its collision geometry, possibly none.
 
@@ -35,14 +35,14 @@ class Link:
         name: unique in the machine.
         vertices: shape (n, 3), link frame [m].
         faces: shape (m, 3), indices into `vertices`; both sides of a triangle count.
-        seen: what cameras see of the link, where that is less than its collision geometry (`machine.seen`); None: the
-            collision geometry itself.
+        seen: the link with what cameras see of it for a body, where that is less than its collision geometry
+            (`machine.seen`); None: the same.
     """
 
     name: str
     vertices: NDArray[np.float64]
     faces: NDArray[np.int32]
-    seen: Surface | None = None
+    seen: Self | None = None
 
     def __post_init__(self) -> None:
         surface = Surface(self.vertices, self.faces)
@@ -62,6 +62,4 @@ class Link:
     @property
     def as_seen(self) -> Self:
         """The link with what cameras see of it for a body."""
-        if self.seen is None:
-            return self
-        return replace(self, vertices=self.seen.vertices, faces=self.seen.faces, seen=None)
+        return self if self.seen is None else self.seen

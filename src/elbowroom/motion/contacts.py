@@ -39,7 +39,7 @@ def pairs_of(machine: Machine) -> Pairs:
     rows = [pair for pair in _may_not_touch(machine) if _can_move_apart(machine, *pair)]
     edge = _voxel_for(machine)
     skin, width = _skin(body_samples(machine, edge, unchecked=True))
-    fields = fields_of(machine, [row for row in range(len(machine.links)) if any(row in pair for pair in rows)], FINEST * edge)
+    fields = fields_of(machine.links, {row for pair in rows for row in pair}, FINEST * edge)
     always = _always_touch(machine, _pairs(skin, width, fields, rows))
     apart = [pair for pair, touch in zip(rows, always, strict=True) if not touch]
     return _pairs(skin, width, fields, apart)
@@ -137,6 +137,7 @@ def _skin(samples: BodySamples) -> tuple[Skin, NDArray[np.float64]]:
         centre=samples.cluster_centre,
         radius=samples.cluster_radius,
         cover=samples.cover_m,
+        off=samples.bound_m,
         triangles=np.zeros((0, 3, 3)),
         patches=none,
         patch_start=np.zeros(0, dtype=np.int64),

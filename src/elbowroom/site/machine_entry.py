@@ -26,6 +26,7 @@ class MachineEntry(Entry):
     `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself, and
     `explain_with` says which geometry that model is. `allowed_contacts` are pairs of links that may touch, `stands_on` boxes
     of the room that some links may touch, `carries` parts that it holds.
+    On a `free_base` the machine drives or floats, and where it stands is among its joint positions.
     """
 
     builtin: Literal["ceiling_c_arm"] | None = None
@@ -37,6 +38,7 @@ class MachineEntry(Entry):
     allowed_contacts: tuple[tuple[Text, Text], ...] = ()
     stands_on: tuple[StandEntry, ...] = ()
     carries: tuple[PartEntry, ...] = ()
+    free_base: Literal["planar", "floating"] | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> "MachineEntry":
