@@ -12,7 +12,8 @@
     ├── EvidenceError        evidence that cannot be merged or resolved
     └── PackageError         an optional package is not installed
 
-`PoseWarning` is a warning, not an error: a pose was a little off a rotation and was brought to the nearest one.
+Two are warnings, not errors. `PoseWarning`: a pose was a little off a rotation and was brought to the nearest one.
+`MachineWarning`: a URDF has a slip that passes; the message says how it is taken.
 """
 
 
@@ -58,6 +59,10 @@ class EvidenceError(ElbowroomError):
 
 class PackageError(ElbowroomError):
     """A package that only some commands need is not installed; the message says how to install it."""
+
+
+class MachineWarning(UserWarning):
+    """A URDF has a slip that other readers pass over, and so does this one; the message names its place."""
 
 
 class PoseWarning(UserWarning):

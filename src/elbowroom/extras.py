@@ -11,6 +11,7 @@ PACKAGES = {
     "distributed": ("a cluster needs Dask", "cluster"),
     "matplotlib": ("charts need Matplotlib", "evaluate"),
     "ortools": ("finding a placement needs CP-SAT of OR-Tools", "placement"),
+    "xacro": ("expanding a xacro file needs xacro", "xacro"),
     "small_gicp": ("calibration by the machine needs small_gicp", "calibrate"),
 }
 """What needs each of them, and the extra of elbowroom that brings it."""

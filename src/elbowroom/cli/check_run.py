@@ -56,6 +56,7 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
                 **verdict.row(),
                 "explanation": reasons,
                 "unchecked_links": machine.unchecked_links,
+                "bodiless_links": machine.bodiless_links,
             }
         )
     print(f"{verdict.motion.name}: {verdict.level.value}")
@@ -69,6 +70,8 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
         print(line)
     if machine.unchecked_links:
         print(f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}.")
+    if machine.bodiless_links:
+        print(f"Without a body, by the site's word: {', '.join(machine.bodiless_links)}.")
     print(NOT_CERTIFIED)
 
 

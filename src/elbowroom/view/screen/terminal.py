@@ -83,7 +83,9 @@ class TerminalView:
 
     def open(self, watched: Watched) -> None:
         """As `begin`, by what its head says."""
-        self.watched, self.log = watched, RunLog(watched.source, watched.unchecked_links)
+        self.watched, self.log = watched, RunLog(
+            watched.source, watched.unchecked_links, watched.bodiless_links
+        )
         if self._live is not None:
             self._live.start()
         else:
@@ -135,6 +137,10 @@ class TerminalView:
         if self.watched.unchecked_links:
             lines.append(
                 Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
+            )
+        if self.watched.bodiless_links:
+            lines.append(
+                Text(f"Without a body, by the site's word: {', '.join(self.watched.bodiless_links)}", "dim")
             )
         lines.append(Text(NOT_CERTIFIED, "dim"))
         return Padding(Group(*lines), (0, 1))
