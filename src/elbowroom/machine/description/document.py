@@ -26,6 +26,7 @@ _HARMLESS = {
     etree.ErrorTypes.ERR_HYPHEN_IN_COMMENT: "a comment holds two hyphens",
 }
 _DECLARATION = re.compile(rb"<\?xml\b[^>]*\?>")
+_VERSION = re.compile(rb"(<\?xml\s+version\s*=\s*[\"'])(?!1\.)([^\"']*)")
 _BEFORE_DECLARATION = re.compile(rb"(\s|<!--.*?-->)*(?=<\?xml\b)", re.DOTALL)
 
 
@@ -77,6 +78,10 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
 def _parsed(content: bytes, report: Report) -> etree._Element:
     """The outermost element; what other readers pass over passes with a warning."""
     content = _without_what_stands_first(content, report)
+    version = _VERSION.match(content)
+    if version is not None:
+        report.warn("xml", None, f"line 1: there is no XML of version {version[2].decode('latin-1')!r}; read as 1.0")
+        content = _VERSION.sub(rb"\g<1>1.0", content, count=1)
     try:
         return _tree(content, recover=False)
     except etree.XMLSyntaxError as strict:

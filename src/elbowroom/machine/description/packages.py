@@ -63,7 +63,7 @@ class Packages:
         for filename in filenames:
             scheme, _, rest = filename.strip().partition("://")
             if scheme in ("package", "model"):
-                self._named.add(rest.partition("/")[0])
+                self._named.add(rest.lstrip("/").partition("/")[0])
 
     def find(self, filename: str) -> Found:
         """The file that a description means by a name."""
@@ -78,7 +78,7 @@ class Packages:
         if scheme == "file":
             return self._of_url(rest)
         if scheme in ("package", "model"):
-            return self._in_package(PurePosixPath(rest.replace("\\", "/")))
+            return self._in_package(PurePosixPath(rest.replace("\\", "/").lstrip("/")))
         return Found(None, f"{scheme}:// is not read; allowed are package://, model://, file:// and paths")
 
     def folder(self, name: str) -> Path | None:
@@ -107,12 +107,22 @@ class Packages:
         return _existing(path)
 
     def _beside(self, filename: str) -> Found:
-        """A path relative to the URDF, or else to one of `package_dirs`."""
+        """A path relative to the URDF, or else to one of `package_dirs`, or else to the top of the URDF's own package."""
         for text in (filename, unquote(filename)):
             for folder in (self.urdf.parent, *self.package_dirs):
                 if (folder / text).is_file():
                     return Found(folder / text)
+            for folder in self._own_package() if len(PurePosixPath(text).parts) > 1 else ():
+                if (folder / text).is_file():
+                    return Found(folder / text, f"not beside the URDF; taken from {folder}")
         return _existing(self.urdf.parent / filename)
+
+    def _own_package(self) -> Iterator[Path]:
+        """The folders above the URDF's that belong to the same robot: two at most, none above a manifest."""
+        for folder, above in zip(self._above[:2], self._above[1:3], strict=False):
+            if self._name_of(folder) is not None:
+                return
+            yield above
 
     def _in_package(self, path: PurePosixPath) -> Found:
         parts = path.parts
@@ -140,11 +150,8 @@ class Packages:
                 yield from (at for at in (folder, *self._below(folder)) if self._is_package(at, name))
 
     def _is_package(self, folder: Path, name: str) -> bool:
-        """Whether a folder is the package of a name: its manifest says so, or it has none and is called so."""
-        if not folder.is_dir():
-            return False
-        manifest = self._name_of(folder)
-        return manifest == name if manifest is not None else folder.name == name
+        """Whether a folder is the package of a name: it is called so, or its manifest says so."""
+        return folder.is_dir() and (folder.name == name or self._name_of(folder) == name)
 
     def _name_of(self, folder: Path) -> str | None:
         """The name that a folder's `package.xml` gives its package; None: it has none that can be read."""
@@ -183,8 +190,8 @@ class Packages:
         for folder in path.resolve().parents:
             manifest = self._name_of(folder)
             if manifest is not None:
-                return None if manifest == name else manifest
-            if folder.name != name and (folder.name in self._named or _looks_like_a_package(folder)):
+                return None if _stem(manifest) == _stem(name) else manifest
+            if folder.name != name and (folder.name in self._named or _seems_another(folder, name)):
                 return folder.name
         taken = self._taken.get(path.resolve(), name)
         return None if taken == name else taken
@@ -211,9 +218,17 @@ def _folders_in(folder: Path) -> list[Path]:
     return sorted(at for at in folder.iterdir() if at.is_dir() and not at.name.startswith("."))
 
 
-def _looks_like_a_package(folder: Path) -> bool:
-    """Whether a folder without a manifest is called as packages of robots are, or lies where they are installed."""
-    return bool(_NAME_OF_A_PACKAGE.search(folder.name)) or folder.parent.name == "share"
+def _seems_another(folder: Path, name: str) -> bool:
+    """Whether a folder without a manifest is called as a package is, or lies where they are installed, of another robot."""
+    if not _NAME_OF_A_PACKAGE.search(folder.name) and folder.parent.name != "share":
+        return False
+    mine, other = sorted((_stem(name), _stem(folder.name)), key=len)
+    return not other.startswith(mine)
+
+
+def _stem(name: str) -> str:
+    """What a package's name says of the robot: without its usual ending."""
+    return _NAME_OF_A_PACKAGE.sub("", name).replace("-", "_")
 
 
 def _name_in_manifest(manifest: Path) -> str | None:

@@ -104,6 +104,8 @@ def robot_of(document: Document) -> Robot:
         name = report.path.name.partition(".")[0]
         report.warn("name", root, f"<robot> has no name; it is called {name}")
     links = [_link(element, report) for element in children(root, "link")]
+    if not links:
+        raise report.error(root, "the robot has no <link>; a machine needs a body")
     joints = [_joint(element, report) for element in children(root, "joint")]
     for what, found in (("link", links), ("joint", joints)):
         first: dict[str, etree._Element] = {}
@@ -120,7 +122,7 @@ def _nothing_is_lost(root: etree._Element, report: Report) -> None:
     require_known(root, ("link", "joint", "material", "transmission", "gazebo", "sensor"), report)
     for element in walk(root):
         tag, parent = tag_of(element), element.getparent()
-        if tag == "geometry" and tag_of(parent) not in ("collision", "visual"):
+        if tag == "geometry" and tag_of(parent) in ("link", "joint", "robot"):
             raise report.error(element, f"stands in <{tag_of(parent)}>; geometry belongs into <collision>")
         if tag in ("collision", "visual") and len(element) and tag_of(parent) != "link":
             raise report.error(element, f"stands in <{tag_of(parent)}>; it belongs into a <link>")
@@ -166,7 +168,7 @@ def _joint(element: etree._Element, report: Report) -> RawJoint:
 def _only(element: etree._Element, tag: str, report: Report) -> etree._Element | None:
     """The child of a name; None: there is none."""
     found = children(element, tag)
-    if len(found) > 1:
+    if any(dict(other.attrib) != dict(found[0].attrib) for other in found[1:]):
         raise report.error(found[1], f"a second {tag} in one <{tag_of(element)}>; which holds is not known")
     return found[0] if found else None
 
