@@ -140,7 +140,10 @@ class _Reader:
             points = [np.zeros((0, 3)), *(points for points, _ in parts)]
             starts = np.cumsum([len(these) for these in points])
             faces = [faces + start for (_, faces), start in zip(parts, starts, strict=False)]
-            self.made[name] = np.concatenate(points), np.concatenate([np.zeros((0, 3), dtype=np.int64), *faces])
+            self.made[name] = (
+                np.concatenate(points),
+                np.concatenate([np.zeros((0, 3), dtype=np.int64), *faces]),
+            )
         return self.made[name]
 
     def _primitive(self, element: etree._Element, vertices: dict[str | None, etree._Element]) -> Triangles:
@@ -182,7 +185,9 @@ class _Reader:
             raise self._error(source, "has no <accessor>")
         array = self._target(accessor, "source")
         numbers = self._floats(array, array.text or "", None)
-        count, first, stride = (int(accessor.get(name) or other) for name, other in (("count", 0), ("offset", 0), ("stride", 1)))
+        count, first, stride = (
+            int(accessor.get(name) or other) for name, other in (("count", 0), ("offset", 0), ("stride", 1))
+        )
         names = [(param.get("name") or "").upper() for param in accessor.iterfind("{*}param")]
         columns = [names.index(axis) for axis in "XYZ"] if set("XYZ") <= set(names) else [0, 1, 2]
         if first + count * stride > len(numbers) or stride < 3:
@@ -248,7 +253,9 @@ def _polylist(lists: Lists, sizes: Sizes) -> NDArray[np.int64] | None:
     ends = np.cumsum(sizes)
     if len(sizes) and (sizes == 3).all():
         return corners.reshape(-1, 3)
-    return _joined([_fan(corners[end - size : end]) for end, size in zip(ends, sizes, strict=True) if size > 2])
+    return _joined(
+        [_fan(corners[end - size : end]) for end, size in zip(ends, sizes, strict=True) if size > 2]
+    )
 
 
 def _fans(lists: Lists, sizes: Sizes) -> NDArray[np.int64]:

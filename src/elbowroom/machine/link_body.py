@@ -45,6 +45,8 @@ class Bodies:
         self.without_body, self.largest_link_m = frozenset(without_body), largest_link_m
         self._files: dict[Path, MeshFile] = {}
         self._lost: list[tuple[str, str]] = []
+        self._taken: set[str] = set()
+        self._axes: list[tuple[Shape, str]] = []
         names = [link.name for link in robot.links]
         for name in without_body:
             if name not in names:
@@ -72,6 +74,14 @@ class Bodies:
             others = [name for name in dict.fromkeys(name for name, _ in self._lost) if name != first]
             also = f"; links {', '.join(others)} lost theirs too" if others else ""
             raise MachineError(f"{text}{also}; {WITHOUT_BODY}")
+        if self._axes:
+            shape, note = self._axes[0]
+            more = f" and {len(self._axes) - 1} files more say so too" if len(self._axes) > 1 else ""
+            self.report.warn(
+                "axes",
+                shape.element,
+                f"{note}{more}; axes are taken as they stand, as RViz and Gazebo take them",
+            )
         _check_sizes(self.report, links, read, self.largest_link_m, reach_m)
         return links
 
@@ -113,10 +123,11 @@ class Bodies:
 
     def _say(self, shape: Shape, taken: str, read: MeshFile) -> None:
         """What a user should know of a mesh file: where it was found, and how it was read."""
-        if taken:
+        if taken and taken not in self._taken:
             self.report.warn("package", shape.element, taken)
+            self._taken.add(taken)
         if read.note:
-            self.report.warn("axes", shape.element, f"{read.note}; axes are taken as they stand, as RViz and Gazebo do")
+            self._axes.append((shape, read.note))
 
 
 def _check_sizes(
@@ -142,7 +153,9 @@ def _check_sizes(
         unscaled = any(shape.kind == "mesh" and max(map(abs, shape.scale)) >= 1 for shape in shapes[name])
         rest = max((other for at, other in lengths.items() if at != name), default=np.inf)
         if length > limit:
-            raise report.error(of, f"the link is {length:.4g} m long, at most {limit:g} m may be; {_meant(length, unscaled)}")
+            raise report.error(
+                of, f"the link is {length:.4g} m long, at most {limit:g} m may be; {_meant(length, unscaled)}"
+            )
         odd = length > SUSPECT_LINK_M and 0.05 < reach_m < length / 3 and rest < length / 10
         if odd and unscaled and largest_link_m is None:
             raise report.error(

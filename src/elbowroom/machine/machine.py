@@ -17,6 +17,8 @@ from elbowroom.machine.joint import Joint
 from elbowroom.machine.kernels.body import Tree, place_links
 from elbowroom.machine.link import Link
 
+ROUNDING = 1e-6
+"""Positions beyond a limit by this much are rounding, not a fault [m or rad]."""
 QUIET = ("package", "limits", "axes")
 """Kinds of findings that are kept with the machine, and are no slip that a warning is due for."""
 
@@ -33,8 +35,8 @@ class Tolerance(NamedTuple):
     m: float = 0.005
 
     def of(self, unit: str) -> float:
-        """For joints of a unit, "rad" or "m"."""
-        return self.m if unit == "m" else self.rad
+        """For joints of a unit, "rad" or "m"; never less than rounding."""
+        return max(self.m if unit == "m" else self.rad, ROUNDING)
 
 
 Joints = Mapping[str, ArrayLike]

@@ -53,8 +53,12 @@ def read_mesh(path: Path) -> MeshFile:
     size = path.stat().st_size
     if size > MAX_MESH_BYTES:
         raise MachineError(f"mesh {path} has {size:,} bytes; at most {MAX_MESH_BYTES:,} are read")
-    if path.open("rb").read(24).startswith(b"version https://git-lfs"):
-        raise MachineError(f"mesh {path} is a pointer of Git LFS, not the file; run git lfs pull where it comes from")
+    with path.open("rb") as file:
+        is_pointer = file.read(24).startswith(b"version https://git-lfs")
+    if is_pointer:
+        raise MachineError(
+            f"mesh {path} is a pointer of Git LFS, not the file; run git lfs pull where it comes from"
+        )
     if suffix == ".dae":
         scene = read_collada(path)
         mesh = trimesh.Trimesh(scene.vertices, scene.faces)

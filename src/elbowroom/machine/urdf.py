@@ -68,7 +68,9 @@ def read_urdf(path: Path, reading: Reading) -> Parts:
     report = robot.report
     order = _tree_order(robot)
     into = {joint.child: joint for joint in robot.joints}
-    joints = tuple(_joint(into[name], report) for name in order if name in into and into[name].type in MOVABLE)
+    joints = tuple(
+        _joint(into[name], report) for name in order if name in into and into[name].type in MOVABLE
+    )
     tree = _tree(order, into, joints, report)
     bodies = Bodies(robot, packages, reading.without_body, reading.largest_link_m)
     links = bodies.links(order, _reach(into, joints))
@@ -89,7 +91,8 @@ def _tree_order(robot: Robot) -> list[str]:
         if joint.child in parents:
             other = parents[joint.child].name
             raise robot.report.error(
-                joint.element, f"link {joint.child!r} hangs on joint {other} already; links must form one tree"
+                joint.element,
+                f"link {joint.child!r} hangs on joint {other} already; links must form one tree",
             )
         parents[joint.child] = joint
         children[joint.parent].append(joint.child)
@@ -148,7 +151,11 @@ def _limits(joint: RawJoint, report: Report) -> tuple[float, float]:
     if lower > upper:
         raise report.error(limit.element, f"limits {lower:g} to {upper:g} must rise; are they exchanged?")
     if max(-lower, upper) > NO_LIMIT:
-        report.warn("limits", limit.element, f"limits {lower:g} to {upper:g} are taken for none where they are so wide")
+        report.warn(
+            "limits",
+            limit.element,
+            f"limits {lower:g} to {upper:g} are taken for none where they are so wide",
+        )
         lower = -np.inf if lower < -NO_LIMIT else lower
         upper = np.inf if upper > NO_LIMIT else upper
     if lower == upper:

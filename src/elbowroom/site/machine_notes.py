@@ -1,4 +1,4 @@
-"""What a user should know of a site's machine: links without a body, slips that pass, links that stand on the floor."""
+"""What a user should know of a site's machine: links without a body, slips that pass, wheels on the floor."""
 
 import numpy as np
 
@@ -6,7 +6,9 @@ from elbowroom.machine import Machine
 from elbowroom.site.site import Site
 
 ON_THE_FLOOR_VOXELS = 1.0
-"""A link whose lowest point lies within so many voxels of the floor stands on it."""
+"""A wheel whose lowest point lies within so many voxels of the floor stands on it."""
+LEVEL = 0.1
+"""An axis that rises by less than this per metre is level."""
 MOST_NOTES = 8
 """So many slips of a description are told one by one."""
 
@@ -27,27 +29,36 @@ def notes_of_machine(machine: Machine, site: Site) -> tuple[str, ...]:
     notes += [finding.text for finding in machine.findings[:MOST_NOTES]]
     if len(machine.findings) > MOST_NOTES:
         notes.append(f"and {len(machine.findings) - MOST_NOTES} slips more in the description of the machine")
-    standing = _on_the_floor(machine, site)
+    standing = _wheels_on_the_floor(machine, site)
     if standing:
         notes.append(
-            f"links that move and touch the floor at rest: {', '.join(standing)}; the floor is a surface, so the motions "
-            "that move them stop; wheels that always touch it belong into unchecked_links"
+            f"wheels that touch the floor at rest: {', '.join(standing)}; the floor is a surface, so all motions that move "
+            "them stop; what always touches it belongs into unchecked_links"
         )
     return tuple(notes)
 
 
-def _on_the_floor(machine: Machine, site: Site) -> list[str]:
-    """Checked links that move, whose lowest point at rest is about where the floor is: at height 0, or the grid's bottom."""
+def _wheels_on_the_floor(machine: Machine, site: Site) -> list[str]:
+    """Checked links that move and turn without end about a level axis, and reach down to the floor at rest.
+
+    The floor is at height 0, or at the bottom of the grid.
+    """
     grid = site.grid()
     near = ON_THE_FLOOR_VOXELS * grid.voxel_size_m
-    floors = [height for height in {0.0, float(grid.lower_m[2])} if height >= grid.lower_m[2]]
-    moving = {name for joint in site.entry.joints if joint in machine.joint_names for name in machine.moved_links(joint)}
+    floors = [height for height in (0.0, float(grid.lower_m[2])) if height >= grid.lower_m[2]]
+    asked = [joint for joint in machine.joint_names if joint in site.entry.joints]
+    moving = {name for joint in asked for name in machine.moved_links(joint)}
+    turning = {
+        joint.child: joint for joint in machine.joints if joint.unit == "rad" and np.isinf(joint.upper)
+    }
     placed = machine.world_from_links(machine.nearest_to_zero())
     standing = []
     for link in machine.links:
-        if link.name not in moving or link.name not in machine.checked_links:
+        if link.name not in moving & set(machine.checked_links) & set(turning):
             continue
-        lowest = float((link.vertices @ placed[link.name][2, :3] + placed[link.name][2, 3]).min())
-        if any(np.abs(lowest - floor) <= near for floor in floors):
+        up = placed[link.name][2]
+        lowest = float((link.vertices @ up[:3] + up[3]).min())
+        is_level = abs(up[:3] @ turning[link.name].axis_in_joint) < LEVEL
+        if is_level and any(abs(lowest - floor) <= near for floor in floors):
             standing.append(link.name)
     return standing

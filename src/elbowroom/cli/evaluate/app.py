@@ -4,6 +4,7 @@ import typer
 
 from elbowroom.cli.evaluate.bits import bits
 from elbowroom.cli.evaluate.placement import placement
+from elbowroom.cli.evaluate.robots import robots
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
 from elbowroom.cli.evaluate.scale import scale_budget, scale_cameras
 from elbowroom.cli.evaluate.thesis import all_parts, calibration, more, motions, reconstruction, scale
@@ -33,4 +34,5 @@ evaluate_app.command(epilog=_example("scale-cameras --poses 2 --step 20 --json c
 evaluate_app.command(epilog=_example("scale-budget --poses 4 --json budget.json"))(scale_budget)
 evaluate_app.command(epilog=_example("more --out report --json more.json"))(more)
 evaluate_app.command(epilog=_example("bits --json now.json --against benchmarks/results/bits.json"))(bits)
+evaluate_app.command(epilog=_example("robots packages --json robots.json"))(robots)
 evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

@@ -58,8 +58,8 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
     root = _parsed(path.read_bytes(), report)
     sign = xacro.first_sign(root)
     if sign is not None:
-        report.expanded = True
         text = xacro.expanded(path, report.said(sign.element, sign.text), packages, xacro_arguments)
+        report.expanded, report.lines_before = True, 0
         root = _parsed(text, report)
         left = xacro.first_sign(root)
         if left is not None:
@@ -80,7 +80,9 @@ def _parsed(content: bytes, report: Report) -> etree._Element:
     content = _without_what_stands_first(content, report)
     version = _VERSION.match(content)
     if version is not None:
-        report.warn("xml", None, f"line 1: there is no XML of version {version[2].decode('latin-1')!r}; read as 1.0")
+        report.warn(
+            "xml", None, f"line 1: there is no XML of version {version[2].decode('latin-1')!r}; read as 1.0"
+        )
         content = _VERSION.sub(rb"\g<1>1.0", content, count=1)
     try:
         return _tree(content, recover=False)
@@ -124,7 +126,9 @@ def _without_what_stands_first(content: bytes, report: Report) -> bytes:
     if before is None or before.end() == 0:
         return mark + content
     report.lines_before = content[: before.end()].count(b"\n")
-    report.warn("xml", None, "line 1: blank lines or comments stand before the declaration <?xml; passed over")
+    report.warn(
+        "xml", None, "line 1: blank lines or comments stand before the declaration <?xml; passed over"
+    )
     return content[before.end() :]
 
 

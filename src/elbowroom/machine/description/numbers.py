@@ -29,7 +29,9 @@ def numbers(element: etree._Element, name: str, count: int, report: Report) -> t
         raise report.error(element, f"{name} is missing; it holds {WORDS[count]}")
     words = text.split()
     if len(words) == count and any(word.endswith(",") for word in words[:-1]):
-        report.warn("numbers", element, f"{name}: numbers are parted by blanks; commas after them are passed over")
+        report.warn(
+            "numbers", element, f"{name}: numbers are parted by blanks; commas after them are passed over"
+        )
         words = [word.removesuffix(",") for word in words]
     for word in words:
         if not _NUMBER.match(word):

@@ -15,7 +15,12 @@ CRAWL_LEVELS = 3
 """How deep packages lie below a folder of `ROS_PACKAGE_PATH`."""
 CRAWLED = 20_000
 """At most so many folders are looked at below one folder of it."""
-FOLDERS_OF_PACKAGES = ("ROS_PACKAGE_PATH", "GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH")
+FOLDERS_OF_PACKAGES = (
+    "ROS_PACKAGE_PATH",
+    "GAZEBO_MODEL_PATH",
+    "GZ_SIM_RESOURCE_PATH",
+    "IGN_GAZEBO_RESOURCE_PATH",
+)
 """Variables of the environment that list folders of packages."""
 INSTALLED = ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "CMAKE_PREFIX_PATH")
 """Variables that list folders in which `share/` holds packages."""
@@ -92,7 +97,9 @@ class Packages:
     def not_found(self, name: str) -> str:
         """That there is no package of a name, where it was looked for, and what to do."""
         looked = [f"in {folder}" for folder in self.package_dirs] + ["in the folders above the URDF"]
-        looked += [f"in {variable}" for variable in (*FOLDERS_OF_PACKAGES, *INSTALLED) if os.environ.get(variable)]
+        looked += [
+            f"in {variable}" for variable in (*FOLDERS_OF_PACKAGES, *INSTALLED) if os.environ.get(variable)
+        ]
         return f"no package {name!r} {', '.join(looked)}; {_advice(name)}"
 
     def _of_url(self, rest: str) -> Found:
@@ -114,7 +121,7 @@ class Packages:
                     return Found(folder / text)
             for folder in self._own_package() if len(PurePosixPath(text).parts) > 1 else ():
                 if (folder / text).is_file():
-                    return Found(folder / text, f"not beside the URDF; taken from {folder}")
+                    return Found(folder / text, f"not beside the URDF; such files are taken from {folder}")
         return _existing(self.urdf.parent / filename)
 
     def _own_package(self) -> Iterator[Path]:
@@ -180,9 +187,11 @@ class Packages:
                     continue
                 other = self._other_package(path, name)
                 if other:
-                    return Found(None, f"is missing; {path} lies in package {other!r}, not {name!r}; {_advice(name)}")
+                    return Found(
+                        None, f"is missing; {path} lies in package {other!r}, not {name!r}; {_advice(name)}"
+                    )
                 self._taken[path.resolve()] = name
-                return Found(path, f"no folder of package {name!r}; taken from {path.parent}")
+                return Found(path, f"no folder of package {name!r}; its files are taken from {folder}")
         return Found(None, f"is missing; {self.not_found(name)}")
 
     def _other_package(self, path: Path, name: str) -> str | None:
@@ -205,8 +214,14 @@ def _existing(path: Path) -> Found:
     """A file, or that it is missing; a name that differs by capital letters alone is said."""
     if path.is_file():
         return Found(path)
-    near = [at.name for at in path.parent.iterdir() if at.name.lower() == path.name.lower()] if path.parent.is_dir() else []
-    return Found(None, f"is missing; no file {path}" + (f", but {near[0]}: capital letters count" if near else ""))
+    near = (
+        [at.name for at in path.parent.iterdir() if at.name.lower() == path.name.lower()]
+        if path.parent.is_dir()
+        else []
+    )
+    return Found(
+        None, f"is missing; no file {path}" + (f", but {near[0]}: capital letters count" if near else "")
+    )
 
 
 def _listed(variable: str) -> list[Path]:

@@ -76,5 +76,5 @@ def quoted(element: etree._Element) -> str:
     """An element's opening tag as it stands in the file, cut if it is long."""
     prefix = f"{element.prefix}:" if element.prefix else ""
     attributes = "".join(f' {name.rpartition("}")[2]}="{value}"' for name, value in element.attrib.items())
-    text = " ".join(f"{prefix}{tag_of(element)}{attributes}".split())
+    text = " ".join(f"{prefix}{str(element.tag).rpartition('}')[2]}{attributes}".split())
     return f"<{text if len(text) <= LONGEST_ELEMENT else text[: LONGEST_ELEMENT - 3] + '...'}>"

@@ -14,7 +14,17 @@ from elbowroom.machine.description.report import Report, quoted, tag_of
 from elbowroom.machine.description.shapes import Shape, children, origin_of, require_known, shapes_of, walk
 
 OF_A_LINK = ("inertial", "visual", "collision", "contact", "sensor", "verbose")
-OF_A_JOINT = ("origin", "parent", "child", "axis", "limit", "mimic", "calibration", "dynamics", "safety_controller")
+OF_A_JOINT = (
+    "origin",
+    "parent",
+    "child",
+    "axis",
+    "limit",
+    "mimic",
+    "calibration",
+    "dynamics",
+    "safety_controller",
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,12 +43,13 @@ class RawLink:
     visuals: tuple[etree._Element, ...]
 
     def body(self, report: Report) -> list[Shape]:
-        """Its collision geometry, or else its visual geometry.
+        """Its collision geometry, or else, where it has none that is more than a point, its visual geometry.
 
         Raises:
             MachineError: as `shapes_of`.
         """
-        return [shape for part in self.collisions or self.visuals for shape in shapes_of(part, report)]
+        shapes = [shape for part in self.collisions for shape in shapes_of(part, report)]
+        return shapes or [shape for part in self.visuals for shape in shapes_of(part, report)]
 
 
 class RawLimit(NamedTuple):
@@ -191,7 +202,9 @@ def _mimic(element: etree._Element, report: Report) -> RawMimic:
     joint = element.get("joint")
     if not joint:
         raise report.error(element, "joint is missing; it names the joint that leads")
-    multiplier, offset = (number(element, *given) for given in (("multiplier", report, 1.0), ("offset", report, 0.0)))
+    multiplier, offset = (
+        number(element, *given) for given in (("multiplier", report, 1.0), ("offset", report, 0.0))
+    )
     if not np.isfinite([multiplier, offset]).all():
         raise report.error(element, "multiplier and offset must be finite")
     return RawMimic(joint, multiplier, offset)

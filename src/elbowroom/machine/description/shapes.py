@@ -60,7 +60,9 @@ def shapes_of(part: etree._Element, report: Report) -> list[Shape]:
     link_from_shape = origin_of(part, report)
     found = [at for geometry in geometries for at in _solids(geometry, report)]
     if len(found) > 1:
-        report.warn("shapes", geometries[0], f"{len(found)} shapes in one <{tag_of(part)}>; all of them are taken")
+        report.warn(
+            "shapes", geometries[0], f"{len(found)} shapes in one <{tag_of(part)}>; all of them are taken"
+        )
     shapes = [_shape(at, link_from_shape, report) for at in found]
     return [shape for shape in shapes if shape is not None]
 
@@ -89,7 +91,9 @@ def _shape(element: etree._Element, link_from_shape: NDArray[np.float64], report
     if min(sizes) < 0:
         raise report.error(element, f"a size is negative; sizes {_said(sizes)} must be above 0 [m]")
     if max(sizes) == 0:
-        report.warn("shapes", element, "is a point without size, as it marks a frame; it is no part of the body")
+        report.warn(
+            "shapes", element, "is a point without size, as it marks a frame; it is no part of the body"
+        )
         return None
     if min(sizes) == 0 and not (kind == "capsule" and sizes[0] > 0):
         raise report.error(element, f"a size is 0; sizes {_said(sizes)} must be above 0 [m]")
@@ -127,7 +131,9 @@ def origin_of(part: etree._Element, report: Report) -> NDArray[np.float64]:
     origin = origins[0]
     for name in origin.attrib:
         if "}" not in str(name) and name not in ("xyz", "rpy", "quat_xyzw"):
-            raise report.error(origin, f"{name} is no attribute of an origin; allowed are xyz, rpy, quat_xyzw")
+            raise report.error(
+                origin, f"{name} is no attribute of an origin; allowed are xyz, rpy, quat_xyzw"
+            )
     xyz = numbers(origin, "xyz", 3, report) if origin.get("xyz") is not None else (0.0, 0.0, 0.0)
     if origin.get("quat_xyzw") is not None:
         return _from_quaternion(origin, xyz, report)
@@ -138,9 +144,7 @@ def origin_of(part: etree._Element, report: Report) -> NDArray[np.float64]:
     return pose
 
 
-def _from_quaternion(
-    origin: etree._Element, xyz: tuple[float, ...], report: Report
-) -> NDArray[np.float64]:
+def _from_quaternion(origin: etree._Element, xyz: tuple[float, ...], report: Report) -> NDArray[np.float64]:
     x, y, z, w = numbers(origin, "quat_xyzw", 4, report)
     if origin.get("rpy") is not None:
         raise report.error(origin, "both rpy and quat_xyzw; which holds is not known")

@@ -12,7 +12,7 @@ from lxml import etree
 from elbowroom.errors import MachineError, PackageError
 from elbowroom.extras import package
 from elbowroom.machine.description.packages import Packages
-from elbowroom.machine.description.report import quoted, tag_of
+from elbowroom.machine.description.report import tag_of
 
 OLD_WORDS = {"include", "property", "macro", "insert_block", "arg", "if", "unless"}
 """Elements of xacro that old files write without a prefix, as children of the robot."""
@@ -32,7 +32,7 @@ def first_sign(root: etree._Element) -> Sign | None:
     """The first element, attribute or expression of the xacro language that is left in a file."""
     for element in root.iter(etree.Element):
         if _is_xacro(element.tag) or (element.getparent() is root and tag_of(element) in OLD_WORDS):
-            return Sign(element, f"{quoted(element)} is xacro, which is not expanded yet")
+            return Sign(element, "is xacro, which is not expanded yet")
         for name, value in element.attrib.items():
             if _is_xacro(str(name)):
                 return Sign(element, "an attribute is xacro, which is not expanded yet")
@@ -79,7 +79,9 @@ def expanded(path: Path, sign: str, packages: Packages, arguments: Mapping[str, 
         raise
     except ExpatError as error:
         raise MachineError(f"{path}: xacro cannot expand it: not XML: {error}") from error
-    except Exception as error:  # xacro raises its own exceptions and those of the expressions that it evaluates
+    except (
+        Exception
+    ) as error:  # xacro raises its own exceptions and those of the expressions that it evaluates
         missing = re.search(r"Undefined substitution argument (\w+)", str(error))
         hint = f"; give {missing[1]} in xacro_arguments" if missing else ""
         raise MachineError(f"{path}: xacro cannot expand it: {' '.join(str(error).split())}{hint}") from error

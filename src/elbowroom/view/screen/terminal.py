@@ -83,8 +83,9 @@ class TerminalView:
 
     def open(self, watched: Watched) -> None:
         """As `begin`, by what its head says."""
-        self.watched, self.log = watched, RunLog(
-            watched.source, watched.unchecked_links, watched.bodiless_links
+        self.watched, self.log = (
+            watched,
+            RunLog(watched.source, watched.unchecked_links, watched.bodiless_links),
         )
         if self._live is not None:
             self._live.start()
