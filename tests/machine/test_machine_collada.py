@@ -10,7 +10,10 @@ from elbowroom.machine.collada import read_collada
 from elbowroom.machine.mesh_file import read_mesh
 
 CORNERS = "0 0 0 1 0 0 1 1 0 0 1 0 0.5 0.5 2"
-PYRAMID = '<triangles count="6"><input semantic="VERTEX" source="#v" offset="0"/><p>0 3 1 3 2 1 0 1 4 1 2 4 2 3 4 3 0 4</p></triangles>'
+PYRAMID = (
+    '<triangles count="6"><input semantic="VERTEX" source="#v" offset="0"/>'
+    "<p>0 3 1 3 2 1 0 1 4 1 2 4 2 3 4 3 0 4</p></triangles>"
+)
 SCENE = '<node><instance_geometry url="#g"/></node>'
 
 
@@ -21,8 +24,8 @@ def collada(primitives=PYRAMID, nodes=SCENE, unit="1", up="Z_UP", corners=CORNER
 <asset><unit name="u" meter="{unit}"/><up_axis>{up}</up_axis></asset>
 <library_geometries><geometry id="g"><mesh>
 <source id="p"><float_array id="pa" count="{count}">{corners}</float_array>
-<technique_common><accessor source="#pa" count="{count // 3}" stride="3"><param name="X"/><param name="Y"/><param name="Z"/>
-</accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<technique_common><accessor source="#pa" count="{count // 3}" stride="3">
+<param name="X"/><param name="Y"/><param name="Z"/></accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 {primitives}</mesh></geometry></library_geometries>{more}
 <library_visual_scenes><visual_scene id="s">{nodes}</visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
@@ -60,9 +63,8 @@ def test_the_unit_is_obeyed(tmp_path, unit):
 
 def test_the_up_axis_is_read_as_other_readers_of_urdfs_do_and_said(tmp_path):
     (tmp_path / "a.dae").write_text(collada(up="Y_UP"))
-    (tmp_path / "r.urdf").write_text(
-        '<robot name="r"><link name="a"><collision><geometry><mesh filename="a.dae"/></geometry></collision></link></robot>'
-    )
+    shape = '<collision><geometry><mesh filename="a.dae"/></geometry></collision>'
+    (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="a">{shape}</link></robot>')
     machine = Machine.from_urdf(tmp_path / "r.urdf")
     assert np.ptp(machine.links[0].vertices, axis=0) == pytest.approx([1, 1, 2])
     assert "a.dae says Y_UP; axes are taken as they stand" in machine.findings[0].text
@@ -94,7 +96,8 @@ def test_a_mirrored_node_keeps_its_surface_turned_outward(tmp_path):
 
 
 def test_nodes_of_a_library_are_put_where_they_are_called(tmp_path):
-    more = '<library_nodes><node id="part"><translate>7 0 0</translate><instance_geometry url="#g"/></node></library_nodes>'
+    part = '<node id="part"><translate>7 0 0</translate><instance_geometry url="#g"/></node>'
+    more = f"<library_nodes>{part}</library_nodes>"
     nodes = '<node><translate>0 0 1</translate><instance_node url="#part"/></node>'
     assert read(tmp_path, collada(nodes=nodes, more=more)).vertices.min(axis=0) == pytest.approx([7, 0, 1])
 

@@ -187,7 +187,7 @@ def test_a_mesh_in_millimetres_and_a_link_too_long_are_refused(tmp_path):
     with pytest.raises(MachineError, match=r'link a: .*300 m long.*scale="0.001 0.001 0.001" makes it 0.3 m'):
         Machine.from_urdf(urdf(tmp_path, stl_link(tmp_path, (300, 100, 60))))
     crane = BOX.replace("1 1 1", "30 6 6")
-    with pytest.raises(MachineError, match="link a: .*30 m long, at most 20 m"):
+    with pytest.raises(MachineError, match=r"link a: .*30 m long, at most 20 m"):
         Machine.from_urdf(urdf(tmp_path, crane))
     assert Machine.from_urdf(urdf(tmp_path, crane), largest_link_m=40).checked_links == ("a",)
 

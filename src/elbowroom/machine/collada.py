@@ -1,7 +1,7 @@
 """Collada (.dae): the triangles of a file's scene. Pictures, lights and materials are passed over.
 
-The file's `<unit>` is obeyed and its `<up_axis>` is not: so RViz, MoveIt, Gazebo and Pinocchio read the meshes of a URDF,
-and robots are drawn to look right there.
+The file's `<unit>` is obeyed and its `<up_axis>` is not: so RViz, MoveIt, Gazebo and Pinocchio read the meshes of a
+URDF, and robots are drawn to look right there.
 """
 
 from collections.abc import Callable, Iterator
@@ -170,7 +170,7 @@ class _Reader:
         faces = _POLYGONS[tag]([given[offset::stride] for given in lists], sizes)
         if faces is None:
             raise self._error(element, "vcount and p do not fit each other")
-        if len(faces) and not (0 <= faces.min() and faces.max() < len(points)):
+        if len(faces) and not (faces.min() >= 0 and faces.max() < len(points)):
             raise self._error(element, f"names corner {faces.max()}, of {len(points)}")
         return points, faces
 

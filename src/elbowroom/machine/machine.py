@@ -70,7 +70,7 @@ class Machine:
     world_from_base: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     unchecked_links: tuple[str, ...] = ()
     bodiless_links: tuple[str, ...] = ()
-    tolerance: Tolerance = Tolerance()
+    tolerance: Tolerance = field(default_factory=Tolerance)
     findings: tuple[Finding, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
@@ -197,8 +197,9 @@ class Machine:
     def checked(self, joints: Joints) -> dict[str, NDArray[np.float64]]:
         """The same joint positions, in the order of `joint_names`, after finding them possible.
 
-        Whole joint states are taken: followers are compared with the joints that they follow, and names that the machine
-        does not have belong to other machines, and pass. A position beyond a limit by less than `tolerance` is taken as it is.
+        Whole joint states are taken: followers are compared with the joints that they follow, and names that the
+        machine does not have belong to other machines, and pass. A position beyond a limit by less than `tolerance`
+        is taken as it is.
 
         Args:
             joints: positions by name, numbers or arrays [m or rad].
@@ -246,8 +247,8 @@ class Machine:
             off = np.abs(values - expected) > self.tolerance.of(follower.unit)
             if off.any():
                 raise MachineError(
-                    f"joint {follower.name}: {values[off].flat[0]:g} {follower.unit}, but it follows {leader}, which puts "
-                    f"it at {expected[off].flat[0]:g} {follower.unit}; the machine is not as its description says"
+                    f"joint {follower.name}: {values[off].flat[0]:g} {follower.unit}, but it follows {leader}, which "
+                    f"puts it at {expected[off].flat[0]:g} {follower.unit}; the machine is not as its description says"
                 )
 
     def positions(self, joints: Joints) -> NDArray[np.float64]:

@@ -44,8 +44,8 @@ def read_mesh(path: Path) -> MeshFile:
     """All triangles of a file, where its own scene puts them.
 
     Raises:
-        MachineError: a file of an unknown kind, one that cannot be read, that holds no triangles, or a part that would be
-            lost.
+        MachineError: a file of an unknown kind, one that cannot be read, that holds no triangles, or of which a part
+            would be lost.
     """
     suffix = path.suffix.lower()
     if suffix not in MESH_SUFFIXES:
@@ -67,10 +67,10 @@ def read_mesh(path: Path) -> MeshFile:
     if suffix in (".glb", ".gltf"):
         _require_readable_gltf(path)
     try:
-        mesh = trimesh.load(path, force="mesh")
+        loaded: object = trimesh.load(path, force="mesh")
     except Exception as error:  # trimesh's readers raise whatever their formats' parsers raise
         raise MachineError(f"mesh {path} cannot be read: {error}") from error
-    return _checked(mesh, path)
+    return _checked(loaded, path)
 
 
 def _checked(mesh: object, path: Path, note: str = "") -> MeshFile:

@@ -1,6 +1,7 @@
 """Triangles of one piece of a link's geometry: a mesh file, a box, a cylinder, a sphere or a capsule."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import trimesh
@@ -74,7 +75,7 @@ def _ellipsoid(a: float, b: float, c: float) -> trimesh.Trimesh:
     return mesh
 
 
-_SOLIDS = {
+_SOLIDS: dict[str, Callable[..., trimesh.Trimesh]] = {
     "box": _box,
     "cylinder": _cylinder,
     "sphere": _sphere,

@@ -180,7 +180,7 @@ def _narrowed(joints: tuple[Joint, ...], report: Report, into: Mapping[str, RawJ
             report.warn(
                 "limits",
                 into[joint.child].element,
-                f"its limits {joint.lower:g} to {joint.upper:g} leave no travel to {leader}, which it follows; passed over",
+                f"its limits {joint.lower:g} to {joint.upper:g} leave no travel to {leader}, its leader; passed over",
             )
     return tuple(
         replace(joint, lower=ends[joint.name][0], upper=ends[joint.name][1]) if joint.mimic is None else joint

@@ -32,8 +32,8 @@ def notes_of_machine(machine: Machine, site: Site) -> tuple[str, ...]:
     standing = _wheels_on_the_floor(machine, site)
     if standing:
         notes.append(
-            f"wheels that touch the floor at rest: {', '.join(standing)}; the floor is a surface, so all motions that move "
-            "them stop; what always touches it belongs into unchecked_links"
+            f"wheels that touch the floor at rest: {', '.join(standing)}; the floor is a surface, so all "
+            "motions that move them stop; what always touches it belongs into unchecked_links"
         )
     return tuple(notes)
 

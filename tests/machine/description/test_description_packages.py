@@ -99,14 +99,14 @@ def test_a_manifest_tells_another_package_whatever_its_folder_is_called(tmp_path
 def test_one_file_does_not_stand_in_for_two_packages(tmp_path):
     mesh(tmp_path / "copied/meshes/a.stl")
     both = ("package://arm/meshes/a.stl", "package://tool/meshes/a.stl")
-    with pytest.raises(MachineError, match="link b: .*lies in package 'arm', not 'tool'"):
+    with pytest.raises(MachineError, match=r"link b: .*lies in package 'arm', not 'tool'"):
         Machine.from_urdf(robot(tmp_path / "copied/urdf", *both))
 
 
 def test_a_package_that_is_there_and_lacks_the_file_is_not_left_for_another(tmp_path):
     mesh(tmp_path / "robot/meshes/a.stl")
     (tmp_path / "robot/tool").mkdir()
-    with pytest.raises(MachineError, match="is missing; no file .*tool"):
+    with pytest.raises(MachineError, match=r"is missing; no file .*tool"):
         Machine.from_urdf(robot(tmp_path / "robot/urdf", "package://tool/meshes/a.stl"))
 
 

@@ -7,6 +7,7 @@ from elbowroom.errors import MachineError, MachineWarning
 from elbowroom.machine import Machine
 
 BOX = "<geometry><box size='1 1 1'/></geometry>"
+TWO = "<geometry><box size='1 1 1'/><sphere radius='2'/></geometry>"
 BODY = f"<link name='a'><collision>{BOX}</collision></link>"
 WITH_B = BODY + f"<link name='b'><collision>{BOX}</collision></link>"
 JOINT = "<joint name='j' type='{type}'><parent link='a'/><child link='b'/>{more}</joint>"
@@ -16,6 +17,16 @@ def machine_of(folder, text):
     path = folder / "made.urdf"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return Machine.from_urdf(path)
+
+
+def robot_of(*parts, body=""):
+    """A robot of one link, of some elements in its collision, or of a body of its own."""
+    link = f"<link name='a'><collision>{''.join(parts)}</collision></link>" if parts else ""
+    return f"<robot name='r'>{body}{link}</robot>"
+
+
+def joint_of(attributes, ends):
+    return robot_of(body=f"{WITH_B}<joint {attributes}>{ends}</joint>")
 
 
 def with_joint(more="", kind="revolute"):
@@ -34,13 +45,11 @@ def with_shape(shape):
         (f"<robot name='r'>{BODY}<drake:x/></robot>", "line 1: a prefix is not declared"),
         (f"<?xml version='0.0' ?><robot name='r'>{BODY}</robot>", "no XML of version '0.0'"),
         (f"<robot name='r'><!-- a -- b -->{BODY}</robot>", "two hyphens"),
-        (f"<?xml version='1.0' encoding='utf-8'?><robot name='r'><!-- \xfc -->{BODY}</robot>".encode("latin-1"), "Latin-1"),
+        (f"<?xml version='1.0' encoding='utf-8'?>{robot_of(BOX)}<!-- \xfc -->".encode("latin-1"), "Latin-1"),
         (f"<robot>{BODY}</robot>", "<robot> has no name; it is called made"),
-        (f"<robot name='r'>{BODY.replace('/></g', '/><sphere radius=chr1/></g').replace('chr1', repr('2'))}</robot>", "2 shapes"),
+        (robot_of(TWO), "2 shapes"),
         (with_shape("<box size='1, 1, 1'/>"), "commas after them are passed over"),
-        (f"<robot name='r'>{BODY.replace('<coll', '<visual><origin rpy=chr/></visual><coll').replace('chr', repr('90 0 0'))}"
-         f"<link name='b'><collision><origin rpy='90 0 0'/>{BOX}</collision></link>{JOINT.format(type='fixed', more='')}</robot>",
-         "are these degrees"),
+        (robot_of("<origin rpy='90 0 0'/>", BOX), "are these degrees"),
     ],
 )  # fmt: skip
 def test_harmless_slips_pass_with_a_warning(tmp_path, text, said):
@@ -104,9 +113,9 @@ def test_geometry_that_is_not_usable_is_named_with_its_place(tmp_path, shape, me
         ("<robot name='r'>\n<link><collision/></link></robot>", "line 2: a link without a name"),
         ("<robot name='r'><link name='a'><collision/></link></robot>", "link a: <collision>: holds no <geometry>"),
         (f"<robot name='r'>{BODY}{BODY}</robot>", "link 'a' is there twice, also in line 1"),
-        (f"<robot name='r'>{WITH_B}<joint name='j' type='fixed'><child link='b'/></joint></robot>", "joint j: <parent"),
-        (f"<robot name='r'>{WITH_B}<joint name='j'><parent link='a'/><child link='b'/></joint></robot>", "type is missing"),
-        (f"<robot name='r'>{WITH_B}<joint type='fixed'><parent link='a'/><child link='b'/></joint></robot>", "a joint without"),
+        (joint_of("name='j' type='fixed'", "<child link='b'/>"), "joint j: <parent"),
+        (joint_of("name='j'", "<parent link='a'/><child link='b'/>"), "type is missing"),
+        (joint_of("type='fixed'", "<parent link='a'/><child link='b'/>"), "a joint without"),
         (with_joint().replace("<parent link='a'/>", "<parent/>"), "<parent>: link is missing"),
         (with_joint("<limit lower='x' upper='1'/>"), "lower: 'x' is no number"),
         (with_joint("<limit lower='-1' upper='nan'/>"), "not finite"),
@@ -117,9 +126,9 @@ def test_geometry_that_is_not_usable_is_named_with_its_place(tmp_path, shape, me
         (with_joint("<limit lower='0' upper='1'/><mimic/>"), "<mimic>: joint is missing"),
         (with_joint("<limits lower='0' upper='1'/>"), "<limits.*is limit meant"),
         (f"<robot name='r'><link name='a'><colision>{BOX}</colision></link></robot>", "is collision meant"),
-        (f"<robot name='r'>{BODY.replace('<geo', '<orgin xyz=chr/><geo').replace('chr', repr('1 0 0'))}</robot>", "is origin meant"),
-        (f"<robot name='r'>{BODY.replace('<geo', '<origin xzy=chr/><geo').replace('chr', repr('1 0 0'))}</robot>", "xzy is no attribute"),
-        (f"<robot name='r'>{BODY.replace('<geo', '<origin xyz=chr/><origin/><geo').replace('chr', repr('1 0 0'))}</robot>", "a second origin"),
+        (robot_of("<orgin xyz='1 0 0'/>", BOX), "is origin meant"),
+        (robot_of("<origin xzy='1 0 0'/>", BOX), "xzy is no attribute"),
+        (robot_of("<origin xyz='1 0 0'/><origin/>", BOX), "a second origin"),
         (f"<robot name='r'>{BODY}<group>{BODY.replace(repr('a'), repr('c'))}</group></robot>", "stands in <group>"),
         (f"<robot name='r'>{BODY}<collision>{BOX}</collision></robot>", "belongs into a <link>"),
         (f"<robot name='r'><link name='a'>{BOX}</link></robot>", "geometry belongs into <collision>"),
@@ -148,7 +157,7 @@ def test_a_sphere_without_size_marks_a_frame_and_the_picture_is_taken_for_the_bo
 
 
 def test_all_shapes_of_one_geometry_count(tmp_path):
-    text = f"<robot name='r'>{BODY.replace('/></g', '/><box size=chr/></g').replace('chr', repr('4 .1 .1'))}</robot>"
+    text = robot_of(TWO.replace("sphere radius='2'", "box size='4 .1 .1'"))
     with pytest.warns(MachineWarning, match="all of them are taken"):
         machine = machine_of(tmp_path, text)
     assert np.ptp(machine.links[0].vertices, axis=0) == pytest.approx([4, 1, 1])

@@ -59,7 +59,7 @@ def test_without_the_package_it_is_said_what_to_do(tmp_path, without_xacro, sign
     ],
 )
 def test_every_sign_of_the_language_is_known(tmp_path, without_xacro, content):
-    with pytest.raises(MachineError, match="xacro, which is not expanded yet|expression of xacro"):
+    with pytest.raises(MachineError, match=r"xacro, which is not expanded yet|expression of xacro"):
         Machine.from_urdf(written(tmp_path, content))
 
 

@@ -19,7 +19,7 @@ def robots(
     ] = None,
     json: JsonFile = None,
 ) -> None:
-    """Load every URDF and xacro file below folders, pose it, and count: loads, refused with a place, loses a part unsaid."""
+    """Load and pose every URDF and xacro file below folders; count those that load, are refused, lose a part unsaid."""
     from elbowroom.cli.evaluate.robots_run import run_robots
 
     run_robots(folders, tuple(leave_out or ()), json)

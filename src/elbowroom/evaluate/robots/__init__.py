@@ -1,1 +1,1 @@
-"""Robots that others published: which of them load, which are refused with a place, and whether any loses a part unsaid."""
+"""Robots that others published: which load, which are refused with a place, whether any loses a part unsaid."""

@@ -1,4 +1,4 @@
-"""A second reader of URDFs, as plain as can be and with no code of the first: which links have geometry, what is missing."""
+"""A second reader of URDFs, plain and with no code of the first: which links have geometry, what is missing."""
 
 import re
 import xml.etree.ElementTree as tree

@@ -33,7 +33,8 @@ class Found(NamedTuple):
 
     Args:
         path: where it lies; None: it is missing.
-        text: of a missing file, why, as the end of a sentence; of one that was found without its package's folder, that.
+        text: of a missing file, why, as the end of a sentence; of one that was found without its package's folder,
+            that it was.
     """
 
     path: Path | None
@@ -114,7 +115,7 @@ class Packages:
         return _existing(path)
 
     def _beside(self, filename: str) -> Found:
-        """A path relative to the URDF, or else to one of `package_dirs`, or else to the top of the URDF's own package."""
+        """A path relative to the URDF, else to one of `package_dirs`, else to the top of the URDF's own package."""
         for text in (filename, unquote(filename)):
             for folder in (self.urdf.parent, *self.package_dirs):
                 if (folder / text).is_file():
@@ -234,7 +235,7 @@ def _folders_in(folder: Path) -> list[Path]:
 
 
 def _seems_another(folder: Path, name: str) -> bool:
-    """Whether a folder without a manifest is called as a package is, or lies where they are installed, of another robot."""
+    """Whether a folder without a manifest is called, or lies, as a package of another robot does."""
     if not _NAME_OF_A_PACKAGE.search(folder.name) and folder.parent.name != "share":
         return False
     mine, other = sorted((_stem(name), _stem(folder.name)), key=len)

@@ -120,7 +120,7 @@ def robot_of(document: Document) -> Robot:
     joints = [_joint(element, report) for element in children(root, "joint")]
     for what, found in (("link", links), ("joint", joints)):
         first: dict[str, etree._Element] = {}
-        for one in found:  # type: ignore[attr-defined]
+        for one in found:
             if one.name in first:
                 line = first[one.name].sourceline
                 raise report.error(one.element, f"{what} {one.name!r} is there twice, also in line {line}")

@@ -11,8 +11,8 @@ from lxml import etree
 from numpy.typing import NDArray
 from trimesh import transformations
 
-from elbowroom.machine.description.numbers import WORDS, number, numbers
-from elbowroom.machine.description.report import Report, quoted, tag_of
+from elbowroom.machine.description.numbers import WORDS, numbers
+from elbowroom.machine.description.report import Report, tag_of
 
 Kind = Literal["mesh", "box", "cylinder", "sphere", "capsule", "ellipsoid"]
 SIZES: dict[str, tuple[str, ...]] = {
