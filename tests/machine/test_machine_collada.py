@@ -25,7 +25,8 @@ def collada(primitives=PYRAMID, nodes=SCENE, unit="1", up="Z_UP", corners=CORNER
 <library_geometries><geometry id="g"><mesh>
 <source id="p"><float_array id="pa" count="{count}">{corners}</float_array>
 <technique_common><accessor source="#pa" count="{count // 3}" stride="3">
-<param name="X"/><param name="Y"/><param name="Z"/></accessor></technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<param name="X"/><param name="Y"/><param name="Z"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 {primitives}</mesh></geometry></library_geometries>{more}
 <library_visual_scenes><visual_scene id="s">{nodes}</visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>"""

@@ -207,6 +207,23 @@ def test_a_small_part_in_millimetres_is_out_of_proportion(tmp_path):
     assert long.checked_links == ("a", "b")
 
 
+def test_origins_and_limits_in_other_units_are_noticed(tmp_path):
+    far = '<origin xyz="0 0 340"/>'
+    shape = BOX.replace("<geo", f"{far}<geo")
+    with pytest.raises(MachineError, match=r"link a: .*lies 33\d.* m from its link's own frame"):
+        Machine.from_urdf(urdf(tmp_path, shape))
+    arm = BOX + BOX.replace('"a"', '"b"') + BOX.replace('"a"', '"c"') + joint()
+    second = joint(child="c", more=far).replace('"j"', '"k"').replace('"a"', '"b"')
+    with pytest.raises(
+        MachineError, match="joint k: lies 340 m from the frame of b; is its origin in millimetres"
+    ):
+        Machine.from_urdf(urdf(tmp_path, arm + second))
+    for kind, limit, unit in (("revolute", 170, "degrees"), ("prismatic", 400, "millimetres")):
+        wide = f'<limit lower="0" upper="{limit}"/>'
+        with pytest.warns(MachineWarning, match=f"are they in {unit}"):
+            Machine.from_urdf(urdf(tmp_path, BOX + '<link name="b"/>' + joint(kind, wide)))
+
+
 def test_a_mesh_scaled_twice_is_said(tmp_path):
     with pytest.warns(MachineWarning, match="0.3 mm long; is its mesh scaled twice"):
         Machine.from_urdf(urdf(tmp_path, stl_link(tmp_path, (0.3, 0.1, 0.1), ' scale="0.001 0.001 0.001"')))

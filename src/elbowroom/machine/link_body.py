@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,18 @@ SUSPECT_LINK_M = 2.0
 SMALLEST_MESH_M = 0.001
 """A smaller mesh is said: it may have been scaled twice [m]."""
 WITHOUT_BODY = "or name links that may move without a body in machine.without_body (without_body= in Python)"
+
+
+class Proportions(NamedTuple):
+    """What a mesh's size is compared with.
+
+    Args:
+        reach_m: the farthest that a link can be from the first, by its joints alone [m].
+        moving: names of links that some joint moves.
+    """
+
+    reach_m: float
+    moving: frozenset[str]
 
 
 class Bodies:
@@ -54,12 +67,12 @@ class Bodies:
                     f"{robot.path}: link without body {name!r} does not exist; links are {', '.join(names)}"
                 )
 
-    def links(self, order: Sequence[str], reach_m: float) -> tuple[Link, ...]:
+    def links(self, order: Sequence[str], machine: Proportions) -> tuple[Link, ...]:
         """All links with their triangles.
 
         Args:
             order: their names.
-            reach_m: the farthest that a link can be from the first, by its joints alone [m].
+            machine: what their sizes are compared with.
 
         Raises:
             MachineError: a mesh that is missing or cannot be read, with all links that lost one; a link of a size that
@@ -82,7 +95,7 @@ class Bodies:
                 shape.element,
                 f"{note}{more}; axes are taken as they stand, as RViz and Gazebo take them",
             )
-        _check_sizes(self.report, links, read, self.largest_link_m, reach_m)
+        _check_sizes(self.report, links, read, self.largest_link_m, machine)
         return links
 
     def _link(self, link: RawLink, shapes: Sequence[Shape]) -> Link:
@@ -135,7 +148,7 @@ def _check_sizes(
     links: Sequence[Link],
     shapes: dict[str, list[Shape]],
     largest_link_m: float | None,
-    reach_m: float,
+    machine: Proportions,
 ) -> None:
     """Refuses links that are too long, before anything is made of them.
 
@@ -144,20 +157,27 @@ def _check_sizes(
         links: with their triangles.
         shapes: of each link.
         largest_link_m: as of `Bodies`.
-        reach_m: as of `Bodies.links`.
+        machine: as of `Bodies.links`.
     """
+    reach_m = machine.reach_m
+    by_name = {link.name: link for link in links}
     lengths = {link.name: float(np.ptp(link.vertices, axis=0).max()) for link in links if link.has_geometry}
     limit = LARGEST_LINK_M if largest_link_m is None else largest_link_m
     for name, length in lengths.items():
-        of = shapes[name][0].element
+        of = next((shape for shape in shapes[name] if shape.kind == "mesh"), shapes[name][0]).element
         unscaled = any(shape.kind == "mesh" and max(map(abs, shape.scale)) >= 1 for shape in shapes[name])
         rest = max((other for at, other in lengths.items() if at != name), default=np.inf)
         if length > limit:
             raise report.error(
                 of, f"the link is {length:.4g} m long, at most {limit:g} m may be; {_meant(length, unscaled)}"
             )
+        away = float(np.abs(by_name[name].vertices).max()) - length
+        if away > limit:
+            raise report.error(
+                of, f"lies {away:.4g} m from its link's own frame; is its origin in millimetres?"
+            )
         odd = length > SUSPECT_LINK_M and 0.05 < reach_m < length / 3 and rest < length / 10
-        if odd and unscaled and largest_link_m is None:
+        if odd and unscaled and largest_link_m is None and name in machine.moving:
             raise report.error(
                 of,
                 f"the link is {length:.4g} m long, the next one {rest:.2g} m, and all joints reach {reach_m:.2g} m; "

@@ -18,10 +18,14 @@ from elbowroom.machine.description.robot import RawJoint, Robot, robot_of
 from elbowroom.machine.joint import Joint, Mimic
 from elbowroom.machine.kernels.body import FIXED, SLIDES, TURNS, Tree
 from elbowroom.machine.link import Link
-from elbowroom.machine.link_body import Bodies
+from elbowroom.machine.link_body import Bodies, Proportions
 
 MOVABLE = ("prismatic", "revolute", "continuous")
 """Kinds of joints that move; "fixed" is allowed beside them."""
+FAR_M = 20.0
+"""A joint farther from its parent's frame is said, and refused at five times that unless it carries the robot [m]."""
+WIDE = {"prismatic": 100.0, "revolute": 10 * np.pi}
+"""Limits wider than this are said: they may be in millimetres or degrees [m or rad]."""
 NO_LIMIT = 1e4
 """A limit beyond this means that there is none [m or rad]."""
 
@@ -68,12 +72,13 @@ def read_urdf(path: Path, reading: Reading) -> Parts:
     report = robot.report
     order = _tree_order(robot)
     into = {joint.child: joint for joint in robot.joints}
+    _require_near(robot, order[0])
     joints = tuple(
         _joint(into[name], report) for name in order if name in into and into[name].type in MOVABLE
     )
     tree = _tree(order, into, joints, report)
     bodies = Bodies(robot, packages, reading.without_body, reading.largest_link_m)
-    links = bodies.links(order, _reach(into, joints))
+    links = bodies.links(order, _proportions(order, into, joints))
     if not any(link.has_geometry for link in links):
         raise MachineError(f"{path}: no link has a mesh, box, cylinder or sphere; a machine needs a body")
     return Parts(robot.name, links, _narrowed(joints, report, into), tree, tuple(report.findings))
@@ -113,11 +118,26 @@ def _tree_order(robot: Robot) -> list[str]:
     return order
 
 
-def _reach(into: Mapping[str, RawJoint], joints: Sequence[Joint]) -> float:
-    """The farthest that any link can be from the first one, by its joints alone [m]."""
+def _require_near(robot: Robot, root: str) -> None:
+    """Refuses joints that are so far from their parents that the numbers must be millimetres."""
+    for joint in robot.joints:
+        away = float(np.linalg.norm(joint.origin[:3, 3]))
+        text = f"lies {away:g} m from the frame of {joint.parent}; is its origin in millimetres?"
+        if away > 5 * FAR_M and joint.parent != root:
+            raise robot.report.error(joint.element, text)
+        if away > FAR_M:
+            robot.report.warn("unit", joint.element, text)
+
+
+def _proportions(order: Sequence[str], into: Mapping[str, RawJoint], joints: Sequence[Joint]) -> Proportions:
+    """How far the joints reach, and which links any of them moves."""
     offsets = sum(float(np.linalg.norm(joint.origin[:3, 3])) for joint in into.values())
     spans = [joint.upper - joint.lower for joint in joints if joint.kind == "prismatic"]
-    return offsets + sum(spans)
+    moving: set[str] = set()
+    for name in order:
+        if name in into and (into[name].type != "fixed" or into[name].parent in moving):
+            moving.add(name)
+    return Proportions(offsets + sum(spans), frozenset(moving))
 
 
 def _joint(joint: RawJoint, report: Report) -> Joint:
@@ -158,6 +178,9 @@ def _limits(joint: RawJoint, report: Report) -> tuple[float, float]:
         )
         lower = -np.inf if lower < -NO_LIMIT else lower
         upper = np.inf if upper > NO_LIMIT else upper
+    elif max(-lower, upper) > WIDE[joint.type]:
+        unit = "millimetres" if joint.type == "prismatic" else "degrees"
+        report.warn("unit", limit.element, f"limits {lower:g} to {upper:g} are wide; are they in {unit}?")
     if lower == upper:
         report.warn("limits", limit.element, f"lower and upper are both {lower:g}: the joint cannot move")
     return lower, upper
