@@ -42,7 +42,7 @@ def test_files_are_counted_by_what_came_of_them_and_by_what_they_lack(package):
     assert {row["version"] for row in rows.values()} == {"1.2"}
     lacks = {name: row["lacks"] for name, row in rows.items() if row["lacks"]}
     assert lacks == {
-        "arms/no_mesh.urdf": "names a mesh that its package lacks, c.stl",
+        "arms/no_mesh.urdf": "names a mesh that its package lacks, meshes/c.stl",
         "arms/part.urdf": "names links that stand in another file",
         "arms/frames.urdf": "has no geometry",
         "arms/garbage.urdf": "is not XML",

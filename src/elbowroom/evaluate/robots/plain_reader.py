@@ -2,6 +2,7 @@
 
 import re
 import xml.etree.ElementTree as tree
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,7 +40,7 @@ def plain(path: Path, root: Path) -> Plain:
     links = robot.findall("link")
     bodies = {link.get("name", ""): _pieces(link) for link in links}
     with_geometry = frozenset(name for name, pieces in bodies.items() if any(map(_has_size, pieces)))
-    lacks = _lacks(robot, bodies, with_geometry, root)
+    lacks = _lacks(robot, bodies, with_geometry) or _missing_mesh(bodies, path, root)
     if set(_ASKED.findall(content)) - set(_GIVEN.findall(content)):
         lacks = "takes arguments of xacro that it does not set"
     moves = any(joint.get("type") not in (None, "fixed") for joint in robot.findall("joint"))
@@ -73,9 +74,7 @@ def _has_size(piece: tree.Element) -> bool:
     return piece.tag == "mesh" or any(word not in ("0", "0.0", "0.") for word in words)
 
 
-def _lacks(
-    robot: tree.Element, bodies: dict[str, list[tree.Element]], with_geometry: frozenset[str], root: Path
-) -> str:
+def _lacks(robot: tree.Element, bodies: dict[str, list[tree.Element]], with_geometry: frozenset[str]) -> str:
     if robot.tag != "robot" or not bodies:
         return "has no link"
     joints = robot.findall("joint")
@@ -84,10 +83,24 @@ def _lacks(
         return "names links that stand in another file"
     if not with_geometry:
         return "has no geometry"
-    files = {at.name.lower() for at in root.rglob("*")}
-    for pieces in bodies.values():
-        for piece in pieces:
-            name = re.split(r"[/\\]", piece.get("filename") or "x")[-1]
-            if piece.tag == "mesh" and name.lower() not in files:
-                return f"names a mesh that its package lacks, {name}"
     return ""
+
+
+def _missing_mesh(bodies: dict[str, list[tree.Element]], path: Path, root: Path) -> str:
+    """That a mesh is nowhere: neither beside or above the file, nor, of a package, under its last two names."""
+    for piece in (piece for pieces in bodies.values() for piece in pieces if piece.tag == "mesh"):
+        name = (piece.get("filename") or "").replace("\\", "/")
+        scheme, _, rest = name.rpartition("://")
+        if scheme:
+            is_there = "/".join(rest.lower().split("/")[-2:]) in _files_of(root)
+        else:
+            is_there = any((folder / name).is_file() for folder in list(path.parents)[:3])
+        if not is_there:
+            return f"names a mesh that its package lacks, {name}"
+    return ""
+
+
+@lru_cache(maxsize=2)
+def _files_of(root: Path) -> frozenset[str]:
+    """The last two names of all files of a package, in small letters."""
+    return frozenset("/".join(at.parts[-2:]).lower() for at in root.rglob("*"))

@@ -14,6 +14,8 @@ from elbowroom.evaluate.robots.plain_reader import Plain, plain
 from elbowroom.evaluate.robots.published import Published, published
 from elbowroom.machine import Machine
 
+OF_A_PART = ("has no <link>", "names link", "Undefined substitution argument")
+"""What is said of xacro files that are parts of others: macros, or links that hang on links of another file."""
 POSES = 5
 """Each machine is posed so often, at random within its limits."""
 
@@ -116,7 +118,7 @@ def summary_rows(rows: Sequence[Row]) -> list[Row]:
     summaries: list[Row] = []
     for form in sorted({str(row["format"]) for row in rows}, reverse=True):
         of = [row for row in rows if row["format"] == form]
-        macros = [row for row in of if form == "xacro" and "has no <link>" in row["text"]]
+        macros = [row for row in of if form == "xacro" and any(word in row["text"] for word in OF_A_PART)]
         files = [row for row in of if row not in macros]
         whole = [row for row in files if not row["lacks"]]
         machines = [row for row in whole if row["moves"]]
@@ -127,7 +129,7 @@ def summary_rows(rows: Sequence[Row]) -> list[Row]:
                 "format": form,
                 "packages": len({row["package"] for row in files}),
                 "files": len(files),
-                "macro_files": len(macros),
+                "parts_of_others": len(macros),
                 "loads": len(loads),
                 "loads_pct": _share(files),
                 "whole": len(whole),

@@ -95,6 +95,11 @@ class Packages:
             self._folders[name] = next(iter(with_manifest or found), None)
         return self._folders[name]
 
+    def folder_like(self, name: str) -> Path | None:
+        """A folder above the URDF that is called as the robot of a package is: the robot was copied out of it."""
+        without = (folder for folder in self._above if self._name_of(folder) is None)
+        return next((folder for folder in without if _stem(folder.name) == _stem(name)), None)
+
     def not_found(self, name: str) -> str:
         """That there is no package of a name, where it was looked for, and what to do."""
         looked = [f"in {folder}" for folder in self.package_dirs] + ["in the folders above the URDF"]

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from xml.parsers.expat import ExpatError
 
 from lxml import etree
@@ -72,16 +72,17 @@ def expanded(path: Path, sign: str, packages: Packages, arguments: Mapping[str, 
             f"{sign}; expand it first (xacro {path.name} > robot.urdf), or let it be expanded here: "
             "pip install 'elbowroom[xacro]'"
         ) from None
+    missing_packages: list[MachineError] = []
     try:
-        with _finding(xacro, packages):
+        with _finding(packages, missing_packages):
             document = xacro.process_file(str(path), mappings={k: str(v) for k, v in arguments.items()})
-    except MachineError:
-        raise
     except ExpatError as error:
         raise MachineError(f"{path}: xacro cannot expand it: not XML: {error}") from error
     except (
         Exception
     ) as error:  # xacro raises its own exceptions and those of the expressions that it evaluates
+        if missing_packages:
+            raise missing_packages[0] from error
         missing = re.search(r"Undefined substitution argument (\w+)", str(error))
         hint = f"; give {missing[1]} in xacro_arguments" if missing else ""
         raise MachineError(f"{path}: xacro cannot expand it: {' '.join(str(error).split())}{hint}") from error
@@ -89,13 +90,19 @@ def expanded(path: Path, sign: str, packages: Packages, arguments: Mapping[str, 
 
 
 @contextmanager
-def _finding(xacro: Any, packages: Packages) -> Iterator[None]:
-    """Lets `$(find ...)` look where meshes are looked for; it knows ROS' own index alone."""
+def _finding(packages: Packages, missing: list[MachineError]) -> Iterator[None]:
+    """Lets `$(find ...)` look where meshes are looked for; it knows ROS' own index alone.
+
+    Args:
+        packages: where to look.
+        missing: takes an error for each package that is not there; xacro itself hides them in its own.
+    """
 
     def folder_of(name: str) -> str:
-        folder = packages.folder(name)
+        folder = packages.folder(name) or packages.folder_like(name)
         if folder is None:
-            raise MachineError(f"{packages.urdf}: $(find {name}): {packages.not_found(name)}")
+            missing.append(MachineError(f"{packages.urdf}: $(find {name}): {packages.not_found(name)}"))
+            raise missing[-1]
         return str(folder)
 
     inner = package("xacro.substitution_args")
