@@ -24,7 +24,9 @@ def simulate(
     noise: Noise = "exact",
     box: Annotated[
         str,
-        typer.Option(metavar="X,Y,Z,X,Y,Z", help="The watched box: its least and greatest corner [m]."),
+        typer.Option(
+            metavar="X,Y,Z,X,Y,Z", help="The watched box: its least and greatest corner, in metres."
+        ),
     ] = "-2,-2,0,2,2,2.5",
     voxel_size: Annotated[
         float, typer.Option("--voxel-size", metavar="METRES", help="Edge of a voxel in the site file.")

@@ -46,7 +46,7 @@ def test_xacro_is_expanded(tmp_path, sign):
 @pytest.mark.parametrize("name", ["r.urdf.xacro", "r.urdf"])
 @pytest.mark.parametrize("sign", SIGNS)
 def test_without_the_package_it_is_said_what_to_do(tmp_path, without_xacro, sign, name):
-    with pytest.raises(MachineError, match=r"line 1: .*xacro.*expand it first.*elbowroom\[xacro\]"):
+    with pytest.raises(MachineError, match=r"line 1: .*xacro.*expand it first.*pip install .*xacro"):
         Machine.from_urdf(written(tmp_path, SIGNS[sign], name))
 
 

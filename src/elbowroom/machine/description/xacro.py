@@ -10,7 +10,7 @@ from xml.parsers.expat import ExpatError
 from lxml import etree
 
 from elbowroom.errors import MachineError, PackageError
-from elbowroom.extras import package
+from elbowroom.extras import install_command, package
 from elbowroom.machine.description.packages import Packages
 from elbowroom.machine.description.report import tag_of
 
@@ -70,7 +70,7 @@ def expanded(path: Path, sign: str, packages: Packages, arguments: Mapping[str, 
     except PackageError:
         raise MachineError(
             f"{sign}; expand it first (xacro {path.name} > robot.urdf), or let it be expanded here: "
-            "pip install 'elbowroom[xacro]'"
+            f"{install_command('xacro')}"
         ) from None
     missing_packages: list[MachineError] = []
     try:
