@@ -46,7 +46,9 @@ def test_a_part_is_taken_out_with_the_machine_and_swept_with_it(gripper):
 
 
 def test_a_part_reaches_farther_than_the_hand_that_holds_it(gripper):
-    long = gripper.with_part("arm", Part.cylinder("rod", 0.02, 0.5), [[0, 0, 1, 0.85], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
+    long = gripper.with_part(
+        "arm", Part.cylinder("rod", 0.02, 0.5), [[0, 0, 1, 0.85], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]]
+    )
     post = touched_by_box(GRID, (0.85, 0.4, 0.0), (0.95, 0.5, 0.2))
     space = FreeSpace.from_occupied(GRID, post)
     motion = Motion("turn", 1, 0.3)

@@ -58,7 +58,10 @@ def test_a_body_about_a_blocked_voxel_goes_nowhere(block, at):
 def test_a_blocked_voxel_about_a_body_is_not_in_it(block):
     joints = {"slide": 0.0, "other": 0.0}
     beside = touched_by_box(GRID, (-0.3, 0.26, 0.2), (0.3, 0.34, 0.6))
-    assert check_motion(space_of(block, joints, beside), block, joints, Motion("slide", 1, 0.05)).level is Level.CLEAR
+    assert (
+        check_motion(space_of(block, joints, beside), block, joints, Motion("slide", 1, 0.05)).level
+        is Level.CLEAR
+    )
 
 
 def table(lower=(-0.4, -0.3, -0.1), upper=(0.4, 0.3, 0.18)):
@@ -98,7 +101,10 @@ def test_a_stand_frees_nothing(arm):
 
 
 @settings(max_examples=25, deadline=None)
-@given(st.lists(st.sampled_from(["cart", "arm", "hand", "base"]), min_size=1, max_size=3, unique=True), st.integers(0, 99))
+@given(
+    st.lists(st.sampled_from(["cart", "arm", "hand", "base"]), min_size=1, max_size=3, unique=True),
+    st.integers(0, 99),
+)
 def test_fewer_links_on_a_stand_never_make_a_verdict_milder(arm, links, seed):
     rng = np.random.default_rng(seed)
     lower = rng.uniform(-1, 0.8, 3)

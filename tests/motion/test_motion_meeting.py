@@ -150,7 +150,13 @@ angle = st.floats(-2.9, 2.9)
 
 
 @settings(max_examples=40, deadline=None)
-@given(turn=angle, bend=angle, nod=angle, which=st.sampled_from(["turn", "bend", "nod"]), way=st.sampled_from([1, -1]))
+@given(
+    turn=angle,
+    bend=angle,
+    nod=angle,
+    which=st.sampled_from(["turn", "bend", "nod"]),
+    way=st.sampled_from([1, -1]),
+)
 def test_links_that_keep_apart_meet_no_later_than_their_meshes(folding, turn, bend, nod, which, way):
     joints, motion = {"turn": turn, "bend": bend, "nod": nod}, Motion(which, way, 0.2)
     distances, pairs = machines.Distances(folding), [tuple(pair) for pair in names_of(folding)]

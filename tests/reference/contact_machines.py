@@ -46,7 +46,7 @@ def arm_and_post(folder, **more):
 
 
 def three_links(folder, **more):
-    """An arm of two links and a hand: each turns beside the one before it, so that it can fold onto itself and the post."""
+    """An arm of two links and a hand, each beside the one before it: it can fold onto itself and onto the post."""
     return machine(
         folder,
         BASE,

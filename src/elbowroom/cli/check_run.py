@@ -56,6 +56,7 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
                 **verdict.row(),
                 "explanation": reasons,
                 "unchecked_links": machine.unchecked_links,
+                "bodiless_links": machine.bodiless_links,
                 "allowances": machine.allowances,
             }
         )
@@ -71,6 +72,8 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
         print(line)
     if machine.unchecked_links:
         print(f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}.")
+    if machine.bodiless_links:
+        print(f"Without a body, by the site's word: {', '.join(machine.bodiless_links)}.")
     for line in machine.allowances:
         print(f"{line}.")
     print(NOT_CERTIFIED)
@@ -85,7 +88,10 @@ def _travel(motion: Motion, verdict: Verdict) -> str:
 
 
 def _reasons(space: FreeSpace, verdict: Verdict) -> list[str]:
-    """What each camera saw at the place that ends the travel, a line each; nothing if that lies nowhere, or is the machine."""
+    """What each camera saw at the place that ends the travel, a line each; nothing if that lies nowhere.
+
+    Of the machine itself: what to do if its links are meant to touch.
+    """
     if verdict.cause is Cause.MACHINE:
         return [
             f"{verdict.link} and {verdict.other_link} may be meant to touch: then name both in the site's machine: "

@@ -97,6 +97,7 @@ def _moment(options: RoomOptions, machine: Machine | None, grid: VoxelGrid) -> M
             raise InputError("--joints: without a machine there are none; leave out --joints or --no-machine")
         return Moment(1.0, solids, {})
     joints = {**usual, **(options.joints or {})}
+    machine.require_joints(joints)
     machine.checked(joints)
     return Moment(1.0, solids + link_solids(machine, joints), joints)
 

@@ -73,7 +73,9 @@ def excess_of(
     samples = body_samples(seen, VOXEL_M, unchecked=True)
     deep: dict[int, list[float]] = {}
     for camera, depth, joints in zip(cameras, depths, joints_per_camera, strict=True):
-        points, behind, sure = _blocks(camera, np.asarray(depth, dtype=np.float64), rasterise(seen, camera, joints))
+        points, behind, sure = _blocks(
+            camera, np.asarray(depth, dtype=np.float64), rasterise(seen, camera, joints)
+        )
         placed = seen.world_from_link_array(np.atleast_2d(seen.positions(joints)))[0]
         link, within = _depth_in(samples, placed, points)
         for row, depth_in, away, least in zip(link, within, behind, sure, strict=True):
@@ -97,8 +99,8 @@ def _blocks(
     """The blocks of an image that see the model or past it.
 
     Returns:
-        Points in the world, shape (n, 3) [m]; how far behind the model they lie along their rays, and from where on that
-        is sure, shape (n,) [m].
+        Points in the world, shape (n, 3) [m]; how far behind the model they lie along their rays, and from where on
+        that is sure, shape (n,) [m].
     """
     usable = np.isfinite(drawn) & (depth >= max(camera.min_depth_m, 1e-6)) & (depth <= camera.max_depth_m)
     rows, columns = (side // BLOCK_PX for side in depth.shape)
@@ -116,8 +118,8 @@ def _blocks(
         np.nanmedian(by_block(image * valid)[enough], axis=1)
         for image in (depth, depth - np.where(usable, drawn, 0.0))
     )
-    middle = np.divmod(enough, columns)
-    middle = tuple(at * BLOCK_PX + BLOCK_PX // 2 for at in middle)
+    row, column = np.divmod(enough, columns)
+    middle = row * BLOCK_PX + BLOCK_PX // 2, column * BLOCK_PX + BLOCK_PX // 2
     image = np.zeros(depth.shape)
     image[middle] = measured
     noise = 0.0 if camera.noise is None else camera.noise.sigma(measured)
@@ -128,7 +130,7 @@ def _blocks(
 def _depth_in(
     samples: BodySamples, world_from_link: NDArray[np.float64], points: NDArray[np.float64]
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """For points in the world, the link that each lies on or in, -1 for none, and how far it is from its surface [m]."""
+    """For points in the world, the link that each lies on or in, -1: none; how far it is from the surface [m]."""
     link = np.concatenate([samples.point_link, samples.interior_link])
     within = np.concatenate([samples.points, samples.interior]).astype(np.float64)
     pose = world_from_link[link]

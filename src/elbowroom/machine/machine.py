@@ -1,16 +1,19 @@
 """The machine: links with a body, joints that move them, and where the links are."""
 
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.choices import ExplainWith
-from elbowroom.errors import MachineError
+from elbowroom.errors import MachineError, MachineWarning
+from elbowroom.finding import Finding
 from elbowroom.geometry import nearest_rigid
 from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
@@ -20,8 +23,27 @@ from elbowroom.machine.part import Part
 from elbowroom.machine.shape import Shape
 from elbowroom.machine.stand import Stand
 
-LIMIT_TOLERANCE = 1e-6
-"""Joint positions beyond a limit by this much are rounding, not a fault [m or rad]."""
+ROUNDING = 1e-6
+"""Positions beyond a limit by this much are rounding, not a fault [m or rad]."""
+QUIET = ("package", "limits", "axes")
+"""Kinds of findings that are kept with the machine, and are no slip that a warning is due for."""
+
+
+class Tolerance(NamedTuple):
+    """How far a joint may be said to be where it cannot be: encoders and descriptions differ by little.
+
+    Args:
+        rad: for joints that turn [rad].
+        m: for joints that slide [m].
+    """
+
+    rad: float = float(np.radians(1.0))
+    m: float = 0.005
+
+    def of(self, unit: str) -> float:
+        """For joints of a unit, "rad" or "m"; never less than rounding."""
+        return max(self.m if unit == "m" else self.rad, ROUNDING)
+
 
 Joints = Mapping[str, ArrayLike]
 """Joint positions by name [m or rad]: numbers, or arrays of one length n for n configurations."""
@@ -42,6 +64,9 @@ class Machine:
         allowed_contacts: pairs of names of links that may touch, besides neighbours; a name may hold wildcards ("*").
         stands: what some links may touch: a table, the floor.
         parts: names of the links that are carried (`with_part`).
+        bodiless_links: links whose geometry was left out by somebody's word: they move without a body.
+        tolerance: how far a position may lie beyond a limit, and a follower off its leader.
+        findings: what was found in its description and passed, each in one line.
 
     Raises:
         MachineError: `world_from_base` is not rigid, or a link that is named does not exist.
@@ -56,6 +81,9 @@ class Machine:
     allowed_contacts: tuple[tuple[str, str], ...] = ()
     stands: tuple[Stand, ...] = ()
     parts: tuple[str, ...] = ()
+    bodiless_links: tuple[str, ...] = ()
+    tolerance: Tolerance = field(default_factory=Tolerance)
+    findings: tuple[Finding, ...] = field(default=(), repr=False)
     shape: Shape = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -94,12 +122,16 @@ class Machine:
         world_from_base: ArrayLike | None = None,
         unchecked_links: Sequence[str] = (),
         package_dirs: Sequence[str | Path] = (),
+        without_body: Sequence[str] = (),
+        xacro_arguments: Mapping[str, str] | None = None,
+        largest_link_m: float | None = None,
         explain_with: ExplainWith = "auto",
     ) -> "Machine":
-        """Reads a URDF with its collision geometry: meshes (STL, OBJ, GLB, PLY), boxes, cylinders, spheres.
+        """Reads a URDF with its collision geometry: meshes (STL, OBJ, PLY, GLB, glTF, Collada), boxes, round solids.
 
-        A link without collision geometry takes its visual geometry if that exists. Cylinders and spheres
-        become polyhedra that contain them.
+        A link without collision geometry takes its visual geometry. Cylinders, spheres and capsules become polyhedra
+        that contain them. Where a joint has followers (mimic), its limits end where the first of them ends. A file that
+        is xacro is expanded, where the package xacro is installed.
 
         Collision geometry is what a motion is swept with. It may be larger than the machine, so what cameras see of
         it may be another surface, within it.
@@ -108,21 +140,37 @@ class Machine:
             path: the URDF file.
             world_from_base: where its first link is, shape (4, 4), rigid; None: at the world's origin.
             unchecked_links: names of links that leave the grid by design.
-            package_dirs: where to look for `package://` files, before the folders above the URDF.
+            package_dirs: where to look for `package://` files, before the folders above the URDF and where ROS keeps
+                packages (ROS_PACKAGE_PATH, AMENT_PREFIX_PATH).
+            without_body: names of links that move without a body: their geometry is not read.
+            xacro_arguments: values of the arguments of a xacro file, by name.
+            largest_link_m: a longer link is refused [m]; None: 20 m, and meshes out of all proportion.
             explain_with: which geometry says what cameras see of a link. "auto": its visual geometry, if all of it can
                 be read and it fills the collision geometry without standing out of it; else the collision geometry.
                 "visual": visual geometry wherever a link has any. "collision": never.
 
         Raises:
             MachineError: the file, one of its meshes or its tree of links cannot be used; the message says
-                which.
+                which, and where in the file.
+
+        Warns:
+            MachineWarning: a slip that passes.
         """
         # what reads meshes is slow to load, and a bare room needs none of it
-        from elbowroom.machine.urdf import read_urdf
+        from elbowroom.machine.urdf import Reading, read_urdf
 
-        parts = read_urdf(Path(path), [Path(folder) for folder in package_dirs], explain_with)
-        base = np.eye(4) if world_from_base is None else np.asarray(world_from_base, dtype=np.float64)
-        return cls(*parts, world_from_base=base, unchecked_links=tuple(unchecked_links))
+        folders = [Path(folder) for folder in package_dirs]
+        reading = Reading(folders, without_body, xacro_arguments or {}, largest_link_m, explain_with)
+        parts = read_urdf(Path(path), reading)
+        for finding in parts.findings:
+            if finding.kind not in QUIET:
+                warnings.warn(finding.text, MachineWarning, stacklevel=2)
+        return cls(
+            **parts._asdict(),
+            world_from_base=np.eye(4) if world_from_base is None else np.asarray(world_from_base, float),
+            unchecked_links=tuple(unchecked_links),
+            bodiless_links=tuple(without_body),
+        )
 
     def at(self, world_from_base: ArrayLike) -> "Machine":
         """The same machine with its base elsewhere. What was made of its links is shared, so it costs next to nothing.
@@ -316,8 +364,23 @@ class Machine:
         joints = [self.joint(name) for name in self.joint_names]
         return {joint.name: min(max(0.0, joint.lower), joint.upper) for joint in joints}
 
+    def require_joints(self, names: Iterable[str]) -> None:
+        """Refuses names that are no joints of this machine.
+
+        Raises:
+            MachineError: one that is neither commanded nor a follower; the message lists those that exist.
+        """
+        followers = {joint.name for joint in self.joints if joint.mimic is not None}
+        for name in names:
+            if name not in followers:
+                self.joint(name)
+
     def checked(self, joints: Joints) -> dict[str, NDArray[np.float64]]:
         """The same joint positions, in the order of `joint_names`, after finding them possible.
+
+        Whole joint states are taken: followers are compared with the joints that they follow, and names that the
+        machine does not have belong to other machines, and pass. A position beyond a limit by less than `tolerance`
+        is taken as it is.
 
         Args:
             joints: positions by name, numbers or arrays [m or rad].
@@ -326,11 +389,9 @@ class Machine:
             float64 arrays of the shapes that came.
 
         Raises:
-            MachineError: an unknown or a missing joint, a value that is not finite or out of the joint's
-                limits.
+            MachineError: a missing joint, a value that is not finite or out of the joint's limits, a follower that is
+                not where its leader puts it.
         """
-        for name in joints:
-            self.joint(name)
         found = {}
         for name in self.joint_names:
             joint = self.joint(name)
@@ -338,22 +399,38 @@ class Machine:
                 raise MachineError(
                     f"machine {self.name}: joint {name!r} has no position; all joints need one"
                 )
-            try:
-                values = np.asarray(joints[name], dtype=np.float64)
-            except (TypeError, ValueError):
-                raise MachineError(f"joint {name}: {joints[name]!r} is not a number [{joint.unit}]") from None
-            if not np.isfinite(values).all():
-                raise MachineError(
-                    f"joint {name}: position is not finite, got {joints[name]!r} [{joint.unit}]"
-                )
-            beyond = (values < joint.lower - LIMIT_TOLERANCE) | (values > joint.upper + LIMIT_TOLERANCE)
+            values = _finite(joint, joints[name])
+            over = self.tolerance.of(joint.unit)
+            beyond = (values < joint.lower - over) | (values > joint.upper + over)
             if beyond.any():
                 raise MachineError(
                     f"joint {name}: {values[beyond].flat[0]:g} {joint.unit} is out of its limits, "
                     f"{joint.lower:g} to {joint.upper:g} {joint.unit}"
                 )
             found[name] = values
+        self._require_followers(joints, found)
         return found
+
+    def _require_followers(self, joints: Joints, found: Mapping[str, NDArray[np.float64]]) -> None:
+        """Refuses followers that are said to be elsewhere than the joints that they follow put them."""
+        for follower in self.joints:
+            if follower.mimic is None or follower.name not in joints:
+                continue
+            values, row = _finite(follower, joints[follower.name]), self.link_names.index(follower.child)
+            leader = self.joint_names[self.tree.column[row]]
+            expected = self.tree.multiplier[row] * found[leader] + self.tree.offset[row]
+            if values.ndim and expected.ndim and values.shape != expected.shape:
+                raise MachineError(
+                    f"machine {self.name}: joint arrays of unlike lengths: {leader} {expected.size}, "
+                    f"{follower.name} {values.size}"
+                )
+            values, expected = np.broadcast_arrays(values, expected)
+            off = np.abs(values - expected) > self.tolerance.of(follower.unit)
+            if off.any():
+                raise MachineError(
+                    f"joint {follower.name}: {values[off].flat[0]:g} {follower.unit}, but it follows {leader}, which "
+                    f"puts it at {expected[off].flat[0]:g} {follower.unit}; the machine is not as its description says"
+                )
 
     def positions(self, joints: Joints) -> NDArray[np.float64]:
         """Checked joint positions as one array, shape (n_joints,) or (n, n_joints), columns as `joint_names`.
@@ -415,3 +492,14 @@ class Machine:
         placed = np.empty((len(given), len(self.links), 4, 4))
         place_links(self.tree, self.world_from_base, given, placed)
         return placed
+
+
+def _finite(joint: Joint, given: ArrayLike) -> NDArray[np.float64]:
+    """A joint's positions as numbers [m or rad]."""
+    try:
+        values = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise MachineError(f"joint {joint.name}: {given!r} is not a number [{joint.unit}]") from None
+    if not np.isfinite(values).all():
+        raise MachineError(f"joint {joint.name}: position is not finite, got {given!r} [{joint.unit}]")
+    return values

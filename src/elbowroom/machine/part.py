@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -44,12 +44,10 @@ class Part:
         Raises:
             MachineError: an edge that is not above 0.
         """
-        from elbowroom.machine.meshes import box_triangles
-
-        sizes = [float(edge) for edge in np.atleast_1d(np.asarray(size_m, dtype=float))]
-        if len(sizes) != 3:
-            raise MachineError(f"part {name}: size_m is {sizes}, must be three edges [m]")
-        return cls(name, Surface(*box_triangles(f"part {name}", sizes)))
+        sizes = np.asarray(size_m, dtype=float)
+        if sizes.shape != (3,):
+            raise MachineError(f"part {name}: size_m is {sizes.tolist()}, must be three edges [m]")
+        return cls(name, _solid(name, "box", sizes.tolist()))
 
     @classmethod
     def cylinder(cls, name: str, radius_m: float, length_m: float) -> Self:
@@ -62,9 +60,7 @@ class Part:
         Raises:
             MachineError: a size that is not above 0.
         """
-        from elbowroom.machine.meshes import cylinder_triangles
-
-        return cls(name, Surface(*cylinder_triangles(f"part {name}", radius_m, length_m)))
+        return cls(name, _solid(name, "cylinder", [radius_m, length_m]))
 
     @classmethod
     def mesh(cls, name: str, path: str | Path, scale: float | Sequence[float] = 1.0) -> Self:
@@ -72,18 +68,28 @@ class Part:
 
         Args:
             name: of the part.
-            path: STL, OBJ, GLB or PLY.
+            path: of a kind that links may have.
             scale: from the file's unit to metres: 0.001 for millimetres; one number or three.
 
         Raises:
             MachineError: a file that is missing, unreadable or without triangles, or a scale that is not above 0.
         """
-        from elbowroom.machine.meshes import file_triangles
+        # what reads meshes is slow to load, and most machines carry none
+        from elbowroom.machine.mesh_file import read_mesh
 
         given = np.asarray(scale, dtype=float)
         if given.shape not in ((), (1,), (3,)) or not (np.isfinite(given).all() and (given > 0).all()):
             raise MachineError(f"part {name}: scale is {scale}, must be one number above 0 or three")
         if not Path(path).is_file():
             raise MachineError(f"part {name}: {path}: no such file; expected a mesh")
-        vertices, faces = file_triangles(Path(path), f"part {name}")
-        return cls(name, Surface(vertices * given, faces))
+        read = read_mesh(Path(path))
+        return cls(name, Surface(read.vertices * given, read.faces))
+
+
+def _solid(name: str, kind: Literal["box", "cylinder"], sizes: Sequence[float]) -> Surface:
+    """The triangles of a solid of some sizes [m]."""
+    from elbowroom.machine.meshes import solid_triangles
+
+    if not (np.isfinite(sizes).all() and min(sizes) > 0):
+        raise MachineError(f"part {name}: sizes {list(sizes)} must be finite and above 0 [m]")
+    return Surface(*solid_triangles(kind, sizes))

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
-from yourdfpy import urdf as yourdf
 
 from elbowroom.choices import ExplainWith
+from elbowroom.machine.description.shapes import Shape
 from elbowroom.machine.link import Surface
 
 OUTSIDE_M = 0.01
@@ -23,9 +23,23 @@ SHORT_M, SHORT = 0.1, 0.25
 share of the box's edge, is a picture of a part of the link."""
 
 
-def is_drawn_as_it_collides(link: yourdf.Link) -> bool:
-    """Whether a link's visual shapes are its collision shapes, one by one, so that they need not be read."""
-    return sorted(map(_key, link.visuals)) == sorted(map(_key, link.collisions))
+def are_the_same(some: Sequence[Shape], others: Sequence[Shape]) -> bool:
+    """Whether shapes are others, one by one, so that they need not be read again."""
+    return sorted(map(_key, some)) == sorted(map(_key, others))
+
+
+def together(pieces: Sequence[Surface]) -> Surface:
+    """Several surfaces of a link as one."""
+    firsts = np.cumsum([0] + [len(piece.vertices) for piece in pieces])
+    return Surface(
+        np.concatenate([np.zeros((0, 3)), *(piece.vertices for piece in pieces)]),
+        np.concatenate(
+            [
+                np.zeros((0, 3), dtype=np.int64),
+                *(piece.faces + first for piece, first in zip(pieces, firsts, strict=False)),
+            ]
+        ),
+    )
 
 
 def seen_surface(
@@ -36,8 +50,8 @@ def seen_surface(
     Args:
         visual, collision: of the link.
         shapes: vertices of each collision shape, shape (n, 3), link frame [m].
-        explain_with: "visual": whatever it is; "auto": visual geometry that fills the collision geometry and lies within
-            it.
+        explain_with: "visual": whatever it is; "auto": visual geometry that fills the collision geometry and lies
+            within it.
     """
     if not len(visual.faces) or explain_with == "collision":
         return None
@@ -81,11 +95,6 @@ def _fills(visual: Surface, collision: Surface) -> bool:
     return bool((seen.min(axis=0) <= lower + short).all() and (seen.max(axis=0) >= upper - short).all())
 
 
-def _key(shape: yourdf.Visual | yourdf.Collision) -> str:
+def _key(shape: Shape) -> str:
     """All that a shape is, in a line: the same for shapes that are the same."""
-    geometry, origin = shape.geometry, np.eye(4) if shape.origin is None else np.asarray(shape.origin)
-    mesh = geometry.mesh and (geometry.mesh.filename, np.asarray(geometry.mesh.scale).tolist())
-    box = geometry.box and np.asarray(geometry.box.size).tolist()
-    cylinder = geometry.cylinder and (geometry.cylinder.radius, geometry.cylinder.length)
-    sphere = geometry.sphere and geometry.sphere.radius
-    return repr((mesh, box, cylinder, sphere, origin.tolist()))
+    return repr((shape.kind, shape.sizes, shape.filename, shape.scale, shape.link_from_shape.tolist()))

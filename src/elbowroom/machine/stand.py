@@ -37,7 +37,9 @@ class Stand:
         for name in ("lower_m", "upper_m"):
             corner = np.array(getattr(self, name), dtype=np.float64)
             if corner.shape != (3,) or not np.isfinite(corner).all():
-                raise MachineError(f"stands_on: {name} is {corner.tolist()}, must be three finite numbers [m]")
+                raise MachineError(
+                    f"stands_on: {name} is {corner.tolist()}, must be three finite numbers [m]"
+                )
             corner.setflags(write=False)
             object.__setattr__(self, name, corner)
         if not self.links:

@@ -56,6 +56,7 @@ def room_row(room: Room) -> dict[str, Any]:
         "threads": thread_count(),
         "unchecked_links": room.machine.unchecked_links if room.machine else (),
         "allowances": room.machine.allowances if room.machine else (),
+        "bodiless_links": room.machine.bodiless_links if room.machine else (),
     }
 
 

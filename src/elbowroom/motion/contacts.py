@@ -48,7 +48,10 @@ def pairs_of(machine: Machine) -> Pairs:
 def _voxel_for(machine: Machine) -> float:
     """The edge of voxels for which a machine's surface takes about `SAMPLES` [m]."""
     corners = np.concatenate([link.triangles for link in machine.links])
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
+    area = (
+        np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+        / 2
+    )
     # flat parts take a sample for each square that fits into the circle which it covers
     return float(np.sqrt(area / SAMPLES / 2) / COVER_IN_VOXELS)
 

@@ -37,7 +37,9 @@ def grounds_of(space: FreeSpace, machine: Machine) -> tuple[Ground, ...]:
         space: what the machine moves in.
         machine: says what its links may touch.
     """
-    touches = [tuple(n for n, stand in enumerate(machine.stands) if stand.names(link)) for link in machine.link_names]
+    touches = [
+        tuple(n for n, stand in enumerate(machine.stands) if stand.names(link)) for link in machine.link_names
+    ]
     grounds = []
     for stands in sorted(set(touches)):
         own = space

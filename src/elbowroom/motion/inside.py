@@ -1,4 +1,4 @@
-"""What is blocked within the machine's body where it stands: something else is there, such as a hand in a model's excess.
+"""What is blocked within the machine's body where it stands: something else is there, a hand in a model's excess.
 
 A body meets what comes into it with its surface. What lies in it from the start it would meet only where it leaves it.
 """
@@ -42,7 +42,7 @@ def blocks_inside(
 
 @kept
 def _deep(machine: Machine, voxel_size_m: float) -> Clusters:
-    """Points in the checked links, no nearer than half a voxel to a sample of the surface, so that none lies outside."""
+    """Points in the checked links, no nearer than half a voxel to a sample of the surface: none lies outside."""
     samples = body_samples(machine, voxel_size_m)
     points, links = [np.zeros((0, 3), dtype=np.float32)], [np.zeros(0, dtype=np.int32)]
     for row in np.unique(samples.interior_link):

@@ -24,8 +24,8 @@ TOGETHER = 1 / 64
 
 
 class Met(NamedTuple):
-    """Where a way ends since the machine meets itself: the travel, the two links, the one that moves more first, and the
-    place [m]."""
+    """Where a way ends since the machine meets itself: the travel, the two links, the one that moves more first, and
+    the place [m]."""
 
     travel: float
     link: str

@@ -47,8 +47,8 @@ ARMS: dict[str, tuple[tuple[Box, ...], tuple[Box, ...], tuple[float, float, floa
     "bent": (BENT, BENT, (0.4, 0, 0.4), "hull"),
     "bar and ring": (BAR, RING, (0.5, 0, 0), "hull"),
 }
-"""By name: the boxes of the upper and of the lower arm, where the elbow is on the upper one [m], and what is laid around
-each: the box or the convex hull."""
+"""By name: the boxes of the upper and of the lower arm, where the elbow is on the upper one [m], and what is laid
+around each: the box or the convex hull."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,7 +101,13 @@ class Arm:
         """
         placed = self.machine.world_from_links(joints)
         return min(
-            float(np.linalg.norm(np.maximum(np.abs(_in_link(placed[link], point_in_world) - middle) - np.divide(edges, 2), 0)))
+            float(
+                np.linalg.norm(
+                    np.maximum(
+                        np.abs(_in_link(placed[link], point_in_world) - middle) - np.divide(edges, 2), 0
+                    )
+                )
+            )
             for link, boxes in self.real.items()
             for edges, middle in boxes
         )
@@ -117,13 +123,17 @@ class Arm:
         for link in self.machine.links:
             if link.has_geometry:
                 planes = trimesh.Trimesh(link.vertices, link.faces)
-                beyond = (_in_link(placed[link.name], point_in_world) - planes.triangles[:, 0]) * planes.face_normals
+                beyond = (
+                    _in_link(placed[link.name], point_in_world) - planes.triangles[:, 0]
+                ) * planes.face_normals
                 if (beyond.sum(axis=1) <= 0).all():
                     return True
         return False
 
 
-def _in_link(world_from_link: NDArray[np.float64], point_in_world: NDArray[np.float64]) -> NDArray[np.float64]:
+def _in_link(
+    world_from_link: NDArray[np.float64], point_in_world: NDArray[np.float64]
+) -> NDArray[np.float64]:
     moved: NDArray[np.float64] = world_from_link[:3, :3].T @ (point_in_world - world_from_link[:3, 3])
     return moved
 

@@ -43,7 +43,7 @@ def hand_rows(
     noise: Sequence[str] = ("tof",),
     seed: int = 3,
 ) -> Iterator[dict[str, object]]:
-    """Each arm in random poses with a hand close by, and without; all motions judged from images with and without noise.
+    """Each arm in random poses with a hand close by, and without; all motions judged from images of each noise.
 
     Args:
         scenes: of each arm.
@@ -52,7 +52,7 @@ def hand_rows(
         seed: of poses and hands.
 
     Yields:
-        A row of kind "verdict" for each scene, way of explaining and motion that meets the hand, or has none in its way.
+        A row of kind "verdict" for each scene, way of explaining, and motion that meets the hand, or all without one.
     """
     for preset in noise:
         views = wall_cameras(cameras, (2.4, 0.4), size=size, noise=NOISE_PRESETS.get(preset))
@@ -80,10 +80,15 @@ def _scene_rows(
         frames = render(views, moment)
         for words, other in arms.items():
             space = reconstruct(GRID, views, frames, other.machine, joints, margin=Margin(lateral_px=0.0))
-            for verdict, meet in zip(check_motions(space, other.machine, joints, motions), meets, strict=True):
+            for verdict, meet in zip(
+                check_motions(space, other.machine, joints, motions), meets, strict=True
+            ):
                 if meet or what == "alone":
                     row = verdict.row()
-                    said = {key: row[key] for key in ("joint", "direction", "level", "cause", "free_travel", "link")}
+                    said = {
+                        key: row[key]
+                        for key in ("joint", "direction", "level", "cause", "free_travel", "link")
+                    }
                     yield {"what": what, "explain_with": words, "in_excess": excess, **said}
 
 

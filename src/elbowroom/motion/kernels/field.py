@@ -29,8 +29,8 @@ class Fields(NamedTuple):
 
 @njit(inline="always")
 def slack_of(edge):
-    """What a field of cells of this edge may be wrong by [m]: half a cell's diagonal where its distances were measured, to
-    the middles of cells, and as much again within a cell, as no distance changes faster than its place."""
+    """What a field of cells of this edge may be wrong by [m]: half a cell's diagonal where its distances were
+    measured, to the middles of cells, and as much within a cell, as no distance changes faster than its place."""
     return 1.7321 * edge
 
 

@@ -1,4 +1,4 @@
-"""When a part of a machine first meets another: steps no longer than their distance allows (conservative advancement)."""
+"""When a part of a machine first meets another: steps as long as their distance allows (conservative advancement)."""
 
 import math
 from typing import NamedTuple
@@ -156,7 +156,9 @@ def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, le
                 if pair != last:
                     _relate(placed[0], pairs.sampled[pair], pairs.other[pair], other_from_one)
                     last = pair
-                away = _gap(pairs, member, other_from_one, floors[pair] + nearness.least, nearest) - floors[pair]
+                away = (
+                    _gap(pairs, member, other_from_one, floors[pair] + nearness.least, nearest) - floors[pair]
+                )
                 if away <= nearness.least:
                     row = pairs.sampled[pair]
                     place[0], place[1], place[2] = carried(placed[0, row], pairs.skin.points[nearest[0]])
