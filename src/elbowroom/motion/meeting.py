@@ -10,7 +10,7 @@ from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED
 from elbowroom.motion.contacts import pairs_of
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels.meeting import Pairs, Steps, first_meeting, gaps_now
+from elbowroom.motion.kernels.meeting import Now, Pairs, Steps, first_meeting, gaps_now
 from elbowroom.motion.sweep import cluster_speeds
 
 STEP_IN_COVERS = 2.0
@@ -37,14 +37,13 @@ class Meeting:
         machine: the machine.
         pairs: of its links.
         world_from_link: where they are, shape (n_links, 4, 4).
-        gaps, least: of `gaps_now`.
+        now: how far apart they are.
     """
 
     machine: Machine
     pairs: Pairs
     world_from_link: NDArray[np.float64]
-    gaps: NDArray[np.float64]
-    least: NDArray[np.float64]
+    now: Now
 
     @classmethod
     def of(cls, machine: Machine, world_from_link: NDArray[np.float64]) -> Self:
@@ -52,7 +51,7 @@ class Meeting:
         pairs = pairs_of(machine)
         gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
         gaps_now(pairs, world_from_link, gaps, least)
-        return cls(machine, pairs, world_from_link, gaps, least)
+        return cls(machine, pairs, world_from_link, Now(gaps, least))
 
     def first(self, way: Way, length: float) -> Met | None:
         """Where two links first come so near that they may touch; None: nowhere.
@@ -76,8 +75,7 @@ class Meeting:
             way.course,
             length,
             self._closing(speeds, by_link, way),
-            self.gaps,
-            self.least,
+            self.now,
             Steps(STEP_IN_COVERS * self.pairs.skin.cover, TOGETHER),
         )
         if member < 0:

@@ -36,6 +36,13 @@ RUN = 8
 """So many samples of a cluster that lie side by side are passed over together."""
 
 
+class Now(NamedTuple):
+    """How far apart the pairs are now, by `gaps_now`: of each member, (members,), the least of each, (pairs,) [m]."""
+
+    gaps: np.ndarray
+    least: np.ndarray
+
+
 class Steps(NamedTuple):
     """How closely meetings are looked for.
 
@@ -111,12 +118,12 @@ def gaps_now(pairs, placed, gaps, least):
 
 
 @njit(cache=True, nogil=True)
-def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, least, steps):
+def first_meeting(tree, world_from_base, pairs, course, length, speeds, now, steps):
     """The travel up to which no pair meets, the member that meets after it, and the place of its nearest sample.
 
     A pair has met where what is told of its distance is no more than 0. Where that is less than the doubt about it
-    already, it has met when it is told to be nearer by all of the doubt: links that stay as far apart as they are do not
-    meet. Links may meet in passing, between two looks, as far as they move between them.
+    already, it has met when it is told to be nearer by all of the doubt: links that stay as far apart as they are do
+    not meet. Links may meet in passing, between two looks, as far as they move between them.
 
     Args:
         tree, world_from_base, course: what moves, and how (`Mover`).
@@ -124,7 +131,7 @@ def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, le
         length: travel that is looked at, at most the course's.
         speeds: the most by which the distance of each member's surface from the other link changes per unit of travel,
             (members,) [m]; 0: they move as one.
-        gaps, least: now, of `gaps_now`.
+        now: how far apart they are.
         steps: how closely they are looked for.
 
     Returns:
@@ -133,7 +140,7 @@ def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, le
     mover = Mover(tree, world_from_base, pairs.skin, course, speeds)
     place, nearest = np.zeros(3), np.zeros(1, dtype=np.int64)
     placed, other_from_one = np.empty((1, tree.parent.size, 4, 4)), np.empty((3, 4))
-    floors = np.minimum(least - pairs.doubt, 0.0)
+    gaps, floors = now.gaps, np.minimum(now.least - pairs.doubt, 0.0)
     # of the members that can meet: which, when to look again, and when they were looked at and had not met
     active, until, before = np.empty(gaps.size, dtype=np.int64), np.empty(gaps.size), np.zeros(gaps.size)
     count = 0
