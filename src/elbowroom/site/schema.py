@@ -7,6 +7,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from elbowroom.choices import Detail, Rule
 from elbowroom.geometry import VoxelGrid
+from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, WITNESS_ANGLE_DEG
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Number, Point, Positive, Text, Whole
@@ -35,7 +36,9 @@ class GridEntry(Entry):
         if (self.upper_m is None) == (self.shape is None):
             raise ValueError("exactly one of upper_m and shape")
         shape = self.shape or (0, 0, 0)
-        upper = self.upper_m or [low + n * self.voxel_size_m for low, n in zip(self.origin_m, shape, strict=True)]
+        upper = self.upper_m or [
+            low + n * self.voxel_size_m for low, n in zip(self.origin_m, shape, strict=True)
+        ]
         span = max(high - low for low, high in zip(self.origin_m, upper, strict=True))
         if span > LARGEST_ROOM_M:
             raise ValueError(
@@ -118,6 +121,7 @@ class SiteEntry(Entry):
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
     rule: Rule = "three"
     detail: Detail = "pixel"
+    witness_angle_deg: Annotated[Number, Field(ge=0, le=MOST_ANGLE_DEG)] = WITNESS_ANGLE_DEG
     margin: MarginEntry = MarginEntry()
     max_frame_age_ms: Annotated[Positive, between(1, 3.6e6, "ms", SECONDS)] | None = None
     recording: RecordingEntry | None = None
