@@ -17,7 +17,7 @@ from elbowroom.simulate import wall_cameras
 from reference import reconstruct_scenes as scenes
 from reference.reconstruct_weaken import AGE, NOW, WAYS, some_margin, weakened
 
-FEW = settings(deadline=None, derandomize=True, max_examples=20)
+FEW = settings(deadline=None, derandomize=True, max_examples=8)
 GRID = VoxelGrid((-1.0, -1.0, -1.0), (10, 10, 10), 0.2)
 rooms = st.integers(0, 10**6)
 ANGLE_DEG = 12.0
@@ -31,10 +31,10 @@ def beside(camera, name, way_m):
 
 
 def crowded_room(seed):
-    """A random room; beside the first two cameras stand others, some 10 cm away."""
+    """A random room; beside the first and the last camera stand others, 2 cm away."""
     noise = NoiseModel(0.003, 0.0, 0.002) if seed % 2 else None
     rng, grid, group, scene, _ = scenes.random_room(seed, noise=noise, flying_pixels=seed % 3 != 0)
-    near = [beside(group[0], "b0", 0.1), beside(group[0], "b1", -0.1), beside(group[1], "b2", 0.1)]
+    near = [beside(group[0], "b0", 0.02), beside(group[0], "b1", -0.02), beside(group[-1], "b2", 0.02)]
     cameras = [*group, *near]
     frames = []
     for camera in cameras:

@@ -1,7 +1,6 @@
 """Frames of any group of cameras -> evidence."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,8 +95,8 @@ def carve_images(
     rest = Explained(explained.model_depth, None)
     own = _carve_all(grid, images.of(*alone), explained, terms, complete, focus)
     # of one witness every camera is asked, also where several see through: who disputes counts
-    shared = (as_one(_carve_all(grid, images.of(*group), rest, terms, True, focus)) for group in near)
-    return merge([own, *(one if complete else replace(one, counts=None) for one in shared)])
+    shared = (_carve_all(grid, images.of(*group), rest, terms, True, focus) for group in near)
+    return merge([own, *(as_one(one, complete) for one in shared)])
 
 
 def _carve_all(

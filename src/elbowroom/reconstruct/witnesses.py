@@ -41,13 +41,15 @@ def witnesses(
     return tuple(those for those in members if len(those) > 1)
 
 
-def as_one(evidence: Evidence) -> Evidence:
+def as_one(evidence: Evidence, counted: bool) -> Evidence:
     """What cameras know that are one witness: at most one sees through.
 
     Args:
         evidence: of these cameras alone, all asked of every voxel.
+        counted: whether it keeps how many cameras see through and dispute.
     """
     planes = evidence.planes.copy()
     planes[TWO] = planes[THREE] = 0
     group = frozenset({frozenset(evidence.cameras)})
-    return Evidence(evidence.grid, evidence.cameras, planes, evidence.unexplained, evidence.counts, group)
+    counts = evidence.counts if counted else None
+    return Evidence(evidence.grid, evidence.cameras, planes, evidence.unexplained, counts, group)
