@@ -13,7 +13,7 @@ from elbowroom.files.json_rows import json_rows
 from elbowroom.monitor.rows import shares_pct
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.reconstruct import FreeSpace, warm_up
-from elbowroom.reconstruct.looking import found_at, refuse
+from elbowroom.reconstruct.looking import found_at, found_in_space, refuse
 from elbowroom.sensing import Snapshot
 from elbowroom.site.notes import notes_of
 from elbowroom.sources import Room
@@ -52,6 +52,7 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
             refuse(findings)
             steps.begin("reconstructing")
             space = room.space_of(snapshot)
+            findings = (*findings, *found_in_space(space))
             steps.begin("writing arrays")
             files = [save_npz(out_dir / "free_space.npz", space)]
             steps.begin("writing points")

@@ -30,7 +30,7 @@ class DepthCamera:
         depth_kind: "planar" (distance along the optical axis) or "radial" (distance from the camera centre).
         noise: sigma of depth over depth; None: exact.
         margin: goes before the margin of the call that uses this camera; None: the call's.
-        min_depth_m, max_depth_m: what lies outside, or at the greatest, is no return [m, in the camera's kind of depth].
+        min_depth_m, max_depth_m: what lies outside, or at the greatest, is no return [m, in its kind of depth].
         flying_pixels: whether steps in depth carve only to the nearer side; None: only where there is a noise model.
         mask: pixels that say nothing whatever they deliver, as if outside the image, shape (height, width), bool; None:
             none. They free nothing and dispute nothing.
@@ -78,7 +78,7 @@ class DepthCamera:
 
     @property
     def deepest_m(self) -> float:
-        """The greatest depth that is a return [m]: just short of `max_depth_m`, which drivers write where there is none."""
+        """The greatest depth that is a return [m]: just short of `max_depth_m`, often written for none."""
         return self.max_depth_m * (1.0 - AT_THE_END)
 
     @property

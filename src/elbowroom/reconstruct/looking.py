@@ -10,9 +10,9 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.contradiction.findings import contradictions
+from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.sensing import DepthFrame
 from elbowroom.sensing.values import look_at_images, look_at_setting
-from elbowroom.sensing.values.content import CONSTANT
 
 FIRST = 3
 """Moments of the same cameras and grid that are looked at; then they are known to be usable."""
@@ -56,8 +56,8 @@ def require_plausible(
     cameras: Sequence[DepthCamera],
     frames: Sequence[DepthFrame],
     margin: Margin | None = None,
-) -> None:
-    """Looks at the first moments of these cameras.
+) -> bool:
+    """Looks at the first moments of these cameras; whether this is one of them.
 
     Args:
         grid: the watched box.
@@ -72,14 +72,13 @@ def require_plausible(
     """
     passed = _passed(grid, tuple(cameras))
     if passed.moments >= FIRST:
-        return
+        return False
     findings = found_at(grid, cameras, frames, margin=margin)
     refuse(findings)
     for finding in findings:
-        # a wall made by hand is what one tries the library with
-        if finding.kind != CONSTANT:
-            warnings.warn(finding.text, ValueWarning, stacklevel=3)
+        warnings.warn(finding.text, ValueWarning, stacklevel=3)
     passed.moments += 1
+    return True
 
 
 def refuse(findings: Sequence[Finding]) -> None:
@@ -87,6 +86,21 @@ def refuse(findings: Sequence[Finding]) -> None:
     texts = [finding.text for finding in findings if finding.stops]
     if texts:
         raise ImplausibleError("; ".join(texts))
+
+
+def found_in_space(space: FreeSpace) -> tuple[Finding, ...]:
+    """Whether all of it is free and nothing in it is a surface: then nothing was seen that stands there.
+
+    Args:
+        space: all of the grid, without a focus.
+    """
+    if space.surface.any() or not space.free.all():
+        return ()
+    text = (
+        "all of the grid is free and nothing in it is a surface, no floor and no wall: if that is not so, check the "
+        "unit of depth, and numbers that stand for no return; if it is, let the grid reach to a surface that is seen"
+    )
+    return (Finding("no surface", (), text, stops=False),)
 
 
 @lru_cache(maxsize=GROUPS_KEPT)

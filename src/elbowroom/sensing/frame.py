@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import FrameError
 
-
 FARTHEST_M = 100.0
 """No depth camera measures half of its image beyond this [m]."""
 GLANCE = 4096
@@ -18,8 +17,8 @@ GLANCE = 4096
 class DepthFrame:
     """A depth image in metres. What is not a finite number above zero is no return.
 
-    It is what it was when it was made: pixels are copied, since drivers fill their buffers again. An array that owns its
-    pixels and was made read-only is kept as it is.
+    It is what it was when it was made: pixels are copied, since drivers fill their buffers again. An array that owns
+    its pixels and was made read-only is kept as it is.
 
     Args:
         camera: name of the camera.

@@ -122,7 +122,7 @@ class CameraEntry(CameraSettings):
     """One camera: its name, its place, and whatever is not shared.
 
     Its pose is `world_from_camera`, or a file of it, or where it is with where it looks, or with how it is turned: a
-    quaternion of the camera's axes (x right, y down, z forward) in the world, the order of its numbers in the key's name.
+    quaternion of the camera's axes (x right, y down, z forward) in the world, its order in the key's name.
     `pose_covariance` is what a calibration leaves open: of the rotation vector [rad], then the translation [m], in the
     camera's frame, true world_from_camera = world_from_camera @ exp(error). `sensor_margin` is that part of `margin`
     which is the sensor's own; a calibration adds its part to it, so that calibrating twice does not widen twice.

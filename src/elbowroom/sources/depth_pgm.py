@@ -42,7 +42,9 @@ def check_depth_pgm(path: Path, width: int, height: int) -> int:
     if kind is None:
         raise FrameError(f"{path}: not a PGM file, or cut off in its first bytes; expected a 16-bit PGM (P5)")
     if kind[1] != b"P5":
-        raise FrameError(f"{path}: {kind[1].decode()}, {KINDS[kind[1]]}; must be a binary PGM (P5) of 16 bits")
+        raise FrameError(
+            f"{path}: {kind[1].decode()}, {KINDS[kind[1]]}; must be a binary PGM (P5) of 16 bits"
+        )
     numbers, at = [], kind.end()
     for _ in range(3):
         found = _NUMBER.match(start, at)
@@ -57,13 +59,17 @@ def _fits(path: Path, numbers: list[int], begin: int, size: tuple[int, int]) -> 
     """Where the pixels begin; raises as `check_depth_pgm`."""
     width, height, greatest = numbers
     if (width, height) != size:
-        raise FrameError(f"{path}: {width} x {height} pixels, its camera has {size[0]} x {size[1]}{exchanged((width, height), size)}")
+        raise FrameError(
+            f"{path}: {width} x {height} pixels, its camera has {size[0]} x {size[1]}{exchanged((width, height), size)}"
+        )
     if not MOST_8_BIT < greatest <= MOST_16_BIT:
         bits = "8 bits" if 0 < greatest <= MOST_8_BIT else f"a greatest value of {greatest}"
         raise FrameError(f"{path}: {bits} of grey, must be 16 bits: a greatest value of 256 to 65535")
     wanted, there = 2 * width * height, path.stat().st_size - begin
     if there < wanted:
-        raise FrameError(f"{path}: truncated PGM, {there:,} bytes of pixels of {wanted:,}; record or copy it again")
+        raise FrameError(
+            f"{path}: truncated PGM, {there:,} bytes of pixels of {wanted:,}; record or copy it again"
+        )
     if there > wanted + 1:
         raise FrameError(f"{path}: {there:,} bytes of pixels, must be {wanted:,}: one image a file")
     return begin

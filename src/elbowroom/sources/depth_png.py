@@ -32,7 +32,9 @@ def check_depth_png(path: Path, width: int, height: int) -> None:
     with path.open("rb") as file:
         header = file.read(26)
     if len(header) < 26 or header[:8] != SIGNATURE or header[12:16] != b"IHDR":
-        raise FrameError(f"{path}: not a PNG file, or cut off in its first bytes; expected a 16-bit PNG or PGM")
+        raise FrameError(
+            f"{path}: not a PNG file, or cut off in its first bytes; expected a 16-bit PNG or PGM"
+        )
     found_width, found_height, depth, colour = struct.unpack(">IIBB", header[16:26])
     if (found_width, found_height) != (width, height):
         raise FrameError(

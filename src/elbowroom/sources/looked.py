@@ -7,6 +7,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.reconstruct.contradiction.findings import contradictions
 from elbowroom.sensing.values import look_at_images, look_at_setting
 from elbowroom.site import Site
+from elbowroom.site.plausible import look_at_site
 from elbowroom.sources.cameras import cameras_of
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
@@ -24,7 +25,7 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
         SiteError, FrameError: as `moments`.
     """
     grid, cameras = site.grid(), cameras_of(site)
-    found = list(look_at_setting(grid, cameras))
+    found = [*look_at_setting(grid, cameras), *look_at_site(site)]
     if site.entry.recording is not None and not any(finding.stops for finding in found):
         for group in _some(layout_of(site).moments()):
             frames = [image.read() for image in group]

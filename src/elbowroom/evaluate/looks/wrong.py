@@ -4,13 +4,13 @@ A kind is a function of a good scene and random numbers. Another kind is another
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.evaluate.looks.scene import MOST, Codes, Scene
-from elbowroom.geometry import DepthCamera
+from elbowroom.geometry import DepthCamera, Intrinsics
 
 Change = Callable[[Scene, np.random.Generator], Scene]
 
@@ -30,7 +30,7 @@ class Wrong:
     stops: bool = True
 
 
-def of_codes(change: Callable[[Codes, float, np.random.Generator], NDArray[np.floating]]) -> Change:
+def of_codes(change: Callable[[Codes, float, np.random.Generator], NDArray[np.number]]) -> Change:
     """Every image changed, pixel by pixel.
 
     Args:
@@ -110,7 +110,8 @@ def _placed(camera: DepthCamera, factor: float) -> DepthCamera:
 
 
 def _lens(camera: DepthCamera, **changes: float) -> DepthCamera:
-    return replace(camera, intrinsics=replace(camera.intrinsics, **changes))
+    intrinsics = Intrinsics(**{**asdict(camera.intrinsics), **changes})
+    return replace(camera, intrinsics=intrinsics)
 
 
 def _full_size(camera: DepthCamera, factor: float) -> DepthCamera:
@@ -199,4 +200,4 @@ WRONG: Mapping[str, Wrong] = {
         ("principal point",),
     ),
 }
-"""By name. What is wrong with one camera, or can be told only by what cameras contradict, is added by who looks for it."""
+"""By name. What can be told only by what cameras contradict is `evaluate contradictions`'."""

@@ -14,7 +14,7 @@ LEAST_UNIT_M = 4e-4
 """Units from here on make 255 of them nearer than sensors measure."""
 FEW = 3
 ROUGH, SMOOTHER = 0.15, 0.2
-"""Neighbours that differ by more than this share (median) are no image of surfaces; with bytes exchanged, by so much less."""
+"""Neighbours that differ by more than this share (median) are no surfaces; with bytes exchanged, by so much less."""
 LEAST_PAIRS = 100
 
 
@@ -36,11 +36,12 @@ def look_at_content(images: Sequence[Thinned], *, of_all: bool = True) -> list[F
 def _empty(image: Thinned, are_all: bool) -> Finding:
     name = image.camera.name
     if not image.given.any():
-        text = "no pixel has a return, all are 0, 65535 or no number: it sees nothing, and disputes all that it looks at"
+        text = "no pixel has a return, all are 0, 65535 or no number: it sees nothing, and disputes what it looks at"
         return Finding(EMPTY, (name,), text, are_all)
     depth = image.here[image.given].astype(float)
     text = (
-        f"no pixel has a return from {image.camera.min_depth_m:g} to {image.camera.max_depth_m:g} m, its range; what it "
+        f"no pixel has a return from {image.camera.min_depth_m:g} to {image.camera.max_depth_m:g} m, its range; "
+        "what it "
         f"delivers is {depth.min():.4g} to {depth.max():.4g} m: check depth_scale_m, min_depth_m and max_depth_m"
     )
     return Finding(EMPTY, (name,), text, are_all)
@@ -66,9 +67,11 @@ def _small_codes(image: Thinned) -> list[Finding]:
 def _constant(image: Thinned) -> list[Finding]:
     """One number wherever there is one: what no sensor delivers."""
     depth = image.here[image.given]
-    if depth.size < LEAST_PAIRS or depth.min() != depth.max():
+    if depth.size < LEAST_PAIRS or depth.min() != depth.max() or image.may_face_a_wall:
         return []
-    text = f"every pixel that has a depth says exactly {float(depth[0]):.6g} m: no sensor measures so; is it the depth image?"
+    text = (
+        f"each pixel with a depth says exactly {float(depth[0]):.6g} m: no sensor measures so; is this depth?"
+    )
     return [Finding(CONSTANT, (image.camera.name,), text, stops=False)]
 
 

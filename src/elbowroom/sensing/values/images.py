@@ -46,12 +46,13 @@ def found_in(images: Sequence[Thinned], grid: VoxelGrid, *, of_all: bool = True)
     Args:
         images: one of each camera.
         grid: the watched box.
-        of_all: these are all cameras of the room, so that what all of them say can be told from what one says.
+        of_all: these are all cameras of the room, at a first moment; else one that is asked again.
     """
     if not images:
         return []
     findings = look_at_content(images, of_all=of_all)
-    findings += look_at_inverses(_returning(_without(images, findings)))
+    if of_all:
+        findings += look_at_inverses(_returning(_without(images, findings)))
     findings += look_at_sentinels(_returning(_without(images, findings)), grid)
     return findings + (look_at_units(_without(images, findings), grid) if of_all else [])
 

@@ -31,8 +31,10 @@ def look_at_inverses(images: Sequence[Thinned]) -> list[Finding]:
         inverse, depth = votes(image)
         if inverse >= LEAST_VOTES and inverse >= LEAST_SHARE * (inverse + depth):
             text = (
-                f"surfaces are straight in its values, not in their reciprocals ({inverse} places of {inverse + depth}): "
-                "this is disparity or inverse depth, where near is large. Give depth: baseline x focal length / disparity"
+                f"surfaces are straight in its values, not in their reciprocals ({inverse} places of "
+                f"{inverse + depth}): "
+                "this is disparity or inverse depth, where near is large. Give depth: baseline x focal length / "
+                "disparity"
             )
             findings.append(Finding(KIND, (image.camera.name,), text, stops=True))
     return findings

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera, Intrinsics
-from elbowroom.sensing.rectify import index_map_of
+from elbowroom.sensing.rectify import IndexMap, index_map_of
 
 VIEW, FOCAL, CENTRE, DISTORTION, WIDE = (
     "field of view",
@@ -83,26 +83,30 @@ def _focal(camera: DepthCamera) -> Iterator[Finding]:
     across, down = field_of_view_deg(camera)
     if max(across, down) > WIDEST_DEG:
         unit = (
-            f"for an image of size 1: times the image's size fx is {k.fx * camera.width:.4g}, fy {k.fy * camera.height:.4g}, "
+            f"for an image of size 1: times the image's size fx is {k.fx * camera.width:.4g}, fy "
+            f"{k.fy * camera.height:.4g}, "
             f"cx {k.cx * camera.width - 0.5:.4g}, cy {k.cy * camera.height - 0.5:.4g}"
             if 0 <= k.cx <= 1.5 and 0 <= k.cy <= 1.5
             else "in millimetres, or of another image: it must be in pixels of this image"
         )
         text = (
-            f"fx {k.fx:g}, fy {k.fy:g} on {size} is a field of view of {max(across, down):.0f} degrees; most likely the "
+            f"fx {k.fx:g}, fy {k.fy:g} on {size} is a field of view of {max(across, down):.0f} degrees; most "
+            "likely the "
             f"intrinsics are {unit}"
         )
         yield Finding(VIEW, (camera.name,), text, stops=True)
         return
     if max(across, down) < NARROWEST_DEG:
         text = (
-            f"fx {k.fx:g}, fy {k.fy:g} on {size} is a field of view of {across:.1f} x {down:.1f} degrees; no depth camera "
+            f"fx {k.fx:g}, fy {k.fy:g} on {size} is a field of view of {across:.1f} x {down:.1f} degrees; no "
+            "depth camera "
             "sees so little: most likely the intrinsics are of a larger image"
         )
         yield Finding(VIEW, (camera.name,), text, stops=max(across, down) < NARROWEST_DEG / 4)
     if max(k.fx, k.fy) > UNEQUAL * min(k.fx, k.fy):
         text = (
-            f"fx {k.fx:g} and fy {k.fy:g} differ by a factor of {max(k.fx, k.fy) / min(k.fx, k.fy):.2g}, pixels would not be "
+            f"fx {k.fx:g} and fy {k.fy:g} differ by a factor of {max(k.fx, k.fy) / min(k.fx, k.fy):.2g}, pixels "
+            "would not be "
             "square: check both, and that both belong to this size of image"
         )
         yield Finding(FOCAL, (camera.name,), text, stops=False)
@@ -127,13 +131,16 @@ def _principal_point(camera: DepthCamera) -> Iterator[Finding]:
     if alike:
         wide, high = round(camera.width * factor), round(camera.height * factor)
         text = (
-            f"{size} is not its middle but that of an image of about {wide} x {high}: most likely the intrinsics are of that "
-            f"size; for this one fx is {k.fx / factor:.4g}, fy {k.fy / factor:.4g}, cx {(k.cx + 0.5) / factor - 0.5:.4g}, "
+            f"{size} is not its middle but that of an image of about {wide} x {high}: most likely the intrinsics "
+            "are of that "
+            f"size; for this one fx is {k.fx / factor:.4g}, fy {k.fy / factor:.4g}, cx "
+            f"{(k.cx + 0.5) / factor - 0.5:.4g}, "
             f"cy {(k.cy + 0.5) / factor - 0.5:.4g}"
         )
     else:
         text = (
-            f"{size} lies outside the middle half; for an image that was cut out, subtract where the cut begins, else check "
+            f"{size} lies outside the middle half; for an image that was cut out, subtract where the cut begins, "
+            "else check "
             "that the intrinsics are of this size of image"
         )
     outside = not (0 <= across <= 1 and 0 <= down <= 1)
@@ -155,17 +162,20 @@ def _distortion(camera: DepthCamera) -> Iterator[Finding]:
             f"its lens model covers {covered:.0%} of the image"
             f"{large if tangential > TANGENTIAL else ''}; "
             + (
-                f"in the order {words} the coefficients cover {other:.0%}: write them as k1 k2 p1 p2 k3 [k4 k5 k6], as OpenCV "
+                f"in the order {words} the coefficients cover {other:.0%}: write them as k1 k2 p1 p2 k3 [k4 k5 "
+                "k6], as OpenCV "
                 "does"
                 if words
-                else "check the coefficients, their order (k1 k2 p1 p2 k3 [k4 k5 k6]) and that they are of this lens; all "
+                else "check the coefficients, their order (k1 k2 p1 p2 k3 [k4 k5 k6]) and that they are of this "
+                "lens; all "
                 "beyond is not used"
             )
         )
         yield Finding(DISTORTION, (camera.name,), text, stops=bool(words) or tangential > TANGENTIAL)
     elif used < USED:
         text = (
-            f"{1 - used:.0%} of its image is not used: it lies beyond the pinhole image of the same size and focal length; "
+            f"{1 - used:.0%} of its image is not used: it lies beyond the pinhole image of the same size and "
+            "focal length; "
             "the rest of the room is not seen by it"
         )
         yield Finding(WIDE, (camera.name,), text, stops=False)
@@ -196,7 +206,7 @@ def _better_order(camera: DepthCamera) -> tuple[str, float]:
         if covered > best:
             best, words = covered, name
     tangential = max(abs(c[2]), abs(c[3])) > TANGENTIAL
-    return (words, best) if best >= given + (0.0 if tangential else BETTER) and words else ("", 0.0)
+    return (words, best) if words and best >= (0.8 * given if tangential else given + BETTER) else ("", 0.0)
 
 
 @lru_cache(maxsize=CAMERAS_KEPT)
@@ -219,7 +229,7 @@ def lens_shares(intrinsics: Intrinsics, width: int, height: int) -> tuple[float,
     return float(np.mean(seen)), float(np.mean(used))
 
 
-def _corners(index: NDArray, seen: NDArray[np.bool_]) -> Iterator[tuple[NDArray, NDArray, int]]:
+def _corners(index: IndexMap, seen: NDArray[np.bool_]) -> Iterator[tuple[NDArray, NDArray, int]]:
     first_u, last_u, first_v, last_v = (edge[seen].astype(np.int64) for edge in index)
     yield first_v, first_u, 1
     yield first_v, last_u + 1, -1

@@ -46,7 +46,7 @@ def _distance(camera: DepthCamera, grid: VoxelGrid) -> list[Finding]:
     away = distance_m(grid, camera.centre_in_world)
     if away <= min(FAR_M, camera.max_depth_m):
         return []
-    unit = unit_of_length(grid, camera.centre_in_world)
+    unit = unit_of_length(grid, camera.centre_in_world) if away > FAR_M else ""
     where = ", ".join(f"{value:.5g}" for value in camera.centre_in_world)
     text = f"stands at ({where}), {away:.4g} m from the grid"
     if away > camera.max_depth_m:

@@ -15,7 +15,7 @@ SHARE = 0.02
 """Of all pixels: what one exact number must fill before it is looked at closely."""
 LEAST_PIXELS = 40
 AROUND, LONELY = 0.07, 0.05
-"""Values this near to it, as a share of it, are fewer than this share of its count: sensors scatter, sentinels do not."""
+"""Values this near to it, as a share of it, are fewer than this share of its count: sensors scatter."""
 ABOVE = 0.005
 """Of the returns: so few may lie beyond what is called the greatest value."""
 JOINED = 0.1
@@ -23,6 +23,8 @@ JOINED = 0.1
 SMALL_STEP = 0.04
 OUTSIDE = 0.5
 """So large a share of its pixels lies behind the grid: a wall or a floor of the grid does not."""
+ROUND_M, FAR_BEHIND = 0.5, 1.6
+"""Where a wall may have one depth all over, a number must be round, or so much farther than the grid's end."""
 MOST = 3
 """So many different sentinels may be in one image."""
 SLACK = 0.1
@@ -39,12 +41,14 @@ class Spike(NamedTuple):
         share: of all pixels.
         joined: share of the steps at its edges that are small.
         outside: share of its pixels that lie behind the grid.
+        reach: median of its distance over where the rays leave the grid.
     """
 
     value_m: float
     share: float
     joined: float
     outside: float
+    reach: float
 
 
 def look_at_sentinels(images: Sequence[Thinned], grid: VoxelGrid) -> list[Finding]:
@@ -67,8 +71,7 @@ def look_at_sentinels(images: Sequence[Thinned], grid: VoxelGrid) -> list[Findin
     for name, found in spikes.items():
         for spike in found:
             same = len(cameras_by_value[round(spike.value_m, 5)])
-            is_one = spike.joined < JOINED and (spike.outside >= OUTSIDE or same > 1)
-            if is_one or (spike.joined < JOINED and _is_high(spike.value_m, of[name])):
+            if _is_one(spike, of[name], same):
                 findings.append(_finding(name, spike, of[name]))
     findings += [found for image in images for found in _at_the_end(image)]
     return findings + [found for image in images for found in _high_codes(image, findings)]
@@ -97,7 +100,7 @@ def _spikes(image: Thinned, grid: VoxelGrid) -> list[Spike]:
                 value,
                 count / image.here.size,
                 _joined(image, values[most]),
-                _outside(image, values[most], grid),
+                *_outside(image, values[most], grid),
             )
         )
         values, counts = values[:most], counts[:most]
@@ -105,9 +108,7 @@ def _spikes(image: Thinned, grid: VoxelGrid) -> list[Spike]:
 
 
 def _joined(image: Thinned, value: np.float32) -> float:
-    """Of the places where the value ends at another return, the share where the step is small; 1: there are none, as of a
-    wall that fills the image.
-    """
+    """Of the places where the value ends at another return, the share where the step is small; 1: there are none."""
     small = edges = 0
     is_it = image.here == value
     for beside in (image.right, image.below):
@@ -119,15 +120,28 @@ def _joined(image: Thinned, value: np.float32) -> float:
     return small / edges if edges else 1.0
 
 
-def _outside(image: Thinned, value: np.float32, grid: VoxelGrid) -> float:
-    """Share of the value's pixels whose ray has left the grid before it, of those that cross the grid."""
+def _is_one(spike: Spike, image: Thinned, same: int) -> bool:
+    """Whether a spike is no surface; `same` cameras have this number."""
+    if spike.joined >= JOINED:
+        return False
+    if _is_high(spike.value_m, image):
+        return True
+    if image.may_face_a_wall:
+        round_m = abs(spike.value_m / ROUND_M - round(spike.value_m / ROUND_M)) < 1e-3
+        return spike.outside >= OUTSIDE and (round_m or spike.reach >= FAR_BEHIND)
+    return spike.outside >= OUTSIDE or same > 1
+
+
+def _outside(image: Thinned, value: np.float32, grid: VoxelGrid) -> tuple[float, float]:
+    """Of the value's pixels that cross the grid, the share whose ray has left it before, and how much farther it is."""
     is_it = image.here == value
     enters, leaves = way_through(grid, image.camera.centre_in_world, image.rays_in_world[is_it])
     crosses = leaves > enters
     if not crosses.any():
-        return 0.0
+        return 0.0, 0.0
     slack = SLACK * float(np.linalg.norm(grid.upper_m - grid.lower_m))
-    return float(np.mean(image.ranges_m[is_it][crosses] > leaves[crosses] + slack))
+    ranges, ends = image.ranges_m[is_it][crosses], leaves[crosses]
+    return float(np.mean(ranges > ends + slack)), float(np.median(ranges / np.maximum(ends, 1e-6)))
 
 
 def _is_high(value_m: float, image: Thinned) -> bool:
@@ -138,7 +152,8 @@ def _is_high(value_m: float, image: Thinned) -> bool:
 def _finding(name: str, spike: Spike, image: Thinned) -> Finding:
     code = "" if image.unit_m is None else f" (raw {round(spike.value_m / image.unit_m)})"
     text = (
-        f"{spike.share:.0%} of the pixels are exactly {spike.value_m:.6g} m{code}, the greatest value, and no surface leads "
+        f"{spike.share:.0%} of the pixels are exactly {spike.value_m:.6g} m{code}, the greatest value, and no "
+        "surface leads "
         "up to it: most likely what the driver writes where there is no return, and all before it would read free. "
         f"Set max_depth_m: {spike.value_m:.6g} (a depth at it is no return), or write 0 there"
     )
@@ -153,7 +168,7 @@ def _at_the_end(image: Thinned) -> list[Finding]:
     share = float(np.mean(_near(image.here, end)))
     if share < SHARE:
         return []
-    text = f"{share:.0%} of the pixels are exactly {end:g} m, the camera's max_depth_m: taken as no return, not as a surface"
+    text = f"{share:.0%} of the pixels are exactly {end:g} m, its max_depth_m: taken as no return, not as a surface"
     return [Finding("at max_depth_m", (image.camera.name,), text, stops=False)]
 
 
@@ -173,7 +188,8 @@ def _high_codes(image: Thinned, said: Sequence[Finding]) -> list[Finding]:
     if share < SHARE or (rest.size and rest[-1] > 0.8 * HIGHEST_CODES * image.unit_m):
         return []
     text = (
-        f"{share:.0%} of the pixels are raw codes from {HIGHEST_CODES} to 65534, far above all others: most likely what "
+        f"{share:.0%} of the pixels are raw codes from {HIGHEST_CODES} to 65534, far above all others: most "
+        "likely what "
         "the driver writes where there is no return, and all before them would read free. Set max_depth_m to the "
         "sensor's range, or write 0 there"
     )

@@ -15,6 +15,8 @@ PIXELS = 4800
 """About so many pixels of an image are looked at: 80 x 60."""
 UNITS_M = (0.001, 0.00025, 0.0001, 0.0002, 0.000125, 0.0005, 0.001 / 16, 1e-5, 1 / 256, 0.01)
 """Units of depth images that are in use [m], the usual ones first."""
+ALONG_AN_AXIS = 0.99999
+"""Cosine of the angle between the optical axis and the axis of the world that is nearest."""
 CAMERAS_KEPT = 256
 
 Floats = NDArray[np.floating]
@@ -59,6 +61,12 @@ class Thinned:
         """Distance of each pixel's point from the camera's centre, shape (rows, columns) [m]; 0: no return."""
         depth = np.where(self.returns, self.here, 0).astype(np.float64)
         return depth if self.camera.depth_kind == "radial" else depth * self.over_planar
+
+    @property
+    def may_face_a_wall(self) -> bool:
+        """Whether a wall or a floor may have one depth all over, without noise: it looks along an axis of the world."""
+        along = float(np.abs(self.camera.world_from_camera[:3, 2]).max())
+        return self.camera.depth_kind == "planar" and along > ALONG_AN_AXIS
 
     @property
     def rays_in_world(self) -> NDArray[np.float64]:
@@ -107,8 +115,8 @@ def thinned(camera: DepthCamera, frame: DepthFrame, unit_m: float | None = None)
 
 @lru_cache(maxsize=CAMERAS_KEPT)
 def rays_of(camera: DepthCamera, step: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Directions of every so many pixels, of length one, shape (rows, columns, 3), world frame; and how much longer than
-    their part along the axis they are, shape (rows, columns).
+    """Directions of every so many pixels, of length one, world frame, shape (rows, columns, 3); and how much longer
+    than their part along the axis they are, shape (rows, columns).
 
     Args:
         camera: its lens is taken out as far as its model reaches.

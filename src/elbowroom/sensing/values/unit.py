@@ -83,9 +83,7 @@ def _one(image: Thinned, ends: Ends, slack: float) -> list[Finding]:
     stands, about = _standing(ends, slack), (image.camera.name,)
     if stands.reach >= 2.5 and stands.behind >= 0.95 and stands.within <= 0.03:
         return [Finding(KIND, about, _too_far(stands, image, ends, slack), stops=False)]
-    if stands.reach <= 0.1:
-        return [Finding(KIND, about, _too_near(stands, image, ends, slack), stops=False)]
-    return []
+    return []  # one that is too near may look at a cabinet, and frees nothing
 
 
 def _ends(image: Thinned, grid: VoxelGrid) -> Ends:
@@ -118,15 +116,18 @@ def _standing(ends: Ends, slack: float, factor: float = 1.0) -> Standing:
 def _too_far(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str:
     return (
         f"{stands.behind:.0%} of what looks through the grid ends behind it, {stands.median_m:.3g} m away (median), "
-        f"{stands.reach:.2g} times as far as the grid's end: all before it reads free. Most likely the unit of depth: "
-        f"{_advice(stands, image, ends, slack)}. If there is truly nothing in the box, let it reach to a floor or wall "
+        f"{stands.reach:.2g} times as far as the grid's end: all before it reads free. Most likely the unit of "
+        "depth: "
+        f"{_advice(stands, image, ends, slack)}. If there is truly nothing in the box, let it reach to a floor or "
+        "wall "
         "that cameras see"
     )
 
 
 def _too_near(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str:
     return (
-        f"what looks through the grid ends {stands.median_m:.3g} m away (median), at {stands.reach:.0%} of the way to the "
+        f"what looks through the grid ends {stands.median_m:.3g} m away (median), at {stands.reach:.0%} of the "
+        "way to the "
         "grid's end: next to nothing can read free. Most likely the unit of depth, or something before the lens: "
         f"{_advice(stands, image, ends, slack)}"
     )

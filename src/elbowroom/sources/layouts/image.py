@@ -3,6 +3,9 @@
 from pathlib import Path
 from typing import NamedTuple, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import DepthFrame
 from elbowroom.site.site import Site
@@ -48,10 +51,13 @@ class Image(NamedTuple):
         Raises:
             FrameError: the file is not what its camera delivers.
         """
-        raw = read_depth_image(self.path, self.camera.width, self.camera.height)
         return DepthFrame.from_raw(
-            self.camera.name, self.stamp_ns, raw, scale_m=self.scale_m, bias_m=self.bias_m
+            self.camera.name, self.stamp_ns, self.raw(), scale_m=self.scale_m, bias_m=self.bias_m
         )
+
+    def raw(self) -> NDArray[np.uint16]:
+        """The sensor's whole numbers, shape (height, width); raises as `read`."""
+        return read_depth_image(self.path, self.camera.width, self.camera.height)
 
     def check(self) -> None:
         """Looks at the file's header alone; raises FrameError as `read` would."""
