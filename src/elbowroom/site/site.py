@@ -125,6 +125,7 @@ class Site:
             self.margin(),
             self.max_age_ns,
             self.explain_tolerance_m,
+            witness_angle_deg=self.entry.witness_angle_deg,
         )
 
     def margin(self) -> Margin:
