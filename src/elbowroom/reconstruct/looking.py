@@ -44,11 +44,11 @@ def found_at(
     setting = look_at_setting(grid, cameras)
     if any(finding.stops for finding in setting):
         return setting
-    return (
-        *setting,
-        *look_at_images(grid, cameras, frames, units_m),
-        *contradictions(cameras, frames, margin or Margin()),
-    )
+    images = look_at_images(grid, cameras, frames, units_m)
+    if any(finding.stops for finding in images):
+        # images that cannot be right contradict each other as well: that says nothing new
+        return (*setting, *images)
+    return (*setting, *images, *contradictions(cameras, frames, margin or Margin()))
 
 
 def require_plausible(

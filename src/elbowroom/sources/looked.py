@@ -32,7 +32,9 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
             found += look_at_images(
                 grid, cameras, frames, {image.camera.name: image.unit_m for image in group}
             )
-            found += contradictions(cameras, frames, site.margin())
+            # images that cannot be right contradict each other as well: that says nothing new
+            if not any(finding.stops for finding in found):
+                found += contradictions(cameras, frames, site.margin())
     return once(found)
 
 
