@@ -287,7 +287,13 @@ class Site:
     @cached_property
     def _machine(self) -> Machine | None:
         given = self.entry.machine
-        return None if given is None else self._blame("machine", lambda: given.build(self.path.parent))
+        if given is None:
+            return None
+        machine = self._blame("machine", lambda: given.build(self.path.parent))
+        if given.free_base is None:
+            return machine
+        kind = given.free_base
+        return self._blame("machine", lambda: machine.with_free_base(kind))
 
     def motions(self, machine: Machine) -> tuple[Motion, ...]:
         """Each joint that has a speed, in both directions, with its braking distance at full speed.
