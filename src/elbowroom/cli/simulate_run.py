@@ -108,7 +108,7 @@ def simulate_walls(asked: Asked, options: WallOptions, json: Path | None) -> Non
     refuse_foreign(out / "images")
     with json_rows(json) as add, Steps(Console(stderr=True), asked.moments + 3) as steps:
         steps.begin("reading the room")
-        around, joints = _walled(asked, options, box)
+        around, joints = _walled(asked, options, box, cameras)
         if joints is None and asked.joints:
             raise InputError("--joints: without a machine there are none; leave out --joints or --no-machine")
         machine = None if joints is None else ceiling_c_arm()
@@ -222,7 +222,7 @@ def _check_outside(shot: Shot, options: str) -> None:
 
 
 def _walled(
-    asked: Asked, options: WallOptions, box: VoxelGrid
+    asked: Asked, options: WallOptions, box: VoxelGrid, cameras: tuple[DepthCamera, ...]
 ) -> tuple[Surroundings, dict[str, float] | None]:
     """The room without a site, and where the C-arm is; None: it is not there."""
     assert asked.room is not None
@@ -236,7 +236,8 @@ def _walled(
         raise InputError(f"{asked.room}: no object reaches into the box {options.box}; give another --box")
     floor = Floor(box.lower_m[:2], box.upper_m[:2], floor_height(box, solids) if asked.people else 0.0)
     joints = {**usual, **(asked.joints or {})} if options.machine else None
-    return Surroundings(box, solids, (), floor), joints
+    eyes = np.array([camera.centre_in_world for camera in cameras])
+    return Surroundings(box, solids, (), floor, eyes), joints
 
 
 def _meets(vertices: np.ndarray, grid: VoxelGrid) -> bool:

@@ -124,12 +124,12 @@ class SiteRoom:
         box, walls = self.box, self.walls_m
         lower, upper = box.lower_m[:2], box.upper_m[:2]
         if walls is None:
-            return Surroundings(
-                box, self.solids, self.surfaces, Floor(lower, upper, floor_height(box, self.solids))
-            )
-        lower, upper = np.maximum(lower - 0.5, walls[0, :2]), np.minimum(upper + 0.5, walls[1, :2])
-        floor = Floor(lower, upper, float(walls[0, 2]))
-        return Surroundings(box, self.solids, self.surfaces, floor)
+            floor = Floor(lower, upper, floor_height(box, self.solids))
+        else:
+            lower, upper = np.maximum(lower - 0.5, walls[0, :2]), np.minimum(upper + 0.5, walls[1, :2])
+            floor = Floor(lower, upper, float(walls[0, 2]))
+        eyes = np.array([camera.centre_in_world for camera in self.cameras])
+        return Surroundings(box, self.solids, self.surfaces, floor, eyes)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

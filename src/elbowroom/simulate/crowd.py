@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
+from scipy.spatial import cKDTree
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid
@@ -30,7 +31,7 @@ STANCES = 12
 """A way is tried at so many places with the body that walks it."""
 TRIED = 60
 """So many ways are tried with a body, the best first."""
-NEARNESS = 0.5
+NEARNESS = 0.2
 """A way that is longer by its half axes may be farther from the place by so much of it."""
 ELBOWS_RAD = (1.2, 0.3)
 HEIGHTS_M = (1.75, 1.68, 1.82)
@@ -79,14 +80,14 @@ class Floor:
 def walkers(
     count: int, floor: Floor, taken: Taken, past_m: NDArray[np.float64], nearest_s: float
 ) -> tuple[Walker, ...]:
-    """People who walk as near past a place as there is room, and touch nothing.
+    """People who walk as near past some places as there is room, and touch nothing.
 
     Args:
         count: how many.
         floor: where they may be.
         taken: of the floor's grid, by what is in their way; also by where a machine comes to be.
-        past_m: the place, x and y, shape (2,) [m].
-        nearest_s: when they are nearest to it [s]; one after the other is later by two seconds.
+        past_m: the places, x and y, shape (n, 2) [m].
+        nearest_s: when they are nearest to one of them [s]; one after the other is later by two seconds.
 
     Raises:
         InputError: there is no way for so many.
@@ -127,6 +128,7 @@ def _ways(floor: Floor, taken: Taken, past_m: NDArray[np.float64]) -> Iterator[W
     room_m = distance_transform_edt(np.pad(~plan, 1))[1:-1, 1:-1] * EDGE_M
     lower, grid = floor.lower_m, taken.grid
     middles = [np.arange(lower[i], floor.upper_m[i], STEP_M) for i in (0, 1)]
+    near = cKDTree(past_m)
     turns = np.linspace(0, 2 * math.pi, 24, endpoint=False)
     rated = []
     for centre in itertools.product(*middles):
@@ -137,7 +139,7 @@ def _ways(floor: Floor, taken: Taken, past_m: NDArray[np.float64]) -> Iterator[W
                 continue
             if room_m[index[:, 0], index[:, 1]].min() < SPARE_M:
                 continue
-            distances = np.linalg.norm(points - past_m, axis=1)
+            distances = near.query(points)[0]
             nearest = int(distances.argmin())
             rated.append((float(distances[nearest]) - NEARNESS * sum(radii), centre, radii, turns[nearest]))
     for _, centre, radii, turn in sorted(rated, key=lambda way: way[0]):

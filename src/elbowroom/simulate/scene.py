@@ -5,12 +5,14 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.geometry import VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.simulate.crowd import Floor, Walker, walkers
 from elbowroom.simulate.machine_solids import link_solids
 from elbowroom.simulate.postures import Postures
+from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Moment, Solid
 from elbowroom.simulate.swing import Swing
 from elbowroom.simulate.taken import Taken, fine_grid
@@ -18,8 +20,10 @@ from elbowroom.simulate.taken import Taken, fine_grid
 NEAREST_AT = 0.7
 """People are nearest to the machine after this share of the time that is looked at."""
 
-FROM_MACHINE_M = 0.1
-"""So near people come to where the machine will be [m]."""
+SPARE_M = 0.1
+"""So near people come to where the machine will be, and to cameras [m]."""
+HOUSING_M = 0.2
+"""A camera takes so much space, with what is right before it [m]."""
 MACHINE_PLACES = 12
 """At so many moments it is looked where that is."""
 
@@ -89,12 +93,14 @@ class Surroundings:
         solids: closed, never move.
         surfaces: meshes without an inside.
         floor: where people may be.
+        eyes_m: where cameras are, shape (n, 3), world frame [m]; nobody walks through them.
     """
 
     box: VoxelGrid
     solids: tuple[Solid, ...]
     surfaces: tuple[Solid, ...]
     floor: Floor
+    eyes_m: NDArray[np.float64]
 
     @property
     def fixed(self) -> tuple[Solid, ...]:
@@ -123,7 +129,7 @@ def scene_in(around: Surroundings, machine: Machine | None, course: Course) -> S
     people: tuple[Walker, ...] = ()
     if course.people:
         taken = Taken.of(around.floor.grid, around.solids, around.surfaces)
-        taken = taken.with_more(Taken.of(taken.grid, links).grown(FROM_MACHINE_M))
+        taken = taken.with_more(Taken.of(taken.grid, [*links, *_housings(around.eyes_m)]).grown(SPARE_M))
         nearest_s = start_s + NEAREST_AT * (end_s - start_s)
         people = walkers(course.people, around.floor, taken, _past(around, links), nearest_s)
     return Scene(around.fixed, machine, swing, people, start_s, notes)
@@ -154,9 +160,15 @@ def _swing(around: Surroundings, machine: Machine | None, course: Course) -> tup
     return swing, tuple(notes)
 
 
-def _past(around: Surroundings, links: Sequence[Solid]) -> np.ndarray:
-    """The middle of the machine's links from above, or of the box, x and y [m]."""
+def _housings(eyes_m: NDArray[np.float64]) -> list[Solid]:
+    cube = join([box((-HOUSING_M / 2,) * 3, (HOUSING_M / 2,) * 3)])
+    placed = np.tile(np.eye(4), (len(eyes_m), 1, 1))
+    placed[:, :3, 3] = eyes_m
+    return [Solid("camera", cube, world_from_camera) for world_from_camera in placed]
+
+
+def _past(around: Surroundings, links: Sequence[Solid]) -> NDArray[np.float64]:
+    """Where the machine will be, or the box's middle, seen from above, shape (n, 2) [m]."""
     if not links:
-        return (around.box.lower_m + around.box.upper_m)[:2] / 2
-    corners = np.concatenate([link.vertices_in_world for link in links])
-    return (corners.min(axis=0) + corners.max(axis=0))[:2] / 2
+        return (around.box.lower_m + around.box.upper_m)[None, :2] / 2
+    return np.concatenate([link.vertices_in_world[:, :2] for link in links])
