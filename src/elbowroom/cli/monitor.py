@@ -37,6 +37,12 @@ def monitor(
     resolution: Annotated[
         str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
     ] = None,
+    noise: Annotated[
+        str | None,
+        typer.Option(
+            help="Of a simulated room's cameras: exact, or a sensor such as tof, realsense_d435. Default: the site's."
+        ),
+    ] = None,
     rule: Rule = None,
     detail: Detail = None,
     joints: JointsText = None,
@@ -57,7 +63,9 @@ def monitor(
     """Watch a room and say, per joint and direction, how far the machine may go.
 
     Without SITE: a simulated intervention room, where people walk and a C-arm
-    moves. A site with a recording plays it once. Ctrl-C ends with a summary.
+    moves, before perfect cameras; --noise tof --resolution 640x480 shows it with
+    real ones. A site with a recording plays it once. Without a machine, or without
+    speeds of its joints, it says what is free. Ctrl-C ends with a summary.
 
     Cameras that were commissioned (`elbowroom calibrate commission`) are watched:
     one that moved, or a machine that is not where its joints say, stops every
@@ -73,7 +81,9 @@ def monitor(
     from elbowroom.site import Site
     from elbowroom.sources import open_room
 
-    with options_named(joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock"):
+    with options_named(
+        joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock", noise="--noise"
+    ):
         room = open_room(
             Site.simulated_room() if site is None else Site.load(site),
             voxel_size_m=voxel_size,
@@ -82,6 +92,7 @@ def monitor(
             joints=positions,
             cameras=cameras,
             resolution=size_px,
+            noise=noise,
             knocks=knock or (),
         )
         _watch(room, seconds, json, out)
@@ -101,13 +112,20 @@ def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir:
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
-    room.machine_and_motions()  # said before anything is compiled
+    unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
     with json_rows(json_file) as add, TerminalView(console) as view:
         for note in notes_of(room.site):
             view.note(note)
-        compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
+        if unasked is not None:
+            view.note(unasked)
+        compile_kernels(
+            console,
+            machine=room.machine is not None,
+            motion=unasked is None,
+            simulator=room.site.simulated is not None,
+        )
         with Steps(console, 4) as steps:
             loop = started(room, steps.begin)
         if loop.checks.unwatched is not None:

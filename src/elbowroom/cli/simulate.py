@@ -154,5 +154,7 @@ def simulate(
 def _people(moving: list[str]) -> int:
     for who in moving:
         if who != "person":
-            raise InputError(f"--moving: {who!r} does not move here; allowed is person, once for each of them")
+            raise InputError(
+                f"--moving: {who!r} does not move here; allowed is person, once for each of them"
+            )
     return len(moving)

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.cli.noise import noise_named
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
@@ -21,7 +20,7 @@ from elbowroom.site import Site
 from elbowroom.site.paths import expand
 from elbowroom.site.recording_entry import SevenScenes, StampedFolder
 from elbowroom.site.written import camera_entry, said_again, written
-from elbowroom.sources import cameras_of
+from elbowroom.sources.cameras import cameras_of, with_noise
 from elbowroom.sources.recorder import UNIT_M
 from elbowroom.sources.recording_folder import Units
 
@@ -175,7 +174,7 @@ def site_room(path: Path, room: str | None, out: Path | None, noise: str | None)
         raise InputError(f"noise: {path} would not say so; change it there, or give --out DIR")
     cameras = cameras_of(site)
     if noise is not None:
-        cameras = tuple(with_noise(camera, noise) for camera in cameras)
+        cameras = with_noise(cameras, noise)
     solids, surfaces, walls = _solids(site, room)
     return SiteRoom(
         site=site,
@@ -189,19 +188,6 @@ def site_room(path: Path, room: str | None, out: Path | None, noise: str | None)
         noise=noise,
         mesh=room,
     )
-
-
-def with_noise(camera: DepthCamera, noise: str) -> DepthCamera:
-    """A camera with the noise of a sensor by its name, and the flying pixels that come with it.
-
-    Args:
-        camera: any.
-        noise: "exact", or a preset.
-
-    Raises:
-        InputError: neither.
-    """
-    return replace(camera, noise=noise_named(noise), flying_pixels=None)
 
 
 def _images(site: Site, out: Path | None) -> Path:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from elbowroom.cli.options import JsonFile, SitePath
+from elbowroom.cli.site_moment import missing_recording, pose_to_draw, tight_notes
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
@@ -44,12 +45,17 @@ def check(
         typer.Option(
             "--out",
             metavar="PNG",
-            help="Draw cameras, grid and the machine, its joints at zero, into this picture.",
+            help="Draw cameras, grid and the machine into this picture: at its first recorded pose, else at zero.",
         ),
     ] = None,
     json_file: JsonFile = None,
 ) -> None:
-    """Validate a site file with everything it names, and say what memory it takes."""
+    """Validate a site file with everything it names, and say what memory it takes.
+
+    A recording that is not there yet is a note. Where there is one, or a key room,
+    the motions are tried at its first moment: a link beside which a surface lies
+    within the cameras' own margins is named, since it would be stopped for ever.
+    """
     from elbowroom.site import Site
 
     site = Site.load(site_path)
@@ -63,7 +69,7 @@ def check(
 
 
 def _findings(site: "Site") -> dict[str, Any]:
-    """All that can be said of a site without carving; raises on whatever is wrong with it."""
+    """All that can be said of a site; raises on whatever is wrong with it."""
     from elbowroom.site import memory_of
     from elbowroom.site.notes import notes_of
     from elbowroom.sources import cameras_of, check_images, silent_cameras
@@ -72,11 +78,17 @@ def _findings(site: "Site") -> dict[str, Any]:
     motions = site.motions(machine) if machine is not None else ()
     moments = images = None
     notes = list(notes_of(site))
-    if site.entry.recording is not None:
+    absent = missing_recording(site)
+    if absent is not None:
+        notes.append(
+            f"{absent}; until then, or with `elbowroom simulate {site.path}`, the rest can be checked"
+        )
+    elif site.entry.recording is not None:
         moments, images = check_images(site)
         notes += [
             f"camera {name} has no image: it disputes all that it looks at" for name in silent_cameras(site)
         ]
+    notes += tight_notes(site)
     return {
         "site": str(site.path),
         "name": site.name,
@@ -139,6 +151,6 @@ def _draw(site: "Site", out: Path) -> None:
     from elbowroom.view.draw.site import draw_site
 
     machine = site.machine()
-    triangles = None if machine is None else triangles_of(machine, machine.nearest_to_zero())
+    triangles = None if machine is None else triangles_of(machine, pose_to_draw(site, machine))
     with whole_file(out) as unfinished:
         draw_site(site.name, site.grid(), cameras_of(site), triangles).save(unfinished, format="PNG")

@@ -9,6 +9,7 @@ from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.face import Face, Pass
 from elbowroom.monitor.health.checks import Checks
 from elbowroom.monitor.result import CycleResult
+from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.sensing import Snapshot
 from elbowroom.sources import Room, Source
 
@@ -20,13 +21,13 @@ class Loop:
     Args:
         room: whose source gives the snapshots.
         checks: look after cameras and machine.
-        cycle: judges.
+        cycle: judges; or, where no motion is asked, sees what is free.
         pace: called with each snapshot before it is judged, and may wait; None: nobody waits.
     """
 
     room: Room
     checks: Checks
-    cycle: Cycle
+    cycle: Cycle | SpaceCycle
     pace: Callable[[Snapshot], None] | None = None
 
     def run(self, faces: Sequence[Face], seconds: float | None = None) -> None:

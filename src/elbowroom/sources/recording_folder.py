@@ -44,7 +44,7 @@ class Units:
 
 
 class RecordingFolder:
-    """Writes `<camera>/<stamp_ns>.png` and `joints.csv` beside their place, and puts them there at the end of the block.
+    """Writes `<camera>/<stamp_ns>.png` and `joints.csv` beside their place, and puts them there at its end.
 
     Depth is rounded down: what is read back is never farther than what was rendered. What was there before is replaced
     as a whole, if a simulator wrote it, so that no image of another run stays. A moment that was left in the middle is

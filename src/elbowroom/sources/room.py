@@ -52,6 +52,19 @@ class Room:
             )
         return self.machine, motions
 
+    @property
+    def unasked(self) -> str | None:
+        """Why no motion can be asked here: no machine, or no joint with a speed; None: motions can."""
+        if self.machine is None:
+            return "no machine: no motion is judged, this is free space alone"
+        if not self.site.motions(self.machine):
+            known = ", ".join(self.machine.joint_names)
+            return (
+                f"no joint of {self.machine.name} has a speed (joints: {known}): no motion is judged, "
+                "this is free space alone"
+            )
+        return None
+
     def snapshot(self, number: int) -> Snapshot:
         """A moment of the room by its number, from 0.
 
@@ -79,6 +92,7 @@ def open_room(
     cameras: int | None = None,
     resolution: tuple[int, int] | None = None,
     knocks: Sequence[str] = (),
+    noise: str | None = None,
 ) -> Room:
     """Opens a site; what is None is as the site says.
 
@@ -90,9 +104,10 @@ def open_room(
         cameras: number of cameras of a simulated room.
         resolution: width and height of their images [px].
         knocks: what is knocked in a simulated room, as `Knock.parse` reads it.
+        noise: of the cameras of a simulated room: "exact", or a preset's name.
 
     Raises:
-        InputError: cameras, resolution or knocks where the room is not simulated, joints that no machine has, a knock
+        InputError: cameras, resolution, noise or knocks where the room is not simulated, joints that no machine has, a knock
             of nothing that is there.
     """
     grid, machine = site.grid(voxel_size_m), site.machine()
@@ -100,7 +115,7 @@ def open_room(
         if machine is None:
             raise InputError(f"joints: {site.path} names no machine; leave them out")
         machine.checked(joints)
-    made = cameras_of(site, cameras, resolution)
+    made = cameras_of(site, cameras, resolution, noise)
     source = _source(site, made, joints, knocks)
     return Room(site, grid, made, machine, site.terms(rule, detail), source)
 
