@@ -17,8 +17,10 @@ from elbowroom.cli.options import (
     parse_resolution,
     use_threads,
 )
+from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
+    from elbowroom.site import Site
     from elbowroom.sources import Room
 
 
@@ -84,18 +86,33 @@ def monitor(
     with options_named(
         joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock", noise="--noise"
     ):
+        given = Site.simulated_room() if site is None else Site.load(site)
         room = open_room(
-            Site.simulated_room() if site is None else Site.load(site),
+            given if noise is None else _noisy(given, noise),
             voxel_size_m=voxel_size,
             rule=rule,
             detail=detail,
             joints=positions,
             cameras=cameras,
             resolution=size_px,
-            noise=noise,
             knocks=knock or (),
         )
         _watch(room, seconds, json, out)
+
+
+def _noisy(site: "Site", noise: str) -> "Site":
+    """A simulated room with other cameras' noise.
+
+    Raises:
+        InputError: the room is not simulated, or there is no such noise.
+    """
+    from elbowroom.sources.cameras import with_noise
+
+    if site.simulated is None:
+        raise InputError(
+            f"noise: for simulated rooms, and {site.path} is none: it says what noise its cameras have"
+        )
+    return with_noise(site, noise)
 
 
 def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None) -> None:

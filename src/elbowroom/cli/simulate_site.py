@@ -172,9 +172,7 @@ def site_room(path: Path, room: str | None, out: Path | None, noise: str | None)
     images = _images(site, out)
     if noise is not None and out is None:
         raise InputError(f"noise: {path} would not say so; change it there, or give --out DIR")
-    cameras = cameras_of(site)
-    if noise is not None:
-        cameras = with_noise(cameras, noise)
+    cameras = cameras_of(site if noise is None else with_noise(site, noise))
     solids, surfaces, walls = _solids(site, room)
     return SiteRoom(
         site=site,

@@ -1,4 +1,4 @@
-"""The pass of a room in which no motion is asked: a snapshot in, free space out. It gives no verdict, so it says stop."""
+"""The pass of a room in which no motion is asked: a snapshot in, free space out. Without verdicts its level is stop."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

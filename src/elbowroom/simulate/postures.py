@@ -11,6 +11,7 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.simulate.machine_solids import link_solids, random_joints
+from elbowroom.simulate.solid import Solid
 from elbowroom.simulate.taken import Taken, share_space
 from elbowroom.simulate.truth import touched_by
 
@@ -27,12 +28,12 @@ class Postures:
     Args:
         machine: its checked links are looked at.
         taken: by the room.
-        box: that they must not leave.
+        box: that they must not leave; None: they may be anywhere.
     """
 
     machine: Machine
     taken: Taken
-    box: VoxelGrid
+    box: VoxelGrid | None = None
 
     def trouble(self, joints: Mapping[str, float]) -> str | None:
         """What is wrong with a pose, in words; None: nothing is.
@@ -42,18 +43,27 @@ class Postures:
         """
         links = [link for link in link_solids(self.machine, joints) if link.name in self._looked_at]
         for link in links:
-            vertices = link.vertices_in_world
-            if (vertices.min(axis=0) < self.box.lower_m).any() or (
-                vertices.max(axis=0) > self.box.upper_m
-            ).any():
+            if self._leaves(link):
                 return f"{link.name} leaves the watched box"
             if self.taken.meets(link):
                 return f"{link.name} stands in {' and '.join(self.taken.what_meets(link)) or 'the room'}"
         both = next(iter(self._in_itself(joints, self._apart)), None)
         return None if both is None else f"{both[1]} stands in {both[0]}, another link of it"
 
+    def usual(self, rng: np.random.Generator) -> dict[str, float]:
+        """Joints at zero, or as near to it as they go; if that touches something, a pose drawn at random.
+
+        Args:
+            rng: source of randomness.
+
+        Raises:
+            InputError: as `drawn`.
+        """
+        joints = self.machine.nearest_to_zero()
+        return joints if self.trouble(joints) is None else self.drawn(rng)
+
     def drawn(self, rng: np.random.Generator, tries: int = TRIES) -> dict[str, float]:
-        """A pose that touches nothing, drawn at random; joints at zero, or as near as they go, are tried first.
+        """A pose that touches nothing, drawn at random.
 
         Args:
             rng: source of randomness.
@@ -63,18 +73,23 @@ class Postures:
             InputError: none was found; says what was in the way most often.
         """
         found: dict[str, int] = {}
-        for joints in itertools.chain(
-            [self.machine.nearest_to_zero()], (random_joints(self.machine, rng) for _ in range(tries))
-        ):
+        for _ in range(tries):
+            joints = random_joints(self.machine, rng)
             trouble = self.trouble(joints)
             if trouble is None:
                 return joints
             found[trouble] = found.get(trouble, 0) + 1
         most = max(found, key=lambda words: found[words])
         raise InputError(
-            f"no pose of {self.machine.name} that touches nothing in {tries} tries; most often "
-            f"{most}: correct the room, the watched box or the machine's place, or give a pose"
+            f"no pose of {self.machine.name} that touches nothing in {tries} tries; most often {most}: correct the "
+            "room, the watched box or the place of the machine's base, or give a pose"
         )
+
+    def _leaves(self, link: Solid) -> bool:
+        vertices, box = link.vertices_in_world, self.box
+        if box is None:
+            return False
+        return bool((vertices.min(axis=0) < box.lower_m).any() or (vertices.max(axis=0) > box.upper_m).any())
 
     @cached_property
     def _looked_at(self) -> frozenset[str]:

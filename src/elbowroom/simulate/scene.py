@@ -142,7 +142,7 @@ def _swing(around: Surroundings, machine: Machine | None, course: Course) -> tup
     grid = fine_grid(around.box.lower_m, around.box.upper_m)
     postures = Postures(machine, Taken.of(grid, around.solids, around.surfaces), around.box)
     if course.joints is None:
-        middle = postures.drawn(np.random.default_rng(course.seed))
+        middle = postures.usual(np.random.default_rng(course.seed))
     else:
         middle = {name: float(value) for name, value in machine.checked(course.joints).items()}
         trouble = postures.trouble(middle)

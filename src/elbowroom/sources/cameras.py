@@ -1,18 +1,18 @@
 """The cameras of a site, wherever they come from, and as a run says otherwise."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, Intrinsics
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.site import Site
+from elbowroom.site.camera_entry import CameraSettings
 
 EXACT = "exact"
 
 
 def cameras_of(
-    site: Site, count: int | None = None, resolution: tuple[int, int] | None = None, noise: str | None = None
+    site: Site, count: int | None = None, resolution: tuple[int, int] | None = None
 ) -> tuple[DepthCamera, ...]:
     """The cameras that a site lists, or those that the simulator makes for it.
 
@@ -20,14 +20,12 @@ def cameras_of(
         site: the file.
         count: how many the simulator makes; None: as the site says.
         resolution: width and height of simulated images [px]; None: as the site says.
-        noise: of simulated cameras, by name; None: as the site says.
 
     Raises:
         SiteError: a camera that none can be, or no cameras yet.
-        InputError: a count where cameras are not made, or a resolution or noise where they are not simulated; a noise
-            that is none.
+        InputError: a count where cameras are not made, or a resolution where they are not simulated.
     """
-    _refuse(site, {"cameras": count, "resolution": resolution, "noise": noise})
+    _refuse(site, {"cameras": count, "resolution": resolution})
     if site.simulated is None or site.lists_cameras:
         cameras = site.cameras()
     else:
@@ -39,16 +37,14 @@ def cameras_of(
         if resolution is not None:
             settings["width"], settings["height"] = resolution
         cameras = wall_cameras(**settings)
-    if resolution is not None:
-        cameras = tuple(with_size(camera, resolution) for camera in cameras)
-    return cameras if noise is None else with_noise(cameras, noise)
+    return cameras if resolution is None else tuple(with_size(camera, resolution) for camera in cameras)
 
 
-def with_noise(cameras: Sequence[DepthCamera], noise: str) -> tuple[DepthCamera, ...]:
-    """Cameras with the noise of a sensor by its name, and the flying pixels that come with it.
+def with_noise(site: Site, noise: str) -> Site:
+    """A site all of whose cameras have the noise of a sensor, by its name.
 
     Args:
-        cameras: any.
+        site: the file.
         noise: "exact", or a preset.
 
     Raises:
@@ -56,7 +52,13 @@ def with_noise(cameras: Sequence[DepthCamera], noise: str) -> tuple[DepthCamera,
     """
     if noise != EXACT and noise not in NOISE_PRESETS:
         raise InputError(f"noise: {noise!r} is unknown, allowed are {', '.join([EXACT, *NOISE_PRESETS])}")
-    return tuple(replace(camera, noise=NOISE_PRESETS.get(noise), flying_pixels=None) for camera in cameras)
+    said = CameraSettings.model_validate({"noise": noise}).noise
+    entry = site.entry
+    changed = {
+        "camera_defaults": entry.camera_defaults.model_copy(update={"noise": said}),
+        "cameras": tuple(camera.model_copy(update={"noise": said}) for camera in entry.cameras),
+    }
+    return Site(site.path, entry.model_copy(update=changed))
 
 
 def with_size(camera: DepthCamera, size: tuple[int, int]) -> DepthCamera:

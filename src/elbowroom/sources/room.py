@@ -92,7 +92,6 @@ def open_room(
     cameras: int | None = None,
     resolution: tuple[int, int] | None = None,
     knocks: Sequence[str] = (),
-    noise: str | None = None,
 ) -> Room:
     """Opens a site; what is None is as the site says.
 
@@ -104,10 +103,9 @@ def open_room(
         cameras: number of cameras of a simulated room.
         resolution: width and height of their images [px].
         knocks: what is knocked in a simulated room, as `Knock.parse` reads it.
-        noise: of the cameras of a simulated room: "exact", or a preset's name.
 
     Raises:
-        InputError: cameras, resolution, noise or knocks where the room is not simulated, joints that no machine has, a knock
+        InputError: cameras, resolution or knocks where the room is not simulated, joints that no machine has, a knock
             of nothing that is there.
     """
     grid, machine = site.grid(voxel_size_m), site.machine()
@@ -115,7 +113,7 @@ def open_room(
         if machine is None:
             raise InputError(f"joints: {site.path} names no machine; leave them out")
         machine.checked(joints)
-    made = cameras_of(site, cameras, resolution, noise)
+    made = cameras_of(site, cameras, resolution)
     source = _source(site, made, joints, knocks)
     return Room(site, grid, made, machine, site.terms(rule, detail), source)
 
