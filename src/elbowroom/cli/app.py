@@ -18,7 +18,6 @@ app = typer.Typer(
     name="elbowroom",
     help="How much elbow room does the machine have? Free space and motion verdicts from depth cameras.",
     epilog="Begin with: elbowroom monitor",
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["--help", "-h"]},
 )

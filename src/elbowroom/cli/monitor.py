@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def monitor(
     site: Annotated[
         Path | None,
-        typer.Argument(metavar="[SITE]", help="A site file. Default: a simulated intervention room."),
+        typer.Argument(metavar="SITE", help="A site file. Default: a simulated intervention room."),
     ] = None,
     seconds: Annotated[
         float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")

@@ -34,14 +34,13 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
     folder(out_dir)
     with json_rows(json_file) as add:
         console = Console(stderr=True)
-        compile_kernels(
-            console,
-            machine=room.machine is not None,
-            motion=False,
-            simulator=room.site.simulated is not None,
-        )
+        simulated = room.site.simulated is not None
+        if not simulated:
+            # before anything is compiled: what is missing is said at once
+            room.site.recording_folder()
+        compile_kernels(console, machine=room.machine is not None, motion=False, simulator=simulated)
         with Steps(console, 6) as steps:
-            steps.begin("compiling kernels")
+            steps.begin("loading kernels")
             warm_up(room.machine, [room.terms.detail])
             steps.begin("reading images")
             snapshot = room.snapshot(moment)

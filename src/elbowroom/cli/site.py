@@ -16,7 +16,11 @@ if TYPE_CHECKING:
     from elbowroom.geometry import DepthCamera, VoxelGrid
     from elbowroom.site import Site
 
-site_app = typer.Typer(help="Write a site file, or check one.", no_args_is_help=True)
+site_app = typer.Typer(
+    help="Write a site file, or check one.",
+    epilog="Begin with: elbowroom site new my_room.yaml",
+    no_args_is_help=True,
+)
 
 
 @site_app.command(epilog="Example: elbowroom site new my_room.yaml")

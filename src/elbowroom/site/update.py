@@ -40,7 +40,7 @@ def update_site(
     """Writes the site again with what was found of its cameras; all that it says otherwise stays.
 
     Of each camera only pose, covariance, margin and, if they changed, intrinsics are replaced. Cameras that are not
-    given stay as they are. Paths are written so that they lead to the same files from the new place. Comments are lost.
+    given stay as they are. Paths are written so that they lead to the same files from the new place. Comments stay.
 
     Args:
         site: the old one.
@@ -73,7 +73,7 @@ def update_site(
         ]
     if world_from_base is not None:
         content["machine"]["world_from_base"] = matrix_entry(world_from_base)
-    return written(content, path, f"{site.name}: {SIGNATURE} {command}`")
+    return written(content, path, f"{site.name}: {SIGNATURE} {command}`", site)
 
 
 def update_lenses(site: Site, lenses: Mapping[str, Mapping[str, Any]], path: Path, command: str) -> Path:
@@ -99,7 +99,7 @@ def update_lenses(site: Site, lenses: Mapping[str, Mapping[str, Any]], path: Pat
             for key in LENS_KEYS:
                 entry.pop(key, None)
             entry.update(plain(dict(found)))
-    return written(content, path, f"{site.name}: {SIGNATURE} {command}`")
+    return written(content, path, f"{site.name}: {SIGNATURE} {command}`", site)
 
 
 def refuse_other_files(site: Site, path: Path) -> None:

@@ -8,7 +8,11 @@ from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevens
 from elbowroom.cli.evaluate.scale import scale_budget, scale_cameras
 from elbowroom.cli.evaluate.thesis import all_parts, calibration, more, motions, reconstruction, scale
 
-evaluate_app = typer.Typer(help="Measure how right the answers are.", no_args_is_help=True)
+evaluate_app = typer.Typer(
+    help="Measure how right the answers are.",
+    epilog="Begin with: elbowroom evaluate room",
+    no_args_is_help=True,
+)
 
 
 def _example(words: str) -> str:

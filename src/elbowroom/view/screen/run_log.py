@@ -1,7 +1,5 @@
 """What a run of the monitor came to: rates, times, levels, faults."""
 
-import resource
-import sys
 import time
 from collections import Counter, deque
 from collections.abc import Iterator, Sequence
@@ -13,6 +11,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from elbowroom.files.peak_memory import peak_memory_mb
 from elbowroom.monitor import CycleResult
 from elbowroom.monitor.rows import shares_pct
 from elbowroom.motion import Level
@@ -105,8 +104,7 @@ class RunLog:
         for name, values in (("cycle", self.cycle_ms), ("source", self.source_ms)):
             for statistic, share in (("median", 50), ("p99", 99), ("max", 100)):
                 row[f"{name}_{statistic}_ms"] = float(np.percentile(values, share)) if values else None
-        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        row["peak_rss_mb"] = peak / (1e6 if sys.platform == "darwin" else 1e3)
+        row["peak_rss_mb"] = peak_memory_mb()
         return row
 
     def recent(self, values: Sequence[float]) -> float:
