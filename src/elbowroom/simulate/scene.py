@@ -138,26 +138,43 @@ def scene_in(around: Surroundings, machine: Machine | None, course: Course) -> S
 def _swing(around: Surroundings, machine: Machine | None, course: Course) -> tuple[Swing, tuple[str, ...]]:
     if machine is None:
         return Swing.still({}), ()
-    notes = []
-    grid = fine_grid(around.box.lower_m, around.box.upper_m)
-    postures = Postures(machine, Taken.of(grid, around.solids, around.surfaces), around.box)
     if course.joints is None:
-        middle = postures.usual(np.random.default_rng(course.seed))
+        everywhere = _postures(around, machine, around.box.lower_m, around.box.upper_m)
+        middle = everywhere.usual(np.random.default_rng(course.seed))
     else:
         middle = {name: float(value) for name, value in machine.checked(course.joints).items()}
-        trouble = postures.trouble(middle)
-        if trouble is not None:
-            notes.append(f"at the pose that was given {trouble}")
-    if not course.moves:
-        return Swing.still(middle), tuple(notes)
-    swing = Swing.about(machine, middle, course.speeds)
-    if not notes:
-        swing = swing.clear_of(postures, [time_s - course.times_s[0] for time_s in course.times_s])
-        if swing.is_still:
-            notes.append(
-                "the machine stands still: it cannot swing about its pose without touching something"
-            )
-    return swing, tuple(notes)
+    still = Swing.still(middle)
+    swing = Swing.about(machine, middle, course.speeds) if course.moves else still
+    times = [time_s - course.times_s[0] for time_s in course.times_s]
+    postures = _postures(around, machine, *_bounds(machine, swing, times))
+    trouble = postures.trouble(middle)
+    if trouble is not None:
+        return swing, (f"at the pose that was given {trouble}",)
+    clear = swing.clear_of(postures, times)
+    if course.moves and clear.is_still:
+        return still, ("the machine stands still: it cannot swing about its pose without touching something",)
+    return clear, ()
+
+
+def _postures(
+    around: Surroundings, machine: Machine, lower: NDArray[np.float64], upper: NDArray[np.float64]
+) -> Postures:
+    """What the machine can do within a part of the box, shape (3,) each [m]."""
+    lower, upper = np.maximum(lower, around.box.lower_m), np.minimum(upper, around.box.upper_m)
+    if (upper <= lower).any():
+        lower, upper = around.box.lower_m, around.box.upper_m
+    return Postures(machine, Taken.of(fine_grid(lower, upper), around.solids, around.surfaces), around.box)
+
+
+def _bounds(
+    machine: Machine, swing: Swing, times_s: Sequence[float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Least and greatest corner of where the machine's links come to be [m]."""
+    some = times_s[:: max(1, len(times_s) // MACHINE_PLACES)]
+    corners = np.concatenate(
+        [link.vertices_in_world for time_s in some for link in link_solids(machine, swing.at(time_s))]
+    )
+    return corners.min(axis=0) - SPARE_M, corners.max(axis=0) + SPARE_M
 
 
 def _housings(eyes_m: NDArray[np.float64]) -> list[Solid]:
