@@ -96,6 +96,11 @@ class Shot:
 def simulate_walls(asked: Asked, options: WallOptions, json: Path | None) -> None:
     """Renders a room with cameras along its walls, and writes the recording.
 
+    Args:
+        asked: what is asked of any room; with a room and a folder.
+        options: the cameras along its walls.
+        json: where the row goes; None: nowhere.
+
     Raises:
         InputError: a room that cannot be used, a box or a noise that is none, a folder that cannot be written to.
         MachineError: joints that the C-arm does not have.
@@ -133,6 +138,11 @@ def simulate_walls(asked: Asked, options: WallOptions, json: Path | None) -> Non
 
 def simulate_site(path: Path, asked: Asked, json: Path | None) -> None:
     """Renders what a site's own cameras see of its room and its machine, and writes the recording.
+
+    Args:
+        path: of the site file.
+        asked: what is asked of any room.
+        json: where the row goes; None: nowhere.
 
     Raises:
         SiteError: a site that cannot be used.

@@ -58,7 +58,7 @@ def tight_places(room: Room, snapshot: Snapshot) -> tuple[Tight, ...]:
 
 def _told_apart(space: FreeSpace, stopped: Sequence[Verdict]) -> list[Verdict]:
     """One verdict of each link and voxel: the others say the same."""
-    first = {}
+    first: dict[tuple[str | None, tuple[int, ...]], Verdict] = {}
     for verdict in stopped:
         place = verdict.place_in_world
         if place is not None and space.grid.contains(place):
