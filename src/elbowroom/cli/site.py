@@ -84,9 +84,7 @@ def _findings(site: "Site") -> dict[str, Any]:
     notes = list(notes_of(site))
     absent = missing_recording(site)
     if absent is not None:
-        notes.append(
-            f"{absent}; until then, or with `elbowroom simulate {site.path}`, the rest can be checked"
-        )
+        notes.append(f"{absent}, or have one made of a modelled room: elbowroom simulate {site.path}")
     elif site.entry.recording is not None:
         moments, images = check_images(site)
         notes += [

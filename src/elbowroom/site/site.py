@@ -308,7 +308,10 @@ class Site:
         """
         recording = self.entry.recording
         if recording is None:
-            raise SiteError(f"{self.path}: recording: missing; this command reads one")
+            raise SiteError(
+                f"{self.path}: recording: missing; this command reads one (`elbowroom simulate` makes one of a "
+                "modelled room)"
+            )
         return self._blame("recording.folder", lambda: existing_folder(recording.folder, self.path.parent))
 
     def _blame(self, key: str | None, make: Callable[[], Value]) -> Value:
