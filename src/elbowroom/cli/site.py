@@ -76,11 +76,12 @@ def _findings(site: "Site") -> dict[str, Any]:
     """All that can be said of a site; raises on whatever is wrong with it."""
     from elbowroom.site import memory_of
     from elbowroom.site.notes import notes_of
-    from elbowroom.sources import cameras_of, check_images, silent_cameras
+    from elbowroom.sources import cameras_of, check_images, silent_cameras, time_findings, times_of
+    from elbowroom.sources.times.told import times_row
 
     grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
     motions = site.motions(machine) if machine is not None else ()
-    moments = images = None
+    moments = images = times = None
     notes = list(notes_of(site))
     absent = missing_recording(site)
     if absent is not None:
@@ -90,6 +91,9 @@ def _findings(site: "Site") -> dict[str, Any]:
         notes += [
             f"camera {name} has no image: it disputes all that it looks at" for name in silent_cameras(site)
         ]
+        notes += [finding.text for finding in time_findings(site)]
+        meeting = times_of(site)
+        times = None if meeting is None else times_row(meeting)
     notes += tight_notes(site)
     return {
         "site": str(site.path),
@@ -106,6 +110,7 @@ def _findings(site: "Site") -> dict[str, Any]:
         "detail": site.detail,
         "moments": moments,
         "images": images,
+        "times": times,
         **memory_of(grid, cameras).row(),
         "notes": notes,
     }
@@ -133,6 +138,7 @@ def _say(row: dict[str, Any]) -> None:
         "machine": f"{row['machine']}, {row['motions']} motions to check" if row["machine"] else "none",
         "decision": f"rule {row['rule']}, detail {row['detail']}",
         "recording": f"{row['images']} images of {row['moments']} moments, headers checked"
+        + ("" if row["times"] is None else f"; {row['times']['text']}")
         if row["images"]
         else "none",
         "memory": f"about {row['memory_bytes'] / 1e6:.0f} MB: planes {row['planes_bytes'] / 1e6:.1f} "
@@ -142,6 +148,8 @@ def _say(row: dict[str, Any]) -> None:
     }
     for key, text in lines.items():
         print(f"{key:9} {text}")
+        if key == "recording" and row["times"] is not None:
+            print("".join(f"times     {span}\n" for span in row["times"]["spans"]), end="")
     for note in row["notes"]:
         print(f"note      {note}")
 

@@ -2,7 +2,15 @@
 
 from elbowroom.sources.cameras import cameras_of
 from elbowroom.sources.depth_png import read_depth_png
-from elbowroom.sources.recorded import Recorded, check_images, excluded_frames, moments, silent_cameras
+from elbowroom.sources.recorded import (
+    Recorded,
+    check_images,
+    excluded_frames,
+    moments,
+    silent_cameras,
+    time_findings,
+    times_of,
+)
 from elbowroom.sources.room import Room, open_room
 from elbowroom.sources.source import Source
 
@@ -17,4 +25,6 @@ __all__ = [
     "open_room",
     "read_depth_png",
     "silent_cameras",
+    "time_findings",
+    "times_of",
 ]

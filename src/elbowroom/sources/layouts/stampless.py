@@ -8,6 +8,7 @@ from elbowroom.site.paths import inside
 from elbowroom.site.recording_entry import StamplessFolder
 from elbowroom.site.site import Site
 from elbowroom.sources.layouts.image import Image
+from elbowroom.sources.times.numbers import natural, require_agreement
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,7 +29,8 @@ class Stampless:
         """The n-th images of all cameras, for each n.
 
         Raises:
-            SiteError: an unknown camera, a file that is named twice, no files, or not as many of each camera.
+            SiteError: an unknown camera, a file that is named twice, no files, not as many of each camera, or names of
+                one moment whose numbers differ.
         """
         return [list(group) for group in zip(*self.by_camera().values(), strict=True)]
 
@@ -41,16 +43,14 @@ class Stampless:
                 raise SiteError(
                     f"{self.site.path}: recording.files: unknown camera {name!r}; cameras are {', '.join(known)}"
                 )
-        rows = {
-            camera.name: [Image.of(self.site, camera, None, path) for path in self._files_of(camera.name)]
+        paths = {name: self._files_of(name) for name in known}
+        # what is listed belongs together by the site's word, whatever its names are
+        listed = [name for name, given in self.recording.files.items() if not isinstance(given, str)]
+        require_agreement(self.site.path, paths, listed)
+        return {
+            camera.name: [Image.of(self.site, camera, None, path) for path in paths[camera.name]]
             for camera in cameras
         }
-        if len({len(row) for row in rows.values()}) != 1:
-            found = ", ".join(f"{name} {len(row)}" for name, row in rows.items())
-            raise SiteError(
-                f"{self.site.path}: recording: frames per camera are {found}; without times they must be as many"
-            )
-        return rows
 
     def joints(self) -> None:
         """None are recorded."""
@@ -63,7 +63,7 @@ class Stampless:
             if doubled:
                 raise SiteError(f"{what}: {doubled[0]} is there twice; one frame per camera and moment")
             return [self.folder / inside(self.folder, name) for name in given]
-        paths = sorted(self.folder.glob(inside(self.folder, given)))
+        paths = sorted(self.folder.glob(inside(self.folder, given)), key=natural)
         if not paths:
             raise SiteError(f"{what}: no file {given} in {self.folder}; expected 16-bit PNG images")
         return paths

@@ -73,6 +73,7 @@ class TerminalView:
         self._live = live
         self._last_screen: RenderableType | None = None
         self._last_shown_s = float("-inf")
+        self._told: set[tuple[str, tuple[str, ...]]] = set()
 
     def __enter__(self) -> "TerminalView":
         return self
@@ -105,6 +106,8 @@ class TerminalView:
         """Notes a pass and, if it is time, shows it."""
         result = done.result
         self.log.add(result, done.source_ms)
+        if self._live is None:
+            self._tell(result)
         now = time.perf_counter()
         if now - self._last_shown_s < (REFRESH_S if self._live is not None else PLAIN_EVERY_S):
             return
@@ -114,6 +117,13 @@ class TerminalView:
             self._live.update(self._last_screen, refresh=True)
         else:
             self.console.print(self.line(result), soft_wrap=True, highlight=False, markup=False)
+
+    def _tell(self, result: CycleResult) -> None:
+        """Prints what was found about the input once a kind and a camera: plain lines come too seldom for it."""
+        for finding in result.findings:
+            if (finding.kind, finding.about) not in self._told:
+                self._told.add((finding.kind, finding.about))
+                self.note(f"{result.stamp_ns / 1e9:.2f} s: {finding.text}")
 
     def end(self) -> None:
         """Ends the screen and prints what the run came to."""
@@ -137,6 +147,7 @@ class TerminalView:
             Text(health_text(result.health), "dim"),
         ]
         lines += [Text(f" {line} ", STYLES[Level.STOP]) for line in _stops(result)]
+        lines += [Text(finding.text, "orange1") for finding in result.findings if not finding.stops]
         if self.watched.unchecked_links:
             lines.append(
                 Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
@@ -146,7 +157,7 @@ class TerminalView:
 
     def line(self, result: CycleResult) -> str:
         """One pass in one plain line."""
-        age = "" if result.oldest_age_ms is None else f" age {result.oldest_age_ms:.0f} ms"
+        age = "" if result.age_ms is None else f" age {result.age_ms:.0f} ms"
         head = (
             f"{result.stamp_ns / 1e9:8.2f} s {self.log.rate_hz:5.1f} Hz cycle {result.cycle_ms:.0f} ms{age}"
         )
@@ -160,13 +171,14 @@ class TerminalView:
 
     def _speed(self, result: CycleResult) -> Text:
         log = self.log
-        age = log.recent(log.age_ms)
+        age = result.age_ms if result.late is not None else log.recent(log.age_ms)
         stages = " + ".join(f"{name} {ms:.0f}" for name, ms in log.recent_stage_ms.items())
         levels = [verdict.level for verdict in result.verdicts]
         text = Text()
         text.append(f"{log.rate_hz:.1f} Hz", "bold")
         text.append("  frame age ")
-        text.append("unknown" if result.oldest_age_ms is None else f"{age:.0f} ms", "bold")
+        style = "bold" if result.late is None else STYLES[Level.STOP]
+        text.append("unknown" if result.age_ms is None else f"{age:.0f} ms", style)
         text.append("  cycle ")
         text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
         text.append(f" = {stages}", "dim")
@@ -219,6 +231,9 @@ def _stops(result: CycleResult) -> list[str]:
     """Why every motion is stop, a line each."""
     found = () if result.health is None else result.health.stops.values()
     lines = [f"Stop: {reason}. Stays until the monitor is started again." for reason in found]
+    lines += [f"Stop: {finding.text}" for finding in result.findings if finding.stops]
+    if result.late is not None:
+        lines.append(f"Stop: {result.late}")
     return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
 
 
