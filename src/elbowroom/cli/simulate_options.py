@@ -12,7 +12,7 @@ Noise = Annotated[str, typer.Option(help="exact, or a sensor such as tof, kinect
 OptionalSite = Annotated[
     Path | None,
     typer.Argument(
-        metavar="[SITE]",
+        metavar="SITE",
         help="A site file: its own machine, cameras, lenses, noise and grid, and its key room. Without it: cameras "
         "along the walls, and the ceiling C-arm.",
     ),
