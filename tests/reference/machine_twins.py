@@ -144,7 +144,7 @@ def explain(model, depth, camera, tolerance_m, sigmas):
             about = about[np.isfinite(about)]
             d = depth[v, u]
             if (
-                not (np.isfinite(d) and d > 0 and camera.min_depth_m <= d <= camera.max_depth_m)
+                not (np.isfinite(d) and d > 0 and camera.min_depth_m <= d < camera.max_depth_m)
                 or not about.size
             ):
                 continue
@@ -156,7 +156,7 @@ def explain(model, depth, camera, tolerance_m, sigmas):
 
 
 def is_return(camera, d):
-    return np.isfinite(d) and d > 0 and camera.min_depth_m <= d <= camera.max_depth_m
+    return np.isfinite(d) and d > 0 and camera.min_depth_m <= d < camera.max_depth_m
 
 
 def has_support(depth, camera, explained, v, u):
@@ -216,7 +216,7 @@ def surrounded(explained, depth, camera, pixels, free_to):
 def unexplained_voxels(camera, depth, explained, grid):
     """Voxels that hold the measured point of a pixel that is not explained and has support; shape of the grid."""
     valid = np.isfinite(depth) & (depth > 0) & (explained <= 0) & (explained >= -1e-5)
-    valid &= (depth >= camera.min_depth_m) & (depth <= camera.max_depth_m)
+    valid &= (depth >= camera.min_depth_m) & (depth < camera.max_depth_m)
     for v, u in np.argwhere(valid):
         valid[v, u] = has_support(depth, camera, explained, v, u)
     points = camera.points_in_world(np.where(valid, depth, 1.0))[valid]

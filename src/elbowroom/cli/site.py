@@ -1,12 +1,14 @@
 """`elbowroom site new` and `elbowroom site check`."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from elbowroom.cli.options import JsonFile, SitePath
-from elbowroom.cli.site_moment import missing_recording, pose_to_draw, tight_notes
+from elbowroom.cli.site_mask import mask
+from elbowroom.cli.site_moment import pose_to_draw, tight_notes
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
@@ -17,10 +19,11 @@ if TYPE_CHECKING:
     from elbowroom.site import Site
 
 site_app = typer.Typer(
-    help="Write a site file, or check one.",
+    help="Write a site file, check one, or find masks.",
     epilog="Begin with: elbowroom site new my_room.yaml",
     no_args_is_help=True,
 )
+site_app.command(epilog="Example: elbowroom site mask my_room.yaml --out masks")(mask)
 
 
 @site_app.command(epilog="Example: elbowroom site new my_room.yaml")
@@ -54,7 +57,11 @@ def check(
     ] = None,
     json_file: JsonFile = None,
 ) -> None:
-    """Validate a site file with everything it names, and say what memory it takes.
+    """Validate a site file with everything it names, look at its images, and say what memory it takes.
+
+    Images of a few moments are looked at: units, numbers that stand for no return,
+    lenses and poses that cannot be meant so. Exits with 1 where such a finding
+    would stop every motion.
 
     A recording that is not there yet is a note. Where there is one, or a key room,
     the motions are tried at its first moment: a link beside which a surface lies
@@ -70,20 +77,29 @@ def check(
     _say(row)
     if out is not None:
         print(f"picture   {out}")
+    if any(finding["stops"] for finding in row["findings"]):
+        raise typer.Exit(1)
 
 
 def _findings(site: "Site") -> dict[str, Any]:
     """All that can be said of a site; raises on whatever is wrong with it."""
     from elbowroom.site import memory_of
     from elbowroom.site.notes import notes_of
-    from elbowroom.sources import cameras_of, check_images, silent_cameras, time_findings, times_of
+    from elbowroom.sources import (
+        cameras_of,
+        check_images,
+        looked_at,
+        silent_cameras,
+        time_findings,
+        times_of,
+    )
     from elbowroom.sources.times.told import times_row
 
     grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
     motions = site.motions(machine) if machine is not None else ()
     moments = images = times = None
     notes = list(notes_of(site))
-    absent = missing_recording(site)
+    absent = site.missing_recording
     if absent is not None:
         notes.append(f"{absent}, or have one made of a modelled room: elbowroom simulate {site.path}")
     elif site.entry.recording is not None:
@@ -113,6 +129,7 @@ def _findings(site: "Site") -> dict[str, Any]:
         "times": times,
         **memory_of(grid, cameras).row(),
         "notes": notes,
+        "findings": [asdict(finding) for finding in looked_at(site)],
     }
 
 
@@ -129,15 +146,18 @@ def _coverage(grid: "VoxelGrid", cameras: "Sequence[DepthCamera]") -> dict[str, 
 
 def _say(row: dict[str, Any]) -> None:
     shape = " x ".join(map(str, row["shape"]))
+    wrong = sum(finding["stops"] for finding in row["findings"])
     lines = {
-        "site": f"{row['site']} is valid: {row['name']}",
+        "site": f"{row['site']} is valid: {row['name']}"
+        if not wrong
+        else f"{row['site']} reads as valid, but cannot be meant so: {row['name']}",
         "grid": f"{shape} voxels of {row['voxel_size_m'] * 100:g} cm from {list(row['origin_m'])} m",
         "cameras": f"{row['cameras']} of {', '.join(row['sizes_px'])} px; with nothing in the way "
         f"{row['seen_by_one_pct']:.0f} % of the grid is in view of one or more, "
         f"{row['seen_by_three_pct']:.0f} % of three or more",
         "machine": f"{row['machine']}, {row['motions']} motions to check" if row["machine"] else "none",
         "decision": f"rule {row['rule']}, detail {row['detail']}",
-        "recording": f"{row['images']} images of {row['moments']} moments, headers checked"
+        "recording": f"{row['images']} images of {row['moments']} moments, headers checked, some looked at"
         + ("" if row["times"] is None else f"; {row['times']['text']}")
         if row["images"]
         else "none",
@@ -152,6 +172,8 @@ def _say(row: dict[str, Any]) -> None:
             print("".join(f"times     {span}\n" for span in row["times"]["spans"]), end="")
     for note in row["notes"]:
         print(f"note      {note}")
+    for finding in row["findings"]:
+        print(f"{'STOP' if finding['stops'] else 'warning':9} {finding['text']}")
 
 
 def _draw(site: "Site", out: Path) -> None:

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from elbowroom.errors import InputError, SiteError
+from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
     from elbowroom.machine import Machine
@@ -10,23 +10,10 @@ if TYPE_CHECKING:
     from elbowroom.site import Site
 
 
-def missing_recording(site: "Site") -> str | None:
-    """Why the recording that a site names cannot be read yet; None: its folder is there, or none is named."""
-    if site.entry.recording is None:
-        return None
-    try:
-        site.recording_folder()
-    except SiteError as error:
-        if "no folder" in str(error):
-            return str(error).removeprefix(f"{site.path}: ")
-        raise
-    return None
-
-
 def pose_to_draw(site: "Site", machine: "Machine") -> dict[str, float]:
     """Where the machine is first in the recording; without one, at zero, or as near to it as it goes."""
     recorded = None
-    if site.entry.recording is not None and missing_recording(site) is None:
+    if site.entry.recording is not None and site.missing_recording is None:
         recorded = _recorded(site)
     joints = None if recorded is None else recorded.joints
     return machine.nearest_to_zero() if joints is None else dict(joints)
@@ -40,7 +27,7 @@ def tight_notes(site: "Site") -> list[str]:
     machine = site.machine()
     if machine is None or not site.motions(machine) or site.simulated is not None:
         return []
-    has_images = site.entry.recording is not None and missing_recording(site) is None
+    has_images = site.entry.recording is not None and site.missing_recording is None
     if not has_images and (site.entry.room is None or not site.lists_cameras):
         return []
     from rich.console import Console

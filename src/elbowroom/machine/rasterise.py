@@ -56,7 +56,7 @@ def view_of(camera: DepthCamera) -> View:
         cy=float(k.cy),
         radial=camera.depth_kind == "radial",
         min_depth=float(camera.min_depth_m),
-        max_depth=float(camera.max_depth_m),
+        max_depth=float(camera.deepest_m),
         constant=float(noise.constant_m),
         linear=float(noise.linear),
         quadratic=float(noise.quadratic),

@@ -314,6 +314,23 @@ class Site:
             )
         return self._blame("recording.folder", lambda: existing_folder(recording.folder, self.path.parent))
 
+    @property
+    def missing_recording(self) -> str | None:
+        """Why the recording that the site names cannot be read yet; None: its folder is there, or none is named.
+
+        Raises:
+            SiteError: its path is none.
+        """
+        if self.entry.recording is None:
+            return None
+        try:
+            self.recording_folder()
+        except SiteError as error:
+            if "no folder" in str(error):
+                return str(error).removeprefix(f"{self.path}: ")
+            raise
+        return None
+
     def _blame(self, key: str | None, make: Callable[[], Value]) -> Value:
         """What `make` returns; its errors name the file and the key."""
         where = f"{self.path}: {key}" if key else str(self.path)

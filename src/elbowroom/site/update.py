@@ -23,7 +23,10 @@ from elbowroom.site.written import (
     written,
 )
 
-POSE_KEYS = ("world_from_camera", "pose_file", "position_m", "look_at_m", "up", "pose_covariance")
+POSE_KEYS = (
+    "world_from_camera", "pose_file", "position_m", "look_at_m", "up", "quaternion_xyzw", "quaternion_wxyz",
+    "pose_covariance",
+)  # fmt: skip
 LENS_KEYS = ("intrinsics_file", *PINHOLE, "distortion")
 SIGNATURE = "calibrated by `elbowroom calibrate"
 """In the first line of each file that is written here: such a file may be written again."""

@@ -2,6 +2,7 @@
 
 from elbowroom.sources.cameras import cameras_of
 from elbowroom.sources.depth_png import read_depth_png
+from elbowroom.sources.looked import looked_at
 from elbowroom.sources.recorded import (
     Recorded,
     check_images,
@@ -21,6 +22,7 @@ __all__ = [
     "cameras_of",
     "check_images",
     "excluded_frames",
+    "looked_at",
     "moments",
     "open_room",
     "read_depth_png",

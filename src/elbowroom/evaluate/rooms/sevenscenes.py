@@ -68,7 +68,7 @@ def split_recording(site: Site, voxel_size_m: float) -> CheckViews:
 
 def _valid(camera: DepthCamera, frame: DepthFrame) -> NDArray[np.bool_]:
     depth = frame.depth_m
-    return (depth > 0) & (depth >= camera.min_depth_m) & (depth <= camera.max_depth_m) & np.isfinite(depth)
+    return (depth > 0) & (depth >= camera.min_depth_m) & (depth <= camera.deepest_m) & np.isfinite(depth)
 
 
 def rates(views: CheckViews, space: FreeSpace) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.health.clocks import Clocks
 from elbowroom.monitor.loop import Loop
 from elbowroom.monitor.space_cycle import SpaceCycle
+from elbowroom.monitor.start.looking import looks_of
 from elbowroom.monitor.start.watching import checks_of
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
@@ -31,7 +32,8 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
     cycle = _cycle(room)
     recorded = isinstance(room.source, Recorded)
     pause_ns = _gap_ns(room) if recorded else gap_ns(None)
-    loop = Loop(room, checks_of(room, begin), cycle, Pace(pause_ns).early_s if recorded else None)
+    checks = replace(checks_of(room, begin), looks=looks_of(room))
+    loop = Loop(room, checks, cycle, Pace(pause_ns).early_s if recorded else None)
     _warm_up(loop, begin)
     # after that, since the source begins anew, and its times with it
     clocks = Clocks(room.terms.max_age_ns, recorded, pause_ns)

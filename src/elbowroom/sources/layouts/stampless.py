@@ -56,7 +56,8 @@ class Stampless:
         """None are recorded."""
 
     def _files_of(self, camera: str) -> list[Path]:
-        given = self.recording.files.get(camera, f"{camera}/*.png")
+        kind = "png" if any(self.folder.glob(f"{camera}/*.png")) else "pgm"
+        given = self.recording.files.get(camera, f"{camera}/*.{kind}")
         what = f"{self.site.path}: recording.files.{camera}"
         if not isinstance(given, str):
             doubled = sorted({name for name in given if given.count(name) > 1})
@@ -65,5 +66,5 @@ class Stampless:
             return [self.folder / inside(self.folder, name) for name in given]
         paths = sorted(self.folder.glob(inside(self.folder, given)), key=natural)
         if not paths:
-            raise SiteError(f"{what}: no file {given} in {self.folder}; expected 16-bit PNG images")
+            raise SiteError(f"{what}: no file {given} in {self.folder}; expected 16-bit PNG or PGM images")
         return paths

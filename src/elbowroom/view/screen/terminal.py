@@ -73,7 +73,7 @@ class TerminalView:
         self._live = live
         self._last_screen: RenderableType | None = None
         self._last_shown_s = float("-inf")
-        self._told: set[tuple[str, tuple[str, ...]]] = set()
+        self._said: dict[tuple[str, tuple[str, ...]], str] = {}
 
     def __enter__(self) -> "TerminalView":
         return self
@@ -106,8 +106,7 @@ class TerminalView:
         """Notes a pass and, if it is time, shows it."""
         result = done.result
         self.log.add(result, done.source_ms)
-        if self._live is None:
-            self._tell(result)
+        self._warn(result)
         now = time.perf_counter()
         if now - self._last_shown_s < (REFRESH_S if self._live is not None else PLAIN_EVERY_S):
             return
@@ -118,21 +117,29 @@ class TerminalView:
         else:
             self.console.print(self.line(result), soft_wrap=True, highlight=False, markup=False)
 
-    def _tell(self, result: CycleResult) -> None:
-        """Prints what was found about the input once a kind and a camera: plain lines come too seldom for it."""
-        for finding in result.findings:
-            if (finding.kind, finding.about) not in self._told:
-                self._told.add((finding.kind, finding.about))
-                self.note(f"{result.stamp_ns / 1e9:.2f} s: {finding.text}")
-
     def end(self) -> None:
         """Ends the screen and prints what the run came to."""
         self.stop()
+        if self._live is not None:
+            for text in self._said.values():
+                self._print_warning(text)
         self.console.print(self.log.summary())
 
     def note(self, text: str) -> None:
         """Prints a line that the user should know before it starts."""
         self.console.print(f"note: {text}", highlight=False, soft_wrap=True)
+
+    def _warn(self, result: CycleResult) -> None:
+        """Says what was found about the input, each thing once: at once in plain lines, at the end of a screen."""
+        for finding in result.findings:
+            of = finding.kind, finding.about
+            if of not in self._said:
+                self._said[of] = finding.text
+                if self._live is None:
+                    self._print_warning(finding.text)
+
+    def _print_warning(self, text: str) -> None:
+        self.console.print(f"warning: {text}", highlight=False, soft_wrap=True, markup=False)
 
     def screen(self, result: CycleResult) -> RenderableType:
         """All of the live screen for one pass."""
@@ -147,7 +154,7 @@ class TerminalView:
             Text(health_text(result.health), "dim"),
         ]
         lines += [Text(f" {line} ", STYLES[Level.STOP]) for line in _stops(result)]
-        lines += [Text(finding.text, "orange1") for finding in result.findings if not finding.stops]
+        lines += [Text(f"Warning: {finding.text}") for finding in result.findings if not finding.stops]
         if self.watched.unchecked_links:
             lines.append(
                 Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
