@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from elbowroom.cli.options import JointsText, JsonFile, parse_joints
-from elbowroom.cli.simulate_options import ImageSize, Noise
+from elbowroom.cli.simulate_options import ImageSize, MeshUnit, MeshUp, Noise
 
 
 def simulate(
@@ -15,6 +15,8 @@ def simulate(
         typer.Option("--room", metavar="GLB", help="A room of closed solids as GLB, or setup1 to setup6."),
     ],
     out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for images and site.yaml.")],
+    up: MeshUp = None,
+    unit: MeshUnit = None,
     cameras: Annotated[int, typer.Option(min=1, max=200, help="How many, along the walls of the box.")] = 21,
     size: ImageSize = "vga",
     height: Annotated[
@@ -35,7 +37,7 @@ def simulate(
 ) -> None:
     """Look at a modelled room with simulated depth cameras.
 
-    Objects of the GLB are solids, in metres. Writes a recording and a site file:
+    Objects of the file (.glb, .gltf, .dae, .obj, .ply, .stl) are closed solids. Writes a recording and a site file:
     go on with elbowroom reconstruct DIR/site.yaml, check, or monitor. Writes
     colour.png and depth.png, too: the room from above, and one camera's image.
     """
@@ -45,6 +47,8 @@ def simulate(
 
     options = RoomOptions(
         room=room,
+        up=up,
+        unit_m=unit,
         out=out,
         cameras=cameras,
         size=size,

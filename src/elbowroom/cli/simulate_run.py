@@ -1,5 +1,6 @@
 """The run of `elbowroom simulate`: a GLB in, a recording out."""
 
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,13 +15,16 @@ from elbowroom.cli.simulate_options import Size
 from elbowroom.errors import InputError
 from elbowroom.files.atomic import folder
 from elbowroom.files.json_rows import json_rows
+from elbowroom.files.mesh.objects import Axis
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.sensing import DepthFrame
-from elbowroom.simulate import Moment, Walls, render, setup, solids_of_glb, wall_cameras
+from elbowroom.simulate import Moment, Solid, Walls, render, setup, wall_cameras
+from elbowroom.simulate.glb import solids_of
 from elbowroom.simulate.inside import check_outside
 from elbowroom.simulate.machine_solids import link_solids
+from elbowroom.simulate.room_mesh import read_room_mesh
 from elbowroom.sources.recorder import Recording, write_recording
 from elbowroom.view.draw.colour import View, colour_picture
 from elbowroom.view.draw.depth import depth_picture
@@ -34,6 +38,8 @@ class RoomOptions:
     """What the command line says; see its help."""
 
     room: str
+    up: Axis | None
+    unit_m: float | None
     out: Path
     cameras: int
     size: Size
@@ -87,7 +93,7 @@ def _moment(options: RoomOptions, machine: Machine | None, grid: VoxelGrid) -> M
         shipped = setup(options.room)
         solids, usual = shipped.solids(), dict(shipped.joints)
     else:
-        solids = solids_of_glb(options.room)
+        solids = _modelled(options, grid)
         usual = dict.fromkeys(machine.joint_names, 0.0) if machine is not None else {}
     inside = [s for s in solids if _meets(s.vertices_in_world, grid)]
     if not inside:
@@ -99,6 +105,14 @@ def _moment(options: RoomOptions, machine: Machine | None, grid: VoxelGrid) -> M
     joints = {**usual, **(options.joints or {})}
     machine.checked(joints)
     return Moment(1.0, solids + link_solids(machine, joints), joints)
+
+
+def _modelled(options: RoomOptions, grid: VoxelGrid) -> tuple[Solid, ...]:
+    box_m = np.array([grid.lower_m, grid.upper_m])
+    room = read_room_mesh(options.room, up=options.up, unit_m=options.unit_m, box_m=box_m)
+    for note in room.notes:
+        print(f"note: {note}", file=sys.stderr)
+    return solids_of(Path(options.room), room)
 
 
 def _meets(vertices: np.ndarray, grid: VoxelGrid) -> bool:
@@ -136,6 +150,7 @@ def _box(text: str, voxel_size_m: float) -> VoxelGrid:
 def _draw(out: Path, grid: VoxelGrid, moment: Moment, frame: DepthFrame) -> None:
     """The room without what hangs above it or stands between it and the eye, and the first camera's image."""
     shown = [s for s in moment.solids if s.is_machine or _is_inside(s.vertices_in_world, grid)]
+    shown = shown or list(moment.solids)  # all of it stands in the way
     middle, size = (grid.lower_m + grid.upper_m) / 2, float(np.linalg.norm(grid.upper_m - grid.lower_m))
     eye = middle + np.array([0.66, -0.70, 0.50]) * size
     view = View(
