@@ -1,6 +1,6 @@
 """A capture of a board on disk: the images of each pose, and what is seen of the board in them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,10 +11,12 @@ from PIL import Image as Pictures
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.closer_look import closer_look
 from elbowroom.calibrate.boards.colour import carried_to_depth
 from elbowroom.calibrate.boards.cut_out import cut_out_view
 from elbowroom.calibrate.boards.printed import printed_view
-from elbowroom.calibrate.boards.trouble import Fault, Trouble
+from elbowroom.calibrate.boards.same_images import require_own_images
+from elbowroom.calibrate.boards.trouble import Trouble
 from elbowroom.errors import CalibrationError, FrameError
 from elbowroom.geometry import DepthCamera, Intrinsics, nearest_rigid
 from elbowroom.geometry.parallel import spread
@@ -25,8 +27,6 @@ from elbowroom.site.recording_entry import StampedFolder
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
 
-LOOKED_AT_AGAIN = 24
-"""Images in which a board of another size is looked for where none shows the right one."""
 Seen = BoardView | Trouble
 
 
@@ -130,14 +130,45 @@ def sightings(site: Site, on_image: Callable[[int, int], None] = lambda done, of
     views = tuple(seen for seen in found if isinstance(seen, BoardView))
     troubles = tuple(seen for seen in found if isinstance(seen, Trouble))
     if not views:
-        few = [work[n] for n in np.linspace(0, len(work) - 1, min(len(work), LOOKED_AT_AGAIN)).astype(int)]
-        closer = spread(lambda item: seen_in(site, board, *item, other_sizes=True), few)
-        sizes = [seen for seen in closer if isinstance(seen, Trouble) and seen.fault is Fault.WRONG_SIZE]
-        troubles = tuple(sizes) or troubles
-        raise CalibrationError(
-            f"{site.path}: {len(work)} images and none shows the board; {_commonest(troubles)}"
-        )
+        what = instead_of(site, board, work) or _commonest(troubles)
+        raise CalibrationError(f"{site.path}: {len(work)} images and none shows the board; {what}")
+    require_own_images(work, views)
     return Sightings(board, views, troubles, len(poses))
+
+
+def images_of(site: Site, cameras: Sequence[str]) -> list[tuple[Image, int]]:
+    """The depth images of some cameras, each with the number of its pose.
+
+    Args:
+        site: with a recording.
+        cameras: their names.
+    """
+    return [
+        (image, number)
+        for number, images in enumerate(images_by_pose(site))
+        for image in images
+        if image.camera.name in cameras
+    ]
+
+
+def instead_of(site: Site, board: Board, work: Sequence[tuple[Image, int]]) -> str | None:
+    """What images show where they do not show the board, a sentence; None: nothing that can be told.
+
+    Args:
+        site: whose images they are.
+        board: as the site describes it.
+        work: images, and the number of their pose.
+    """
+    if not work:
+        return None
+
+    def look(other: Board, image: Image, pose: int) -> Seen:
+        return seen_in(site, other, image, pose)
+
+    def other_sizes(other: Board, image: Image, pose: int) -> Seen:
+        return seen_in(site, other, image, pose, other_sizes=True)
+
+    return closer_look(board, work, look, other_sizes)
 
 
 def _commonest(troubles: tuple[Trouble, ...]) -> str:

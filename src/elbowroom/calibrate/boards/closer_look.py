@@ -1,0 +1,100 @@
+"""What images show instead of the board that a site describes: another count, another unit of depth, no mark."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from elbowroom.calibrate.boards.board import Board
+from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.trouble import Fault, Trouble
+from elbowroom.errors import CalibrationError
+from elbowroom.geometry.parallel import spread
+from elbowroom.sources.layouts.image import Image
+
+LOOKED_AT = 9
+"""Images that are looked at again."""
+UNITS = (0.2, 5.0, 0.25, 4.0, 0.1, 10.0, 0.001, 1000.0, 0.5, 2.0)
+"""Factors by which units of depth are mistaken: 0.2 mm for 1 mm, quarters and tenths of a millimetre, metres."""
+LEAST_VIEWS, AS_OFTEN = 2, 3
+"""Another description is believed if so many images show it, and so many times as many as the site's own."""
+
+Seen = BoardView | Trouble
+Work = Sequence[tuple[Image, int]]
+Look = Callable[[Board, Image, int], Seen]
+
+
+def closer_look(board: Board, work: Work, look: Look, other_sizes: Look) -> str | None:
+    """What the images show where they do not show the board, a sentence; None: nothing that can be told.
+
+    Args:
+        board: as the site describes it.
+        work: images, and the number of their pose.
+        look: for a board in an image, as `seen_in`.
+        other_sizes: the same for its pattern with larger and smaller squares.
+    """
+    few = [work[n] for n in np.unique(np.linspace(0, len(work) - 1, min(len(work), LOOKED_AT)).astype(int))]
+    own = _views(board, few, look)
+    enough = max(LEAST_VIEWS, AS_OFTEN * own)
+    counted = _counted(board, few, look, enough)
+    if counted is not None:
+        return f"the images show {counted} inner corners (columns x rows), not {board.columns} x {board.rows}"
+    factor = _unit(board, few, look, enough)
+    if factor is not None:
+        return (
+            f"the board is there if depth counts {factor:g} times as much: depth_scale_m of "
+            f"{factor * few[0][0].scale_m:.4g} instead of {few[0][0].scale_m:g}"
+        )
+    if board.marked and _views(replace(board, marked=False), few, look) >= enough:
+        faults = [seen for seen in spread(lambda item: look(board, *item), few) if isinstance(seen, Trouble)]
+        if sum(one.fault is Fault.MIRRORED for one in faults) < enough:
+            return "the board is there without its mark: say marked: false if it bears none, or look at the other side"
+    sizes = [
+        seen
+        for seen in spread(lambda item: other_sizes(board, *item), few)
+        if isinstance(seen, Trouble) and seen.fault is Fault.WRONG_SIZE
+    ]
+    return str(sizes[len(sizes) // 2]) if len(sizes) >= LEAST_VIEWS else None
+
+
+def _views(board: Board, few: Work, look: Look) -> int:
+    """How many images show a board; none where the first third of them shows none."""
+    first = few[::3]
+    views = sum(isinstance(seen, BoardView) for seen in spread(lambda item: look(board, *item), first))
+    if not views:
+        return 0
+    rest = [item for n, item in enumerate(few) if n % 3]
+    return views + sum(isinstance(seen, BoardView) for seen in spread(lambda item: look(board, *item), rest))
+
+
+def _counted(board: Board, few: Work, look: Look, enough: int) -> str | None:
+    """Columns and rows of a board that the images show better: sides exchanged, squares counted, one or two off."""
+    best: tuple[int, str] | None = None
+    for columns, rows in _other_counts(board.columns, board.rows):
+        try:
+            other = replace(board, columns=columns, rows=rows)
+        except CalibrationError:
+            continue
+        views = _views(other, few, look)
+        if views >= enough and (best is None or views > best[0]):
+            best = views, f"{columns} x {rows}"
+        if 2 * views > len(few):
+            break
+    return None if best is None else best[1]
+
+
+def _other_counts(columns: int, rows: int) -> list[tuple[int, int]]:
+    near = [
+        (columns + a, rows + b) for a in (-2, -1, 0, 1, 2) for b in (-2, -1, 0, 1, 2) if abs(a) + abs(b) == 2
+    ]
+    sides = [(rows, columns), (rows - 1, columns - 1), (rows + 1, columns + 1)]
+    return [other for other in dict.fromkeys(sides + near) if other != (columns, rows)]
+
+
+def _unit(board: Board, few: Work, look: Look, enough: int) -> float | None:
+    """By how much the unit of depth is to be multiplied so that the board shows."""
+    for factor in UNITS:
+        scaled = [(image._replace(scale_m=factor * image.scale_m), pose) for image, pose in few]
+        if _views(board, scaled, look) >= enough:
+            return factor
+    return None
