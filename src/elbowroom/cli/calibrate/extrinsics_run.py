@@ -79,17 +79,15 @@ def _solved(
 
 
 def closer(site: Site, seen: Sightings, names: Sequence[str]) -> str | None:
-    """What images show instead of the board: those of some cameras, or else all; None: nothing that can be told.
+    """What images of some cameras show instead of the board; None: nothing that can be told.
 
     Args:
         site: whose images they are.
         seen: what was looked for.
         names: of the cameras.
     """
-    all_cameras = [camera.name for camera in site.cameras()]
-    return instead_of(site, seen.board, images_of(site, names)) or instead_of(
-        site, seen.board, images_of(site, [name for name in all_cameras if name not in names])
-    )
+    others = [camera.name for camera in site.cameras() if camera.name not in names]
+    return instead_of(site, seen.board, images_of(site, names), others_see_it=seen.is_seen_by(others))
 
 
 def told(

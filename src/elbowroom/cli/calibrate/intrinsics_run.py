@@ -83,7 +83,9 @@ def _solved(site: Site, camera: DepthCamera, seen: Sightings, coefficients: int)
         why = [str(trouble) for trouble in seen.troubles if trouble.camera == camera.name]
         if not why:
             raise
-        closer = instead_of(site, seen.board, images_of(site, [camera.name]))
+        others = [one.name for one in site.cameras() if one.name != camera.name]
+        work = images_of(site, [camera.name])
+        closer = instead_of(site, seen.board, work, others_see_it=seen.is_seen_by(others))
         raise CalibrationError(
             f"{error} (of its images {len(why)} show no whole board: {closer or why[0]})"
         ) from None
