@@ -54,9 +54,7 @@ def closer_look(board: Board, work: Work, looks: Looks, *, others_see_it: bool) 
     look = looks.plain
     few = [work[n] for n in np.unique(np.linspace(0, len(work) - 1, min(len(work), LOOKED_AT)).astype(int))]
     own = _views(board, few, look)
-    enough = max(LENSES = (2.0, 0.5, 1.5, 2 / 3, 3.0, 1 / 3, 4.0, 0.25)
-"""Factors between the sizes of image that one sensor delivers."""
-LEAST_VIEWS, AS_OFTEN * own)
+    enough = max(LEAST_VIEWS, AS_OFTEN * own)
     if others_see_it and _views(board, few, looks.mirrored) >= enough:
         return "the board is there in the images mirrored left to right; switch mirroring off in the camera's driver"
     counted = None if others_see_it else _counted(board, few, look, enough)
@@ -77,8 +75,8 @@ LEAST_VIEWS, AS_OFTEN * own)
     if lens is not None:
         camera = few[0][0].camera
         return (
-            f"the board is there if fx, fy, cx and cy of camera {camera.name} are {lens:g} times as large: the site's lens "
-            f"is that of another size of image than {camera.width} x {camera.height}"
+            f"the board is there if fx, fy, cx and cy of camera {camera.name} are {lens:g} times as large: the site's "
+            f"lens is that of another size of image than {camera.width} x {camera.height}"
         )
     if board.marked and not others_see_it and _views(replace(board, marked=False), few, look) >= enough:
         faults = [seen for seen in spread(lambda item: look(board, *item), few) if isinstance(seen, Trouble)]
@@ -151,4 +149,6 @@ def _scaled(camera: DepthCamera, factor: float) -> DepthCamera:
     """The camera with the lens that it has in images so many times as large; pixels count from their middle."""
     k = camera.intrinsics
     middle = (factor * (k.cx + 0.5) - 0.5, factor * (k.cy + 0.5) - 0.5)
-    return replace(camera, intrinsics=replace(k, fx=factor * k.fx, fy=factor * k.fy, cx=middle[0], cy=middle[1]))
+    return replace(
+        camera, intrinsics=replace(k, fx=factor * k.fx, fy=factor * k.fy, cx=middle[0], cy=middle[1])
+    )
