@@ -20,10 +20,11 @@ def merged_mesh(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Mesh
     joined = index.reshape(-1)[faces]
     whole = (joined != np.roll(joined, 1, axis=1)).all(axis=1)
     mesh = Mesh(places, joined[whole])
-    if not len(mesh.faces) or _has_inside(mesh):
+    if not len(mesh.faces):
         return mesh
     for turned_too in (False, True):
-        once = Mesh(places, mesh.faces[_first_of_alike(mesh.faces, turned_too=turned_too)])
+        first = _first_of_alike(mesh.faces, turned_too=turned_too)
+        once = Mesh(places, mesh.faces[first]) if len(first) < len(mesh.faces) else mesh
         if _has_inside(once):
             return once
     return mesh

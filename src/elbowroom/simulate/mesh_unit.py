@@ -58,7 +58,7 @@ def require_size(path: Path, objects: Named, metres: float, box_m: NDArray[np.fl
         )
     else:
         return
-    unit = min(UNITS, key=lambda one: abs(np.log(whole.max() * UNITS[one] / usual)))
+    unit = min(UNITS, key=lambda one: _unlikely(whole.max() * UNITS[one] / usual))
     raise InputError(f"{path}: {what}; {_advice(UNITS[unit], metres, unit)}")
 
 
@@ -77,6 +77,11 @@ def unit_note(objects: Named, metres: float, box_m: NDArray[np.float64]) -> str 
             size, watched = (" x ".join(f"{length:.1f}" for length in lengths) for lengths in (whole, box))
             return f"is {size} m about a box of {watched} m; if it is in {unit}, {_option(factor * metres)}"
     return None
+
+
+def _unlikely(share: float) -> float:
+    """Of a room so many times as long as usual: furniture alone is shorter, hardly anything is longer."""
+    return float(np.log(share) * 2 if share > 1 else -np.log(share))
 
 
 def _extent(objects: Named) -> NDArray[np.float64]:

@@ -15,6 +15,8 @@ BOTTOM_SHARE, BOTTOM_M = 0.15, 0.3
 """The bottom reaches up so far: a share of the height, and at least so much [m]."""
 NO_FLOOR, FLOOR, WALL = 0.3, 0.6, 0.5
 """Shares of the footprint: less at the bottom is no floor, more is one; more at a side is a wall."""
+LEVEL_M = 0.02
+"""Things that stand on one floor have their bottoms within so much [m]."""
 WORDS = ("floor", "ground", "boden", "fussboden", "suelo", "piso", "sol", "pavimento", "vloer")
 """What people call floors."""
 LEAST_FLOOR_M = 1.0
@@ -35,6 +37,8 @@ def upright_note(objects: Sequence[tuple[str, Mesh]], up: Axis) -> str | None:
     named = next((name for name, mesh in objects if _is_upright_slab(name, mesh)), None)
     if named is not None:
         return f"{named!r} stands upright; {advice}"
+    if _rests(objects):
+        return None
     triangles = np.concatenate([mesh.vertices[mesh.faces] for _, mesh in objects])
     # where the file's other axis points now
     way = np.array([0.0, -1.0, 0.0]) if up == "y" else np.array([0.0, 1.0, 0.0])
@@ -44,6 +48,13 @@ def upright_note(objects: Sequence[tuple[str, Mesh]], up: Axis) -> str | None:
     if all(_level_share(triangles, side) > WALL for side in sides):
         return None  # four walls, and a floor that was not modelled
     return f"no floor lies at its bottom, but one stands upright; {advice}"
+
+
+def _rests(objects: Sequence[tuple[str, Mesh]]) -> bool:
+    """Whether most things, and more than one, stand at the bottom, as they do on a floor that was not modelled."""
+    bottoms = np.array([mesh.vertices[:, 2].min() for _, mesh in objects if len(mesh.vertices)])
+    resting = int((bottoms < bottoms.min() + LEVEL_M).sum())
+    return resting > 1 and 2 * resting >= len(bottoms)
 
 
 def _level_share(triangles: Array, up: Array) -> float:
