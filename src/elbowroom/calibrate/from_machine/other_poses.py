@@ -6,49 +6,56 @@ from dataclasses import replace
 import numpy as np
 
 from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
-from elbowroom.calibrate.from_machine.start import misfit, start
+from elbowroom.calibrate.from_machine.fit import fit
+from elbowroom.calibrate.from_machine.start import start
+from elbowroom.calibrate.from_machine.verdict import check_camera
 from elbowroom.calibrate.from_machine.views import LEAST_POSES, MachineViews
 from elbowroom.errors import CalibrationError
+from elbowroom.machine import Machine
 
-FITS_M = 0.03
-"""What moved lies so near to the machine's surface where a camera is right, a rough pose and all [m]."""
+MOST_OTHERS = 6
+"""Cameras that one may have been exchanged with, which are tried."""
 SHIFTS = (-1, 1, -2, 2)
 """By so many poses a camera may be late."""
 
 
 def explained(
-    drawn: DrawnMachine, views: MachineViews, everyone: Sequence[MachineViews], refused: Sequence[str]
+    machine: Machine, views: MachineViews, everyone: Sequence[MachineViews], refused: Sequence[str]
 ) -> str | None:
     """What makes a camera fit, and what to do; None: nothing that was tried.
 
     Args:
-        drawn: the machine, where its base is.
+        machine: where its base is.
         views: of the camera, which does not fit as it is.
         everyone: of all cameras.
-        refused: names of those that do not fit, which may have been exchanged.
+        refused: names of those that do not fit, which are the first to have been exchanged.
     """
     for shift in SHIFTS:
         moved = _shifted(views, everyone, shift)
-        if moved is not None and _fits(drawn, moved):
+        if moved is not None and _fits(machine, moved):
             count = "one pose" if abs(shift) == 1 else f"{abs(shift)} poses"
             return (
                 f"its images fit the joints of {count} {'before' if shift < 0 else 'after'}: it is "
                 f"{'late' if shift < 0 else 'early'}, or its clock is; correct its stamps, or capture again"
             )
-    for other in everyone:
+    others = [one for one in everyone if one.camera.name != views.camera.name and _alike(views, one)]
+    others.sort(key=lambda one: one.camera.name not in refused)
+    for other in others[:MOST_OTHERS]:
         name = other.camera.name
-        if name == views.camera.name or name not in refused or not _alike(views, other):
-            continue
-        if _fits(drawn, _at_place_of(views, other)) and _fits(drawn, _at_place_of(other, views)):
+        if _fits(machine, _at_place_of(views, other)) and _fits(machine, _at_place_of(other, views)):
             return f"its images fit at the place of camera {name}, and the other way round: exchange the two folders"
     return None
 
 
-def _fits(drawn: DrawnMachine, views: MachineViews) -> bool:
+def _fits(machine: Machine, views: MachineViews) -> bool:
+    """Whether the camera alone is found from these views, as any camera is."""
     try:
-        return misfit(drawn, views, start(drawn, views)) < FITS_M
+        begun = start(DrawnMachine(machine, machine.world_from_base), views)
+        found = fit(machine, [views], {views.camera.name: begun}, {}, free_base=False, model_sigma_m=None)
+        check_camera(machine, views, found)
     except CalibrationError:
         return False
+    return True
 
 
 def _shifted(views: MachineViews, everyone: Sequence[MachineViews], shift: int) -> MachineViews | None:

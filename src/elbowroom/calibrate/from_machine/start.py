@@ -92,17 +92,6 @@ def start(drawn: DrawnMachine, views: MachineViews) -> Array:
     return best
 
 
-def misfit(drawn: DrawnMachine, views: MachineViews, world_from_camera: Array) -> float:
-    """Mean distance of what moved from the machine's surface, none counted above 10 cm [m].
-
-    Args:
-        drawn: the machine, where its base is.
-        views: of the camera.
-        world_from_camera: where the camera is, shape (4, 4).
-    """
-    return _misfit(world_from_camera, _usable(drawn, views))
-
-
 def _usable(drawn: DrawnMachine, views: MachineViews) -> list[tuple[Array, Surface]]:
     """Per pose that has a say what moved and the machine's surface."""
     small = views.images.coarser(max(1, views.images.thinned.width // START_WIDTH_PX))

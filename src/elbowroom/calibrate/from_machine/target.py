@@ -96,7 +96,7 @@ def calibrate_from_machine(
     starts = dict(
         zip(
             (v.camera.name for v in views),
-            _all_or_named(lambda v: start(drawn, v), views, drawn),
+            _all_or_named(lambda v: start(drawn, v), views, machine),
             strict=True,
         )
     )
@@ -114,7 +114,7 @@ def calibrate_from_machine(
         done=lambda: progress("least squares"),
     )
     machine = replace(machine, world_from_base=found.world_from_base)
-    _all_or_named(lambda v: check_camera(machine, v, found), views, drawn)
+    _all_or_named(lambda v: check_camera(machine, v, found), views, machine)
     calibrated = tuple(
         _calibrated(v, found, notes_of(machine, v, found))
         for v in views
@@ -140,7 +140,7 @@ def _known(views: Sequence[MachineViews], hold: Mapping[str, NDArray[np.float64]
     return {name: Known(poses[name], covariance) for name, covariance in hold.items()}
 
 
-def _all_or_named(work: Callable, views: Sequence[MachineViews], drawn: DrawnMachine) -> list:
+def _all_or_named(work: Callable, views: Sequence[MachineViews], machine: Machine) -> list:
     """Does work for each camera; if it fails for any, all of them are named in the one error, with what would fit."""
 
     def tried(view: MachineViews) -> object:
@@ -156,7 +156,7 @@ def _all_or_named(work: Callable, views: Sequence[MachineViews], drawn: DrawnMac
     refused = [v.camera.name for v, _ in errors]
     others = ", ".join(refused[1:])
     first, error = errors[0]
-    why = explained(drawn, first, views, refused)
+    why = explained(machine, first, views, refused)
     said = str(error) if why is None else f"camera {refused[0]}: {why}; as it is: {error}"
     raise CalibrationError(said + (f" (and the same or the like for {others})" if others else ""))
 

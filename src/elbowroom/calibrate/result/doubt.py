@@ -99,7 +99,7 @@ def _arrangement(before: Mapping[str, Array], after: Mapping[str, Array]) -> str
             _laid(before, after, before[other] @ invert_rigid(after[one])) for one in names for other in names
         ]
     best = max(tries, key=lambda one: one.rank)
-    exchanged = {name: place for name, place in best.places.items() if name != place}
+    exchanged = {name: place for name, place in sorted(best.places.items()) if name != place}
     together = best.by_m > NEAR_M or best.by_deg > NEAR_DEG
     if len(best.places) < max(2, 0.7 * len(names)):
         return "look whether names, folders and poses belong together, and whether calibration.world is right"
