@@ -219,8 +219,8 @@ def seen_in(
     lens = entry.images.lenses.get(image.camera.name)
     if lens is None:
         grey = np.ascontiguousarray(read_grey(path, image.camera)[:, turn])
-        depth = frame.depth_m[:, turn] if entry.images.kind == "infrared" else None
-        return printed_view(image.camera, board, grey, depth, pose, image.stamp_ns)
+        infrared = frame.depth_m[:, turn] if entry.images.kind == "infrared" else None
+        return printed_view(image.camera, board, grey, infrared, pose, image.stamp_ns)
     k = Intrinsics(lens.fx, lens.fy, lens.cx, lens.cy, lens.distortion)
     colour = DepthCamera(image.camera.name, lens.width, lens.height, np.eye(4), k)
     grey = np.ascontiguousarray(read_grey(path, colour)[:, turn])

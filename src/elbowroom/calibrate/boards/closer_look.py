@@ -89,8 +89,8 @@ def closer_look(board: Board, work: Work, looks: Looks, *, others_see_it: bool) 
     ]
     if len(sizes) < LEAST_VIEWS:
         return None
-    lens = "; its fx, or its depth_scale_m, is of another size of image or unit" if others_see_it else ""
-    return f"{sizes[len(sizes) // 2]}{lens}"
+    more = "; its fx, or its depth_scale_m, is of another size of image or unit" if others_see_it else ""
+    return f"{sizes[len(sizes) // 2]}{more}"
 
 
 def _views(board: Board, few: Work, look: Look) -> int:

@@ -69,6 +69,7 @@ def run_intrinsics(options: IntrinsicsOptions, json_file: Path | None) -> None:
             force_file=options.force_file,
         )
     print(f"site      {options.out}")
+    print(f"next      elbowroom calibrate extrinsics {options.out} --out calibrated.yaml")
     if options.report is not None:
         _write_page(options.report, site, found, seen)
 

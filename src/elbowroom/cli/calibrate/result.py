@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.calibrate.result.beside_truth import beside_truth
 from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
 from elbowroom.calibrate.result.change import change_rows, change_table
 from elbowroom.calibrate.result.doubt import doubts_of
@@ -87,7 +88,11 @@ def write_result(
             lambda aside: update_site(site, cameras, covariances, aside, command, world_from_base),
             force_file=options.force_file,
         )
+    truth = beside_truth(found, site.path.parent)
+    if truth is not None:
+        print(f"truth     {truth}")
     print(f"site      {options.out}")
+    print(f"next      elbowroom site check {options.out}")
     return rows
 
 

@@ -52,8 +52,10 @@ def read_ply(path: Path) -> MeshFile:
         elements, order, body = _header(path.read_bytes())
         rows = _text(elements, body) if order == "=" else _bytes(elements, body, order)
         vertices = np.column_stack([rows["vertex"][axis] for axis in "xyz"]).astype(np.float64)
-        polygons = next((rows["face"][key] for key in CORNERS if key in rows.get("face", {})), [])
-        strips = next((rows["tristrips"][key] for key in CORNERS if key in rows.get("tristrips", {})), [])
+        polygons: Any = next((rows["face"][key] for key in CORNERS if key in rows.get("face", {})), [])
+        strips: Any = next(
+            (rows["tristrips"][key] for key in CORNERS if key in rows.get("tristrips", {})), []
+        )
         faces = np.concatenate([_polygons(vertices, polygons), *(_strips(one) for one in strips)])
     except (ValueError, KeyError, IndexError, TypeError) as error:
         raise InputError(f"{path}: damaged PLY ({type(error).__name__}: {error}); export it again") from error
