@@ -36,6 +36,6 @@ def beside_truth(found: Sequence[CalibratedCamera], folder: Path) -> str | None:
         return None  # some other file of that name
     worst, turned = (max(off, key=lambda name: off[name][axis]) for axis in (0, 1))
     return (
-        f"cameras within {off[worst][0] * 1e3:.1f} mm ({worst}) and {np.degrees(off[turned][1]):.3f} degrees ({turned}) "
-        f"of {path.name}"
+        f"cameras within {off[worst][0] * 1e3:.1f} mm ({worst}) and {np.degrees(off[turned][1]):.3f} degrees "
+        f"({turned}) of {path.name}"
     )
