@@ -98,6 +98,7 @@ def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir:
     from elbowroom.monitor.start.compiling import compile_kernels
     from elbowroom.monitor.start.start import started
     from elbowroom.site.notes import notes_of
+    from elbowroom.sources import time_findings
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
@@ -105,7 +106,7 @@ def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir:
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
     with json_rows(json_file) as add, TerminalView(console) as view:
-        for note in notes_of(room.site):
+        for note in (*notes_of(room.site), *(finding.text for finding in time_findings(room.site))):
             view.note(note)
         compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
         with Steps(console, 4) as steps:

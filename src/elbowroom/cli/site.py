@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from elbowroom.cli.options import JsonFile, SitePath
+from elbowroom.cli.site_mask import mask
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
@@ -17,10 +18,11 @@ if TYPE_CHECKING:
     from elbowroom.site import Site
 
 site_app = typer.Typer(
-    help="Write a site file, or check one.",
+    help="Write a site file, check one, or find masks.",
     epilog="Begin with: elbowroom site new my_room.yaml",
     no_args_is_help=True,
 )
+site_app.command(epilog="Example: elbowroom site mask my_room.yaml --out masks")(mask)
 
 
 @site_app.command(epilog="Example: elbowroom site new my_room.yaml")
@@ -78,17 +80,28 @@ def _findings(site: "Site") -> dict[str, Any]:
     """All that can be said of a site without carving; raises on whatever is wrong with it."""
     from elbowroom.site import memory_of
     from elbowroom.site.notes import notes_of
-    from elbowroom.sources import cameras_of, check_images, looked_at, silent_cameras
+    from elbowroom.sources import (
+        cameras_of,
+        check_images,
+        looked_at,
+        silent_cameras,
+        time_findings,
+        times_of,
+    )
+    from elbowroom.sources.times.told import times_row
 
     grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
     motions = site.motions(machine) if machine is not None else ()
-    moments = images = None
+    moments = images = times = None
     notes = list(notes_of(site))
     if site.entry.recording is not None:
         moments, images = check_images(site)
         notes += [
             f"camera {name} has no image: it disputes all that it looks at" for name in silent_cameras(site)
         ]
+        notes += [finding.text for finding in time_findings(site)]
+        meeting = times_of(site)
+        times = None if meeting is None else times_row(meeting)
     return {
         "site": str(site.path),
         "name": site.name,
@@ -104,6 +117,7 @@ def _findings(site: "Site") -> dict[str, Any]:
         "detail": site.detail,
         "moments": moments,
         "images": images,
+        "times": times,
         **memory_of(grid, cameras).row(),
         "notes": notes,
         "findings": [asdict(finding) for finding in looked_at(site)],
@@ -135,6 +149,7 @@ def _say(row: dict[str, Any]) -> None:
         "machine": f"{row['machine']}, {row['motions']} motions to check" if row["machine"] else "none",
         "decision": f"rule {row['rule']}, detail {row['detail']}",
         "recording": f"{row['images']} images of {row['moments']} moments, headers checked, some looked at"
+        + ("" if row["times"] is None else f"; {row['times']['text']}")
         if row["images"]
         else "none",
         "memory": f"about {row['memory_bytes'] / 1e6:.0f} MB: planes {row['planes_bytes'] / 1e6:.1f} "
@@ -144,6 +159,8 @@ def _say(row: dict[str, Any]) -> None:
     }
     for key, text in lines.items():
         print(f"{key:9} {text}")
+        if key == "recording" and row["times"] is not None:
+            print("".join(f"times     {span}\n" for span in row["times"]["spans"]), end="")
     for note in row["notes"]:
         print(f"note      {note}")
     for finding in row["findings"]:

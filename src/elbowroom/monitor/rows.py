@@ -69,6 +69,8 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
         "stage_ms": dict(result.stage_ms),
         "source_ms": source_ms,
         "oldest_age_ms": result.oldest_age_ms,
+        "age_ms": result.age_ms,
+        "late": result.late,
         "fault": result.fault,
         "stopped_by": result.stopped_by,
         "findings": [asdict(finding) for finding in result.findings],

@@ -8,6 +8,8 @@ from functools import lru_cache
 from elbowroom.errors import ImplausibleError, ValueWarning
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry.margin import Margin
+from elbowroom.reconstruct.contradiction.findings import contradictions
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.sensing import DepthFrame
 from elbowroom.sensing.values import look_at_images, look_at_setting
@@ -29,6 +31,7 @@ def found_at(
     cameras: Sequence[DepthCamera],
     frames: Sequence[DepthFrame],
     units_m: Mapping[str, float | None] | None = None,
+    margin: Margin | None = None,
 ) -> tuple[Finding, ...]:
     """All that is found at one moment; images are not looked at where lenses or places already stop.
 
@@ -36,19 +39,30 @@ def found_at(
         grid: the watched box.
         cameras, frames: of the room, and of the moment.
         units_m: metres per unit of the files that frames were read from, by camera; what is left out is not known.
+        margin: of cameras without one of their own; None: `Margin()`.
     """
     setting = look_at_setting(grid, cameras)
     if any(finding.stops for finding in setting):
         return setting
-    return (*setting, *look_at_images(grid, cameras, frames, units_m))
+    return (
+        *setting,
+        *look_at_images(grid, cameras, frames, units_m),
+        *contradictions(cameras, frames, margin or Margin()),
+    )
 
 
-def require_plausible(grid: VoxelGrid, cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]) -> bool:
+def require_plausible(
+    grid: VoxelGrid,
+    cameras: Sequence[DepthCamera],
+    frames: Sequence[DepthFrame],
+    margin: Margin | None = None,
+) -> bool:
     """Looks at the first moments of these cameras; whether this is one of them.
 
     Args:
         grid: the watched box.
         cameras, frames: of the room, and of the moment; they fit each other.
+        margin: as of `found_at`.
 
     Raises:
         ImplausibleError: what is found cannot be meant so.
@@ -59,7 +73,7 @@ def require_plausible(grid: VoxelGrid, cameras: Sequence[DepthCamera], frames: S
     passed = _passed(grid, tuple(cameras))
     if passed.moments >= FIRST:
         return False
-    findings = found_at(grid, cameras, frames)
+    findings = found_at(grid, cameras, frames, margin=margin)
     refuse(findings)
     for finding in findings:
         warnings.warn(finding.text, ValueWarning, stacklevel=3)

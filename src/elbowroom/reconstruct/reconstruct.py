@@ -87,7 +87,7 @@ def reconstruct(
     is_first = False
     if looks:
         frames_by_camera(cameras, frames)  # a frame of another size cannot be looked at
-        is_first = require_plausible(grid, cameras, frames)
+        is_first = require_plausible(grid, cameras, frames, terms.margin)
     with parallel.threads(threads):
         space = free_space_of(grid, cameras, snapshot, machine, terms, focus=focus, timer=timer)
     for finding in found_in_space(space) if is_first and focus is None else ():

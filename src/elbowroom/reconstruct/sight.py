@@ -51,7 +51,9 @@ def sight_of(
 def _place(
     camera: DepthCamera, in_camera: NDArray[np.float64], edge_m: float
 ) -> tuple[float, float, float] | None:
-    """Column and row of a voxel's centre, how far about them it reaches [px]; None: it is not all in the image."""
+    """Column and row of a voxel's centre, how far about them it reaches [px]; None: it is not all in the image,
+    or its centre is masked.
+    """
     if not in_camera[2] > 0:
         return None
     k = camera.intrinsics
@@ -59,8 +61,16 @@ def _place(
     reach = edge_m * 0.87 * max(k.fx, k.fy) / in_camera[2]
     u, v = k.fx * in_camera[0] / in_camera[2] + k.cx, k.fy * in_camera[1] / in_camera[2] + k.cy
     half = reach + 2
+    if camera.mask is not None and _is_masked(camera.mask, u, v):
+        return None
     visible = half <= u <= camera.width - 1 - half and half <= v <= camera.height - 1 - half
     return (u, v, reach) if visible else None
+
+
+def _is_masked(mask: NDArray[np.bool_], u: float, v: float) -> bool:
+    """Whether the pixel at a place says nothing."""
+    row, column = round(v), round(u)
+    return 0 <= row < mask.shape[0] and 0 <= column < mask.shape[1] and bool(mask[row, column])
 
 
 def _sight(evidence: Evidence, visible: bool, past: bool) -> Sight:

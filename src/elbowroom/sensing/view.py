@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
-from elbowroom.sensing.rectify import index_map_of
+from elbowroom.sensing.rectify import index_map_of, rectified
 
 
 def in_view(camera: DepthCamera, points_in_world: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -26,9 +26,18 @@ def in_view(camera: DepthCamera, points_in_world: NDArray[np.float64]) -> NDArra
         np.abs(v - (camera.height - 1) / 2) <= camera.height / 2
     )
     within &= (z > 0) & (depth >= camera.min_depth_m) & (depth <= camera.max_depth_m)
+    mask = rectified(camera).mask
+    if mask is not None:
+        within[within] = ~mask[_pixels(camera, u[within], v[within])]
     if k.is_distorted:
         filled = index_map_of(k, camera.width, camera.height).first_u >= 0
-        column = np.clip(np.rint(u[within]), 0, camera.width - 1).astype(np.intp)
-        row = np.clip(np.rint(v[within]), 0, camera.height - 1).astype(np.intp)
-        within[within] = filled[row, column]
+        within[within] = filled[_pixels(camera, u[within], v[within])]
     return np.asarray(within)
+
+
+def _pixels(
+    camera: DepthCamera, u: NDArray[np.float64], v: NDArray[np.float64]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of the pixels about places in an image."""
+    row = np.clip(np.rint(v), 0, camera.height - 1).astype(np.intp)
+    return row, np.clip(np.rint(u), 0, camera.width - 1).astype(np.intp)

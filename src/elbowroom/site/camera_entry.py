@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from elbowroom.errors import SiteError
+from elbowroom.files.mask_file import read_mask
 from elbowroom.files.matrix_file import read_matrix
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.sensing import NOISE_PRESETS, Margin, NoiseModel
@@ -95,6 +96,7 @@ class CameraSettings(Entry):
     min_depth_m: Annotated[NotNegative, up_to(20, "m", MILLIMETRES)] = 0.0
     max_depth_m: Annotated[Positive, up_to(300, "m", MILLIMETRES)] | None = None
     flying_pixels: Flag | None = None
+    mask: Text | None = None
 
     @model_validator(mode="after")
     def _one_source_of_intrinsics(self) -> "CameraSettings":
@@ -237,6 +239,9 @@ def build_camera(
         min_depth_m=settings.get("min_depth_m", 0.0),
         max_depth_m=float("inf") if deepest is None else deepest,
         flying_pixels=settings.get("flying_pixels"),
+        mask=None
+        if settings.get("mask") is None
+        else read_mask(expand(settings["mask"], beside), settings["width"], settings["height"]),
     )
 
 

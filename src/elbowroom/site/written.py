@@ -18,7 +18,7 @@ from elbowroom.site import Site
 from elbowroom.site.paths import led_from
 from elbowroom.site.schema import EVEN_SETTINGS
 
-PATH_KEYS = ("intrinsics_file", "pose_file", "urdf", "mesh", "folder")
+PATH_KEYS = ("intrinsics_file", "pose_file", "urdf", "mesh", "folder", "mask")
 """Keys whose values are paths beside the site file."""
 DIGITS = 9
 

@@ -3,7 +3,15 @@
 from elbowroom.sources.cameras import cameras_of
 from elbowroom.sources.depth_png import read_depth_png
 from elbowroom.sources.looked import looked_at
-from elbowroom.sources.recorded import Recorded, check_images, excluded_frames, moments, silent_cameras
+from elbowroom.sources.recorded import (
+    Recorded,
+    check_images,
+    excluded_frames,
+    moments,
+    silent_cameras,
+    time_findings,
+    times_of,
+)
 from elbowroom.sources.room import Room, open_room
 from elbowroom.sources.source import Source
 
@@ -19,4 +27,6 @@ __all__ = [
     "open_room",
     "read_depth_png",
     "silent_cameras",
+    "time_findings",
+    "times_of",
 ]

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
+from elbowroom.reconstruct.contradiction.findings import contradictions
 from elbowroom.sensing.values import look_at_images, look_at_setting
 from elbowroom.site import Site
 from elbowroom.site.plausible import look_at_site
@@ -31,6 +32,7 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
             found += look_at_images(
                 grid, cameras, frames, {image.camera.name: image.unit_m for image in group}
             )
+            found += contradictions(cameras, frames, site.margin())
     return once(found)
 
 

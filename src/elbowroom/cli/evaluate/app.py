@@ -3,6 +3,7 @@
 import typer
 
 from elbowroom.cli.evaluate.bits import bits
+from elbowroom.cli.evaluate.contradictions import contradictions
 from elbowroom.cli.evaluate.looks import looks
 from elbowroom.cli.evaluate.placement import placement
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
@@ -39,4 +40,7 @@ evaluate_app.command(epilog=_example("scale-budget --poses 4 --json budget.json"
 evaluate_app.command(epilog=_example("more --out report --json more.json"))(more)
 evaluate_app.command(epilog=_example("bits --json now.json --against benchmarks/results/bits.json"))(bits)
 evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
+evaluate_app.command(epilog=_example("contradictions --sites 5 --right 20 --json contradictions.json"))(
+    contradictions
+)
 evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

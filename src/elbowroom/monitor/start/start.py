@@ -6,13 +6,15 @@ from dataclasses import replace
 from elbowroom.errors import InputError
 from elbowroom.geometry import bits
 from elbowroom.monitor.cycle import Cycle
+from elbowroom.monitor.health.clocks import Clocks
 from elbowroom.monitor.loop import Loop
 from elbowroom.monitor.start.looking import looks_of
 from elbowroom.monitor.start.watching import checks_of
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
-from elbowroom.sources import Recorded, Room
+from elbowroom.sources import Recorded, Room, times_of
 from elbowroom.sources.pace import Pace
+from elbowroom.sources.times.meeting import gap_ns
 
 
 def started(room: Room, begin: Callable[[str], None]) -> Loop:
@@ -28,11 +30,20 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
     """
     machine, motions = room.machine_and_motions()
     cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
-    pace = Pace().wait if isinstance(room.source, Recorded) else None
+    recorded = isinstance(room.source, Recorded)
+    pause_ns = _gap_ns(room) if recorded else gap_ns(None)
     checks = replace(checks_of(room, begin), looks=looks_of(room))
-    loop = Loop(room, checks, cycle, pace)
+    loop = Loop(room, checks, cycle, Pace(pause_ns).early_s if recorded else None)
     _warm_up(loop, begin)
-    return loop
+    # after that, since the source begins anew, and its times with it
+    clocks = Clocks(room.terms.max_age_ns, recorded, pause_ns)
+    return replace(loop, checks=replace(loop.checks, looks=(*loop.checks.looks, clocks)))
+
+
+def _gap_ns(room: Room) -> int:
+    """How long nothing has to come in a recording to be a gap [ns]."""
+    times = times_of(room.site)
+    return gap_ns(None) if times is None else times.gap_ns
 
 
 def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:

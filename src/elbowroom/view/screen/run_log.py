@@ -40,6 +40,7 @@ class RunLog:
     ends_s: deque[float] = field(default_factory=lambda: deque(maxlen=RECENT + 1), init=False)
     levels: dict[str, Counter[Level]] = field(default_factory=dict, init=False)
     faults: Counter[str] = field(default_factory=Counter, init=False)
+    late: int = field(default=0, init=False)
     stops: dict[str, str] = field(default_factory=dict, init=False)
     is_watched: bool = field(default=False, init=False)
     cycles: int = field(default=0, init=False)
@@ -55,14 +56,16 @@ class RunLog:
         self.cycles += 1
         self.cycle_ms.append(result.cycle_ms)
         self.source_ms.append(source_ms)
-        if result.oldest_age_ms is not None:
-            self.age_ms.append(result.oldest_age_ms + result.cycle_ms)
+        if result.age_ms is not None:
+            self.age_ms.append(result.age_ms)
         self.stages.append(dict(result.stage_ms))
         self.ends_s.append(time.perf_counter())
         for verdict in result.verdicts:
             self.levels.setdefault(verdict.motion.name, Counter())[verdict.level] += 1
         if result.fault is not None:
             self.faults[result.fault] += 1
+        if result.late is not None:
+            self.late += 1
         if result.health is not None:
             self.is_watched = True
             self.stops = dict(result.health.stops)
@@ -94,6 +97,7 @@ class RunLog:
             "cycles": self.cycles,
             "rate_hz": self.whole_rate_hz,
             "faults": self.faults.total(),
+            "late": self.late,
             "watched": self.is_watched,
             "stop_reasons": list(self.stops.values()),
         }
@@ -149,6 +153,10 @@ class RunLog:
             fault, times_seen = self.faults.most_common(1)[0]
             count = self.faults.total()
             yield Text(f"{count} cycles failed and said stop; most often ({times_seen}): {fault}", "bold red")
+        if self.late:
+            late = f"{self.late} of {self.cycles} cycles said stop"
+            text = f"{late}, as images were past max_frame_age_ms when their verdicts were out"
+            yield Text(f"{text}: larger voxels, fewer pixels or more cores make a pass shorter", "bold red")
         for reason in self.stops.values():
             yield Text(f"Every motion was stopped: {reason}", "bold red")
         if self.stops:

@@ -68,7 +68,7 @@ class TerminalView:
         self._live = live
         self._last_screen: RenderableType | None = None
         self._last_shown_s = float("-inf")
-        self._said: dict[str, None] = {}
+        self._said: dict[tuple[str, tuple[str, ...]], str] = {}
 
     def __enter__(self) -> "TerminalView":
         return self
@@ -116,7 +116,7 @@ class TerminalView:
         """Ends the screen and prints what the run came to."""
         self.stop()
         if self._live is not None:
-            for text in self._said:
+            for text in self._said.values():
                 self._print_warning(text)
         self.console.print(self.log.summary())
 
@@ -127,8 +127,9 @@ class TerminalView:
     def _warn(self, result: CycleResult) -> None:
         """Says what was found about the input, each thing once: at once in plain lines, at the end of a screen."""
         for finding in result.findings:
-            if not finding.stops and finding.text not in self._said:
-                self._said[finding.text] = None
+            of = finding.kind, finding.about
+            if of not in self._said:
+                self._said[of] = finding.text
                 if self._live is None:
                     self._print_warning(finding.text)
 
@@ -158,7 +159,7 @@ class TerminalView:
 
     def line(self, result: CycleResult) -> str:
         """One pass in one plain line."""
-        age = "" if result.oldest_age_ms is None else f" age {result.oldest_age_ms:.0f} ms"
+        age = "" if result.age_ms is None else f" age {result.age_ms:.0f} ms"
         head = (
             f"{result.stamp_ns / 1e9:8.2f} s {self.log.rate_hz:5.1f} Hz cycle {result.cycle_ms:.0f} ms{age}"
         )
@@ -170,13 +171,14 @@ class TerminalView:
 
     def _speed(self, result: CycleResult) -> Text:
         log = self.log
-        age = log.recent(log.age_ms)
+        age = result.age_ms if result.late is not None else log.recent(log.age_ms)
         stages = " + ".join(f"{name} {ms:.0f}" for name, ms in log.recent_stage_ms.items())
         levels = [verdict.level for verdict in result.verdicts]
         text = Text()
         text.append(f"{log.rate_hz:.1f} Hz", "bold")
         text.append("  frame age ")
-        text.append("unknown" if result.oldest_age_ms is None else f"{age:.0f} ms", "bold")
+        style = "bold" if result.late is None else STYLES[Level.STOP]
+        text.append("unknown" if result.age_ms is None else f"{age:.0f} ms", style)
         text.append("  cycle ")
         text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
         text.append(f" = {stages}", "dim")
@@ -224,6 +226,8 @@ def _stops(result: CycleResult) -> list[str]:
     found = () if result.health is None else result.health.stops.values()
     lines = [f"Stop: {reason}. Stays until the monitor is started again." for reason in found]
     lines += [f"Stop: {finding.text}" for finding in result.findings if finding.stops]
+    if result.late is not None:
+        lines.append(f"Stop: {result.late}")
     return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
 
 

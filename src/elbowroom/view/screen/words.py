@@ -23,6 +23,7 @@ CAUSE_WORDS: dict[Cause, str] = {
     Cause.UNSEEN: "unseen",
     Cause.NONE: "",
     Cause.FAULT: "fault",
+    Cause.STALE: "too old",
     Cause.INPUT: "input",
     Cause.WATCH: "watch",
 }
