@@ -33,7 +33,9 @@ def found_at(
     units_m: Mapping[str, float | None] | None = None,
     margin: Margin | None = None,
 ) -> tuple[Finding, ...]:
-    """All that is found at one moment; images are not looked at where lenses or places already stop.
+    """All that is found at one moment: lenses and places, then images, then what cameras contradict each other in.
+
+    Where one of these stops, the next are not asked: what they would say follows from it.
 
     Args:
         grid: the watched box.
@@ -41,14 +43,12 @@ def found_at(
         units_m: metres per unit of the files that frames were read from, by camera; what is left out is not known.
         margin: of cameras without one of their own; None: `Margin()`.
     """
-    setting = look_at_setting(grid, cameras)
-    if any(finding.stops for finding in setting):
-        return setting
-    return (
-        *setting,
-        *look_at_images(grid, cameras, frames, units_m),
-        *contradictions(cameras, frames, margin or Margin()),
-    )
+    found = look_at_setting(grid, cameras)
+    if not any(finding.stops for finding in found):
+        found = (*found, *look_at_images(grid, cameras, frames, units_m))
+    if not any(finding.stops for finding in found):
+        found = (*found, *contradictions(cameras, frames, margin or Margin()))
+    return found
 
 
 def require_plausible(

@@ -29,10 +29,12 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
     if site.entry.recording is not None and not any(finding.stops for finding in found):
         for group in _some(layout_of(site).moments()):
             frames = [image.read() for image in group]
-            found += look_at_images(
-                grid, cameras, frames, {image.camera.name: image.unit_m for image in group}
-            )
-            found += contradictions(cameras, frames, site.margin())
+            units = {image.camera.name: image.unit_m for image in group}
+            of_values = look_at_images(grid, cameras, frames, units)
+            found += of_values
+            # what cameras contradict each other in follows from values that cannot be meant so
+            if not any(finding.stops for finding in of_values):
+                found += contradictions(cameras, frames, site.margin())
     return once(found)
 
 
