@@ -43,12 +43,14 @@ def found_at(
         units_m: metres per unit of the files that frames were read from, by camera; what is left out is not known.
         margin: of cameras without one of their own; None: `Margin()`.
     """
-    found = look_at_setting(grid, cameras)
-    if not any(finding.stops for finding in found):
-        found = (*found, *look_at_images(grid, cameras, frames, units_m))
-    if not any(finding.stops for finding in found):
-        found = (*found, *contradictions(cameras, frames, margin or Margin()))
-    return found
+    setting = look_at_setting(grid, cameras)
+    if any(finding.stops for finding in setting):
+        return setting
+    images = look_at_images(grid, cameras, frames, units_m)
+    if any(finding.stops for finding in images):
+        # images that cannot be right contradict each other as well: that says nothing new
+        return (*setting, *images)
+    return (*setting, *images, *contradictions(cameras, frames, margin or Margin()))
 
 
 def require_plausible(

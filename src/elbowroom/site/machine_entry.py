@@ -21,7 +21,8 @@ from elbowroom.site.ranges import MILLIMETRES, MILLISECONDS, MM_A_SECOND, up_to
 class MachineEntry(Entry):
     """The machine: one that ships with the package, or a URDF; where its base stands; links not to check.
 
-    `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself.
+    `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself. On a
+    `free_base` the machine drives or floats, and where it stands is among its joint positions.
     """
 
     builtin: Literal["ceiling_c_arm"] | None = None
@@ -29,6 +30,7 @@ class MachineEntry(Entry):
     world_from_base: Matrix | None = None
     unchecked_links: tuple[Text, ...] = ()
     explain_tolerance_m: Annotated[Positive, up_to(0.5, "m", MILLIMETRES)] | None = None
+    free_base: Literal["planar", "floating"] | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> "MachineEntry":

@@ -157,6 +157,19 @@ def test_masked_pixels_are_not_compared():
     assert found([replace(RIGHT.cameras[0], mask=mask), *RIGHT.cameras[1:]], frames) == ()
 
 
+def test_a_mask_of_other_images_is_told_of_and_the_right_one_is_not():
+    frames = list(RIGHT.snapshot.frames)
+    dark = frames[0].depth_m.copy()
+    dark[:30] = 0
+    frames[0] = DepthFrame("ne", 0, dark)
+    for rows, told in ((slice(0, 30), False), (slice(90, 120), True)):
+        mask = np.zeros((120, 160), dtype=bool)
+        mask[rows] = True
+        findings = found([replace(RIGHT.cameras[0], mask=mask), *RIGHT.cameras[1:]], frames)
+        assert [finding.kind for finding in findings] == (["mask"] if told else [])
+        assert not any(finding.stops for finding in findings)
+
+
 def test_reconstruct_refuses_what_contradicts():
     wrong = KINDS["two exchanged"](np.random.default_rng(1), RIGHT)
     with pytest.raises(ImplausibleError, match="each other's pose"):

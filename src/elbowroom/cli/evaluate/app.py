@@ -39,8 +39,8 @@ evaluate_app.command(epilog=_example("scale-cameras --poses 2 --step 20 --json c
 evaluate_app.command(epilog=_example("scale-budget --poses 4 --json budget.json"))(scale_budget)
 evaluate_app.command(epilog=_example("more --out report --json more.json"))(more)
 evaluate_app.command(epilog=_example("bits --json now.json --against benchmarks/results/bits.json"))(bits)
-evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
 evaluate_app.command(epilog=_example("contradictions --sites 5 --right 20 --json contradictions.json"))(
     contradictions
 )
+evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
 evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

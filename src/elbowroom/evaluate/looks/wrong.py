@@ -200,4 +200,4 @@ WRONG: Mapping[str, Wrong] = {
         ("principal point",),
     ),
 }
-"""By name."""
+"""By name. What can be told only by what cameras contradict is `evaluate contradictions`'."""

@@ -66,7 +66,7 @@ class Eye:
             radial=camera.depth_kind == "radial",
             scale=1.0,
             least_m=camera.min_depth_m,
-            greatest_m=camera.max_depth_m,
+            greatest_m=camera.deepest_m,
             noise=camera.noise,
             margin=camera.margin or margin,
         )

@@ -19,6 +19,7 @@ from elbowroom.reconstruct.contradiction.suspicion import (
 )
 from elbowroom.reconstruct.contradiction.views import Views
 from elbowroom.sensing import DepthFrame
+from elbowroom.sensing.masked import masked_returns
 
 KIND = "contradiction"
 LIMIT = 0.2
@@ -42,14 +43,14 @@ SAME_M, SAME_RAD = 1e-3, 1e-3
 def contradictions(
     cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame], margin: Margin
 ) -> tuple[Finding, ...]:
-    """What is found where the images of one moment are compared with each other.
+    """What is found where the images of one moment are compared with each other, and with their masks.
 
     Args:
         cameras: of the room.
         frames: at most one of each, of its camera's size; cameras without one are left out.
         margin: of cameras without one of their own.
     """
-    return found_in(Views.of(cameras, frames, margin))
+    return (*masked_returns(cameras, frames), *found_in(Views.of(cameras, frames, margin)))
 
 
 def found_in(views: Views) -> tuple[Finding, ...]:
