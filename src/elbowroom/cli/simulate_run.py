@@ -164,6 +164,8 @@ def simulate_site(path: Path, asked: Asked, json: Path | None) -> None:
         with options_named(joints="--joints", people="--moving", room="--room", out="--out", noise="--noise"):
             room = site_room(path, asked.room, asked.out, asked.noise)
             refuse_foreign(room.images)
+            if room.machine is not None:
+                room.machine.require_joints(asked.joints or {})
             scene, notes = room.scene(course)
         shot = Shot(scene, room.cameras, tuple(course.times_s), room.box, room.images, room.units)
         _check_outside(shot, "")
@@ -264,6 +266,8 @@ def _walled(
         )
     floor = Floor(box.lower_m[:2], box.upper_m[:2], floor_height(box, solids) if asked.people else 0.0)
     joints = {**usual, **(asked.joints or {})} if options.machine else None
+    if joints is not None:
+        ceiling_c_arm().require_joints(joints)
     eyes = np.array([camera.centre_in_world for camera in cameras])
     return Surroundings(box, solids, (), floor, eyes), joints
 
