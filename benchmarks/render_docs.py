@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import result_tables as tables
+from ages import with_ages
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results"
@@ -260,5 +261,5 @@ def _origin(meta: Mapping[str, Any]) -> str:
 
 
 if __name__ == "__main__":
-    PAGE.write_text(render(), encoding="utf-8")
+    PAGE.write_text(with_ages(render()), encoding="utf-8")
     print(f"{PAGE.relative_to(ROOT)} written")

@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from ages import with_ages
+
 from elbowroom.evaluate.thesis.due import due_table
 from elbowroom.evaluate.thesis.parts import PARTS
 from elbowroom.evaluate.thesis.scale_budget import budget_table
@@ -50,7 +52,7 @@ One command does all of it and writes one page with the pictures:
 shares that do not depend on each other: `--jobs N` spreads them over processes, `--cluster tcp://HOST:PORT` over the
 computers of a Dask cluster, and the numbers are the same however they are spread. Ctrl-C keeps the shares that are
 done in `report/parts`; the same command goes on from there. All of it took 8 min 56 s on two cores (`time` before the
-command; due are 12 minutes). It needs `pip install 'elbowroom[evaluate]'`, and
+command; due are 12 minutes). It needs `.venv/bin/pip install '.[evaluate]'`, and
 `[cluster]` for Dask.
 
 ## The six setups
@@ -188,4 +190,4 @@ def _table(table: Table) -> list[str]:
 
 if __name__ == "__main__":
     draw(RESULTS, Path(sys.argv[1]) if len(sys.argv) > 1 else None)
-    PAGE.write_text(render(), encoding="utf-8")
+    PAGE.write_text(with_ages(render()), encoding="utf-8")

@@ -1,6 +1,7 @@
 """What the documentation says of the project is true of the project."""
 
 import ast
+import json
 import re
 import runpy
 import sys
@@ -112,7 +113,7 @@ def test_noise_table_has_every_preset_with_its_coefficients() -> None:
 
 
 def _forget_tables(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [name for name in sys.modules if name.partition(".")[0] == "result_tables"]:
+    for name in [name for name in sys.modules if name.partition(".")[0] in ("ages", "result_tables")]:
         monkeypatch.delitem(sys.modules, name)
 
 
@@ -121,7 +122,7 @@ def test_page_of_benchmarks_is_what_the_results_say(monkeypatch: pytest.MonkeyPa
     rendered = runpy.run_path(str(PROJECT / "benchmarks" / "render_docs.py"))["render"]()
     _forget_tables(monkeypatch)
     page = (PROJECT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
-    assert page == rendered, "run: python benchmarks/render_docs.py"
+    assert page.replace(_since(), "") == rendered, "run: python benchmarks/render_docs.py"
 
 
 def test_page_of_benchmarks_shows_what_misses_its_due_figure(
@@ -164,7 +165,36 @@ def test_pictures_are_light() -> None:
         assert picture.stat().st_size <= 300_000, picture.name
 
 
-def test_page_of_the_experiments_is_what_the_results_say() -> None:
+def test_page_of_the_experiments_is_what_the_results_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(PROJECT / "benchmarks"))
     rendered = runpy.run_path(str(PROJECT / "benchmarks" / "render_evaluation.py"))["render"]()
     page = (PROJECT / "docs" / "evaluation.md").read_text(encoding="utf-8")
-    assert page == rendered, "run: python benchmarks/render_evaluation.py"
+    _forget_tables(monkeypatch)
+    assert page.replace(_since(), "") == rendered, "run: python benchmarks/render_evaluation.py"
+
+
+def _ages() -> dict[str, Any]:
+    return runpy.run_path(str(PROJECT / "benchmarks" / "ages.py"))
+
+
+def _since() -> str:
+    return str(_ages()["SINCE"])
+
+
+@pytest.mark.parametrize("page", ("benchmarks.md", "evaluation.md"))
+def test_a_figure_that_is_older_than_the_core_says_so(page: str) -> None:
+    ages = _ages()
+    if not ages["has_history"]():
+        pytest.skip("no checkout with all its commits")
+    unsaid = ages["unsaid"]((PROJECT / "docs" / page).read_text(encoding="utf-8"))
+    assert not unsaid, (
+        f"{unsaid}; run: python benchmarks/render_{'docs' if 'bench' in page else 'evaluation'}.py"
+    )
+
+
+@pytest.mark.parametrize(
+    "result", sorted((PROJECT / "benchmarks" / "results").glob("*.json")), ids=lambda path: path.name
+)
+def test_results_come_from_a_commit_that_anybody_can_check_out(result: Path) -> None:
+    commit = json.loads(result.read_text(encoding="utf-8"))["meta"]["commit"]
+    assert re.fullmatch(r"[0-9a-f]{7,40}", commit), commit

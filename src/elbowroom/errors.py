@@ -8,11 +8,13 @@
     │   ├── MachineError     a URDF, a mesh, a joint that is unknown or out of its limits
     │   ├── JointsError      joints over time that are malformed, or not known at the time that is asked for
     │   ├── SiteError        a site file or a recording's folder
-    │   └── CalibrationError a board, a capture, or what was seen in it does not fix a pose
+    │   ├── CalibrationError a board, a capture, or what was seen in it does not fix a pose
+    │   └── ImplausibleError values that read as valid and cannot be meant so: a unit, a lens, a pose, a sentinel
     ├── EvidenceError        evidence that cannot be merged or resolved
     └── PackageError         an optional package is not installed
 
-`PoseWarning` is a warning, not an error: a pose was a little off a rotation and was brought to the nearest one.
+Two are warnings, not errors. `PoseWarning`: a pose was a little off a rotation and was brought to the nearest one.
+`ValueWarning`: something that was given reads as valid, but is most likely not meant so.
 """
 
 
@@ -52,6 +54,10 @@ class CalibrationError(InputError):
     """A board or a capture from which a pose cannot be had; the message says what to capture instead."""
 
 
+class ImplausibleError(InputError):
+    """Values that read as valid and cannot be meant so; the message says what was found and what it most likely is."""
+
+
 class EvidenceError(ElbowroomError):
     """Evidence of unlike grids, of a camera named twice, or of a kind that the rule cannot be decided from."""
 
@@ -62,3 +68,7 @@ class PackageError(ElbowroomError):
 
 class PoseWarning(UserWarning):
     """A pose was off a rigid transform by less than 1e-3 and was brought to the nearest rotation."""
+
+
+class ValueWarning(UserWarning):
+    """Something that was given is most likely not meant so; judging goes on. The message is a finding's text."""

@@ -1,6 +1,9 @@
 """Packages that only some commands need: imported when they are used, missed with the command that installs them."""
 
-from importlib import import_module
+import re
+import shlex
+import sys
+from importlib import import_module, metadata
 from typing import Any
 
 from elbowroom.errors import PackageError
@@ -13,7 +16,7 @@ PACKAGES = {
     "ortools": ("finding a placement needs CP-SAT of OR-Tools", "placement"),
     "small_gicp": ("calibration by the machine needs small_gicp", "calibrate"),
 }
-"""What needs each of them, and the extra of elbowroom that brings it."""
+"""What needs each of them, and the extra of elbowroom that names its version."""
 
 
 def package(name: str) -> Any:
@@ -30,5 +33,20 @@ def package(name: str) -> Any:
         return import_module(name)
     except ImportError as error:
         raise PackageError(
-            f"{need}, which cannot be imported ({error}); pip install 'elbowroom[{extra}]'"
+            f"{need}, which cannot be imported ({error}); install what {extra} needs: {install_command(extra)}"
         ) from error
+
+
+def install_command(extra: str) -> str:
+    """What installs the packages of an extra, into the environment that this program runs in.
+
+    It names the packages and not the extra, so that it works from a checkout and from wherever else.
+
+    Args:
+        extra: of elbowroom, such as "placement".
+    """
+    lines = metadata.requires("elbowroom") or []
+    wanted = [
+        line.partition(";")[0].strip() for line in lines if re.search(rf"extra == ['\"]{extra}['\"]", line)
+    ]
+    return shlex.join([sys.executable, "-m", "pip", "install", *wanted])

@@ -11,7 +11,7 @@ from elbowroom.evaluate.examples import example
 
 COMMANDS = [
     *("room", "sevenscenes", "alone", "poses", "travel", "bits", "thin-solids", "lost-pixels", "placement"),
-    *("scale-cameras", "scale-budget"),
+    *("scale-cameras", "scale-budget", "looks"),
 ]
 SMALL = ["--cameras", "5", "--size", "thesis", "--voxel-size", "0.1"]
 ROUNDED = 1.5e-6

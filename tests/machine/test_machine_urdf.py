@@ -135,7 +135,7 @@ def test_files_that_are_no_machine_are_refused(tmp_path, content, message):
         (BOX + BOX, "link 'a' is there twice"),
         (BOX + '<link name="b"/>', "one tree; without a parent are: a, b"),
         (BOX + joint(child="c"), "names link 'c'"),
-        (BOX + '<link name="b"/>' + joint("floating"), "'floating'; allowed are fixed, prismatic"),
+        (BOX + '<link name="b"/>' + joint("screw"), "'screw'; allowed are fixed, prismatic"),
         (BOX + '<link name="b"/>' + joint(limit=""), "needs <limit"),
         (
             BOX + '<link name="b"/>' + joint(limit='<limit lower="1" upper="-1"/>'),

@@ -9,6 +9,7 @@ from elbowroom.errors import FrameError, InputError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.monitor import Cycle, Health, Known, cycle
 from elbowroom.motion import Cause, Level, Motion, Verdict
+from elbowroom.reconstruct import Terms
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.sensing import DepthFrame, Snapshot
 
@@ -119,6 +120,51 @@ def test_verdicts_in_another_order_stay_with_their_motions(a_cycle, monkeypatch)
     backwards = [clear(MOTIONS[1], 0.2), clear(MOTIONS[0], 0.1)]
     monkeypatch.setattr(cycle, "check_motions", lambda *_: backwards)
     assert [v.free_travel for v in a_cycle.run(NOTHING).verdicts] == [0.1, 0.2]
+
+
+def aged(a_cycle: Cycle, took_ms: float, limit_ms: float | None = 200.0) -> Cycle:
+    """The cycle, whose passes take so long by its clock."""
+    ticks = iter(range(0, 10**12, round(took_ms * 1e6)))
+    limit = None if limit_ms is None else round(limit_ms * 1e6)
+    a_cycle.terms, a_cycle.clock_ns = Terms(max_age_ns=limit), lambda: next(ticks)
+    return a_cycle
+
+
+def test_what_is_too_old_when_the_pass_ends_is_a_stop_that_says_so(a_cycle):
+    now = 10**9
+    in_time = aged(a_cycle, 149).run(taken(now, now - 50 * 10**6, now_ns=now))
+    assert in_time.level is Level.CLEAR and in_time.late is None
+    late = aged(a_cycle, 151).run(taken(now, now - 50 * 10**6, now_ns=now))
+    assert [v.level for v in late.verdicts] == [Level.STOP] * 2
+    assert {v.cause for v in late.verdicts} == {Cause.STALE} and not late.verdicts[0].overridable
+    assert late.stopped_by == late.late and late.fault is None and late.space is not None
+    assert (
+        "201 ms old when the verdicts are out, at most 200 ms are allowed (max_frame_age_ms); the pass took 151 ms"
+        in late.late
+    )
+
+
+def test_the_age_at_the_end_is_that_of_frames_that_were_used(a_cycle):
+    """What was left out at the beginning, being too old, stops nothing more."""
+    now = 10**9
+    dead_too = taken(now, now - 10**9, None, now_ns=now)
+    assert aged(a_cycle, 100).run(dead_too).level is Level.CLEAR
+    assert aged(a_cycle, 100).run(taken(now - 10**9, now_ns=now)).late is None
+
+
+def test_without_a_limit_no_pass_is_too_long(a_cycle):
+    assert aged(a_cycle, 10**4, None).run(taken(1)).level is Level.CLEAR
+
+
+def test_the_age_is_one_number_that_of_the_end(a_cycle):
+    result = a_cycle.run(taken(2_000_000, 5_000_000))
+    assert result.age_ms == result.oldest_age_ms + result.cycle_ms
+    assert a_cycle.run(taken(None)).age_ms is None
+
+
+def test_what_a_look_or_the_watch_found_does_not_hide_that_it_is_too_old(a_cycle):
+    late = aged(a_cycle, 300).run(taken(10**9, now_ns=10**9)).knowing(health("camera c0 has turned"))
+    assert {v.cause for v in late.verdicts} == {Cause.STALE} and late.stopped_by == late.late
 
 
 def test_a_cycle_that_asks_nothing_is_refused():

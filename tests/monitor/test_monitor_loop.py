@@ -8,7 +8,7 @@ import pytest
 from elbowroom.errors import FrameError
 from elbowroom.finding import Finding
 from elbowroom.geometry import VoxelGrid
-from elbowroom.monitor import Checks, Cycle, Health, Loop, Pass, cycle
+from elbowroom.monitor import Checks, Cycle, Health, Loop, Pass, cycle, loop
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.reconstruct import Terms
 from elbowroom.reconstruct.free_space import FreeSpace
@@ -261,6 +261,65 @@ def test_the_watch_hears_no_frame_past_its_age():
 def test_an_age_limit_where_nothing_has_a_time_is_a_fault():
     known = Checks(AWatch(""), max_age_ns=5).hear(Snapshot(()))
     assert "an age limit needs the time" in known.fault and known.stop_cause is Cause.FAULT
+
+
+@pytest.fixture
+def sleeps(monkeypatch):
+    """A clock that only sleeping moves, and what was slept."""
+
+    class Clock:
+        now_s, slept = 100.0, []
+
+        def perf_counter(self):
+            return self.now_s
+
+        def perf_counter_ns(self):
+            return round(self.now_s * 1e9)
+
+        def sleep(self, seconds):
+            self.now_s += seconds
+            self.slept.append(seconds)
+
+    made = Clock()
+    made.slept = []
+    monkeypatch.setattr(loop, "time", made)
+    return made
+
+
+def test_the_end_comes_also_while_a_snapshot_is_waited_for(sleeps):
+    face, source = Listener(), Script(at(1), at(2), at(3))
+    a_loop(source, pace=lambda snapshot: 3600.0 if snapshot.now_ns == 2 else 0.0).run([face], seconds=5.0)
+    assert [done.snapshot.now_ns for done in face.shown] == [1] and sleeps.slept == [5.0]
+    assert face.ended == 1 and source.closed == 1
+
+
+def test_a_snapshot_that_comes_before_the_end_is_waited_for_and_judged(sleeps):
+    face = Listener()
+    a_loop(Script(at(1), at(2), at(3)), pace=lambda snapshot: 0.5).run([face], seconds=1.2)
+    assert [done.snapshot.now_ns for done in face.shown] == [1, 2] and sleeps.slept == pytest.approx(
+        [0.5, 0.5, 0.2]
+    )
+
+
+def test_ctrl_c_ends_a_wait(sleeps, monkeypatch):
+    def interrupted(seconds):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(sleeps, "sleep", interrupted)
+    face, source = Listener(), Script(at(1), at(2))
+    with pytest.raises(KeyboardInterrupt):
+        a_loop(source, pace=lambda snapshot: 3600.0).run([face])
+    assert face.ended == 1 and source.closed == 1
+
+
+def test_the_time_of_the_checks_counts_for_the_age_of_what_was_seen():
+    ticks = [0, 250_000_000]
+    looped = a_loop(Script(at(1)), Checks(AWatch("")))
+    looped.cycle.terms = Terms(max_age_ns=200_000_000)
+    looped.cycle.clock_ns = lambda: ticks.pop(0)
+    face = Listener()
+    looped.run([face])
+    assert face.shown[0].result.verdicts[0].cause is Cause.STALE and ticks == []
 
 
 def test_each_snapshot_waits_for_its_time_before_it_is_judged():

@@ -90,13 +90,14 @@ def test_only_unseen_space_may_be_overridden():
     assert [cause for cause in Cause if verdict_of(0.1, cause).overridable] == [Cause.UNSEEN]
 
 
-def test_a_fault_wins_over_all_then_input_that_cannot_be_right_then_the_watch():
+def test_a_fault_wins_over_all_then_what_is_too_old_then_input_that_cannot_be_right_then_the_watch():
     motion = Motion("larm", 1, 0.1)
     at_once = verdict_of(0.0)
-    watch, wrong, fault = (
-        Verdict.stop(motion, "rad", cause) for cause in (Cause.WATCH, Cause.INPUT, Cause.FAULT)
+    watch, wrong, stale, fault = (
+        Verdict.stop(motion, "rad", cause) for cause in (Cause.WATCH, Cause.INPUT, Cause.STALE, Cause.FAULT)
     )
     assert most_cautious([at_once, watch, wrong, fault]) is fault
+    assert most_cautious([at_once, watch, wrong, stale]) is stale
     assert most_cautious([at_once, watch, wrong]) is wrong
     assert most_cautious([at_once, watch, verdict_of(0.0, Cause.BLIND)]) is watch
     assert (fault.level, fault.free_travel, fault.overridable) == (Level.STOP, 0.0, False)

@@ -12,7 +12,7 @@ from elbowroom.placement.candidates import candidates_of
 from elbowroom.placement.coarse import with_joined_pixels
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.in_use import optimise_in_use
-from elbowroom.placement.optimisation import Goal
+from elbowroom.placement.optimisation import Goal, Search
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera, rehearse
 from elbowroom.placement.scenes import random_scenes
 from elbowroom.placement.solver.scene_layout import SceneLayout, SceneModel
@@ -97,7 +97,7 @@ def test_bounds_hold_for_every_pair_and_triple(model):
 
 def test_a_number_of_cameras_finds_more_than_the_first_as_many(site, scenes):
     candidates = candidates_of(site, GRID, FixedRoom.of_site(site))
-    done = optimise_in_use(candidates, scenes, Settings(GRID), Goal(cameras=4), seconds=1.0)
+    done = optimise_in_use(candidates, scenes, Settings(GRID), Goal(cameras=4), search=Search(1.0))
     assert len(done.cameras) <= 4 and 0 < done.free_pct <= done.bound <= 100
     first = rehearse([c.camera for c in candidates[0:8:2]], scenes, Settings(GRID), by_camera=False)
     again = rehearse(done.cameras, scenes, Settings(GRID), by_camera=False)
@@ -108,7 +108,9 @@ def test_a_number_of_cameras_finds_more_than_the_first_as_many(site, scenes):
 def test_a_share_is_reached_with_few_cameras_and_what_exists_is_kept(site, scenes):
     candidates = candidates_of(site, GRID, FixedRoom.of_site(site))
     there = camera_at("there", (2.3, 1.1, 2.4), (0, 0, 1))
-    done = optimise_in_use(candidates, scenes, Settings(GRID), Goal(60.0), existing=[there], seconds=1.0)
+    done = optimise_in_use(
+        candidates, scenes, Settings(GRID), Goal(60.0), existing=[there], search=Search(1.0)
+    )
     assert done.cameras[0] is there and done.free_pct >= 60.0 and done.bound <= len(done.cameras)
 
 
@@ -132,4 +134,4 @@ def test_pixels_are_joined_so_that_the_image_reaches_as_far():
 def test_what_cannot_be_is_one_line(site, scenes, settings, goal, drop, words):
     candidates = candidates_of(site, GRID, room_of())
     with pytest.raises(InputError, match=words):
-        optimise_in_use(candidates, [] if drop else scenes, settings, goal, seconds=1.0)
+        optimise_in_use(candidates, [] if drop else scenes, settings, goal, search=Search(1.0))

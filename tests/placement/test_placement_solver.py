@@ -3,6 +3,7 @@
 import itertools
 import math
 import sys
+import threading
 import time
 
 import numpy as np
@@ -276,7 +277,7 @@ def test_goals_that_are_none_are_refused(make, words):
 def test_without_cp_sat_the_error_says_what_to_install(site, monkeypatch):
     monkeypatch.setitem(sys.modules, "ortools.sat.python.cp_model", None)
     grid, room = site.grid(), room_of()
-    with pytest.raises(PackageError, match=r"pip install 'elbowroom\[placement\]'"):
+    with pytest.raises(PackageError, match=r"-m pip install 'ortools"):
         optimise(grid, room, candidates_of(site, grid, room), search=Search(1.0))
 
 
@@ -285,3 +286,18 @@ def test_ties_are_the_same_in_both():
     assert Layout.of(model, range(3)).share == 1.0
     assert TIE_RAD == 1e-9
     assert Layout.of(model_of(np.ones((3, 1)), [0.0, 99.999, 200.0]), range(3)).share == 0.0
+
+
+def test_a_wish_to_stop_ends_with_the_best_layout_so_far(site):
+    grid, room = site.grid(), room_of()
+    asked = threading.Event()
+    asked.set()
+    begun = time.perf_counter()
+    done = optimise(
+        grid,
+        room,
+        candidates_of(site, grid, room),
+        goal=Goal(cameras=7),
+        search=Search(600.0, 400, stop=asked.is_set),
+    )
+    assert time.perf_counter() - begun < 60 and len(done.cameras) <= 7 and done.found.valid_pct > 0

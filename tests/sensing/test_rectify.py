@@ -130,9 +130,9 @@ def test_a_pixel_made_invalid_only_takes_away(seed, lens):
     assert ((after == before) | (after == 0)).all()
 
 
-def test_outside_the_range_of_depth_is_no_return():
+def test_outside_the_range_of_depth_or_at_its_end_is_no_return():
     camera = camera_with(BARREL, min_depth_m=1.0, max_depth_m=3.0)
-    for depth_m, expected in ((0.99, 0), (1.0, 1.0), (3.0, 3.0), (3.01, 0)):
+    for depth_m, expected in ((0.99, 0), (1.0, 1.0), (2.999, 2.999), (3.0, 0), (3.01, 0)):
         for distortion in (BARREL, ()):
             one = replace(camera, intrinsics=replace(camera.intrinsics, distortion=distortion))
             _, least, greatest = rectify(one, frame_of(np.full((HEIGHT, WIDTH), depth_m)))

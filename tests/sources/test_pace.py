@@ -46,6 +46,19 @@ def test_who_is_late_does_not_wait_and_does_not_fall_further_behind(clock):
     assert clock.slept == [0.5]
 
 
+def test_a_gap_is_skipped_and_the_time_counts_anew_from_behind_it(clock):
+    waiting = Pace(gap_ns=5_000_000_000)
+    for time_s in (7.0, 7.5, 3607.5, 3608.0, 1.7e9, 1.7e9 + 0.25, 3.0, 3.5):
+        waiting.wait(at(time_s))
+    assert clock.slept == [0.5, 0.5, 0.25, 0.5]
+
+
+def test_what_is_early_is_told_without_waiting(clock):
+    waiting = Pace()
+    assert [waiting.early_s(at(time_s)) for time_s in (7.0, 9.0)] == [0.0, 2.0]
+    assert clock.slept == []
+
+
 def test_moments_without_times_come_as_fast_as_they_are_read(clock):
     waiting = Pace()
     for _ in range(3):

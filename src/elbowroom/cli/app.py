@@ -18,7 +18,6 @@ app = typer.Typer(
     name="elbowroom",
     help="How much elbow room does the machine have? Free space and motion verdicts from depth cameras.",
     epilog="Begin with: elbowroom monitor",
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["--help", "-h"]},
 )
@@ -32,6 +31,7 @@ app.command(
     epilog=_example(
         "elbowroom monitor",
         "elbowroom monitor --voxel-size 0.02 --seconds 20 --json run.json --out pictures",
+        "elbowroom monitor --noise tof --resolution 640x480",
         "elbowroom monitor --knock cam03:1deg@5",
         "elbowroom monitor my_room.yaml",
     )
@@ -42,9 +42,11 @@ app.command(
         "elbowroom reconstruct my_room.yaml --out result --voxel-size 0.02 --joints long=0.1,larm=12deg",
     )
 )(reconstruct)
-app.command(epilog=_example("elbowroom check my_room.yaml --joint larm --direction +"))(check)
+app.command(epilog=_example("elbowroom check my_room.yaml --joint larm --direction + --out seen"))(check)
 app.command(
     epilog=_example(
+        "elbowroom simulate my_cell.yaml --moving person",
+        "elbowroom simulate my_cell.yaml --room my.glb --moments 50 --rate 10 --out recorded",
         "elbowroom simulate --room setup1 --out room1",
         "elbowroom simulate --room my.glb --out my_room --noise tof --joints long=0.1",
     )

@@ -1,5 +1,6 @@
 """The run of `elbowroom reconstruct`: images in, files and a table out."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,11 @@ from elbowroom.files.json_rows import json_rows
 from elbowroom.monitor.rows import shares_pct
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.reconstruct import FreeSpace, warm_up
+from elbowroom.reconstruct.looking import found_at, found_in_space, refuse
 from elbowroom.sensing import Snapshot
 from elbowroom.site.notes import notes_of
 from elbowroom.sources import Room
+from elbowroom.sources.looked import units_of
 from elbowroom.view import save_npz, save_ply, save_sections
 from elbowroom.view.screen.words import NOT_CERTIFIED
 
@@ -34,19 +37,22 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
     folder(out_dir)
     with json_rows(json_file) as add:
         console = Console(stderr=True)
-        compile_kernels(
-            console,
-            machine=room.machine is not None,
-            motion=False,
-            simulator=room.site.simulated is not None,
-        )
+        simulated = room.site.simulated is not None
+        if not simulated:
+            # before anything is compiled: what is missing is said at once
+            room.site.recording_folder()
+        compile_kernels(console, machine=room.machine is not None, motion=False, simulator=simulated)
         with Steps(console, 6) as steps:
-            steps.begin("compiling kernels")
+            steps.begin("loading kernels")
             warm_up(room.machine, [room.terms.detail])
             steps.begin("reading images")
             snapshot = room.snapshot(moment)
+            units_m = units_of(room.site, room.cameras)
+            findings = found_at(room.grid, room.cameras, snapshot.frames, units_m, room.terms.margin)
+            refuse(findings)
             steps.begin("reconstructing")
             space = room.space_of(snapshot)
+            findings = (*findings, *found_in_space(space))
             steps.begin("writing arrays")
             files = [save_npz(out_dir / "free_space.npz", space)]
             steps.begin("writing points")
@@ -54,6 +60,7 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
             steps.begin("drawing sections")
             files += save_sections(space, out_dir, room.machine, snapshot.joints, room.cameras)
         row = _row(room, moment, snapshot, space, steps.seconds, files)
+        row["findings"] = [asdict(finding) for finding in findings]
         add(row)
     _say(row, out_dir)
 
@@ -103,7 +110,7 @@ def _say(row: dict[str, Any], out_dir: Path) -> None:
         "of which blind", f"{row['blind_pct']:.2f} % of all: a camera that looks there gave nothing valid"
     )
     table.add_row("own body", f"{row['body_pct']:.2f} % of all")
-    for note in row["notes"]:
+    for note in (*row["notes"], *(finding["text"] for finding in row["findings"])):
         table.add_row("note", note)
     table.add_row(
         "files", f"{len(row['files'])} in {out_dir}: {', '.join(Path(f).name for f in row['files'])}"

@@ -1,11 +1,14 @@
 """`elbowroom site new` and `elbowroom site check`."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from elbowroom.cli.options import JsonFile, SitePath
+from elbowroom.cli.site_mask import mask
+from elbowroom.cli.site_moment import pose_to_draw, tight_notes
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
@@ -15,7 +18,12 @@ if TYPE_CHECKING:
     from elbowroom.geometry import DepthCamera, VoxelGrid
     from elbowroom.site import Site
 
-site_app = typer.Typer(help="Write a site file, or check one.", no_args_is_help=True)
+site_app = typer.Typer(
+    help="Write a site file, check one, or find masks.",
+    epilog="Begin with: elbowroom site new my_room.yaml",
+    no_args_is_help=True,
+)
+site_app.command(epilog="Example: elbowroom site mask my_room.yaml --out masks")(mask)
 
 
 @site_app.command(epilog="Example: elbowroom site new my_room.yaml")
@@ -44,12 +52,21 @@ def check(
         typer.Option(
             "--out",
             metavar="PNG",
-            help="Draw cameras, grid and the machine, its joints at zero, into this picture.",
+            help="Draw cameras, grid and the machine into this picture: at its first recorded pose, else at zero.",
         ),
     ] = None,
     json_file: JsonFile = None,
 ) -> None:
-    """Validate a site file with everything it names, and say what memory it takes."""
+    """Validate a site file with everything it names, look at its images, and say what memory it takes.
+
+    Images of a few moments are looked at: units, numbers that stand for no return,
+    lenses and poses that cannot be meant so. Exits with 1 where such a finding
+    would stop every motion.
+
+    A recording that is not there yet is a note. Where there is one, or a key room,
+    the motions are tried at its first moment: a link beside which a surface lies
+    within the cameras' own margins is named, since it would be stopped for ever.
+    """
     from elbowroom.site import Site
 
     site = Site.load(site_path)
@@ -60,23 +77,40 @@ def check(
     _say(row)
     if out is not None:
         print(f"picture   {out}")
+    if any(finding["stops"] for finding in row["findings"]):
+        raise typer.Exit(1)
 
 
 def _findings(site: "Site") -> dict[str, Any]:
-    """All that can be said of a site without carving; raises on whatever is wrong with it."""
+    """All that can be said of a site; raises on whatever is wrong with it."""
     from elbowroom.site import memory_of
     from elbowroom.site.notes import notes_of
-    from elbowroom.sources import cameras_of, check_images, silent_cameras
+    from elbowroom.sources import (
+        cameras_of,
+        check_images,
+        looked_at,
+        silent_cameras,
+        time_findings,
+        times_of,
+    )
+    from elbowroom.sources.times.told import times_row
 
     grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
     motions = site.motions(machine) if machine is not None else ()
-    moments = images = None
+    moments = images = times = None
     notes = list(notes_of(site))
-    if site.entry.recording is not None:
+    absent = site.missing_recording
+    if absent is not None:
+        notes.append(f"{absent}, or have one made of a modelled room: elbowroom simulate {site.path}")
+    elif site.entry.recording is not None:
         moments, images = check_images(site)
         notes += [
             f"camera {name} has no image: it disputes all that it looks at" for name in silent_cameras(site)
         ]
+        notes += [finding.text for finding in time_findings(site)]
+        meeting = times_of(site)
+        times = None if meeting is None else times_row(meeting)
+    notes += tight_notes(site)
     return {
         "site": str(site.path),
         "name": site.name,
@@ -92,8 +126,10 @@ def _findings(site: "Site") -> dict[str, Any]:
         "detail": site.detail,
         "moments": moments,
         "images": images,
+        "times": times,
         **memory_of(grid, cameras).row(),
         "notes": notes,
+        "findings": [asdict(finding) for finding in looked_at(site)],
     }
 
 
@@ -110,15 +146,19 @@ def _coverage(grid: "VoxelGrid", cameras: "Sequence[DepthCamera]") -> dict[str, 
 
 def _say(row: dict[str, Any]) -> None:
     shape = " x ".join(map(str, row["shape"]))
+    wrong = sum(finding["stops"] for finding in row["findings"])
     lines = {
-        "site": f"{row['site']} is valid: {row['name']}",
+        "site": f"{row['site']} is valid: {row['name']}"
+        if not wrong
+        else f"{row['site']} reads as valid, but cannot be meant so: {row['name']}",
         "grid": f"{shape} voxels of {row['voxel_size_m'] * 100:g} cm from {list(row['origin_m'])} m",
         "cameras": f"{row['cameras']} of {', '.join(row['sizes_px'])} px; with nothing in the way "
         f"{row['seen_by_one_pct']:.0f} % of the grid is in view of one or more, "
         f"{row['seen_by_three_pct']:.0f} % of three or more",
         "machine": f"{row['machine']}, {row['motions']} motions to check" if row["machine"] else "none",
         "decision": f"rule {row['rule']}, detail {row['detail']}",
-        "recording": f"{row['images']} images of {row['moments']} moments, headers checked"
+        "recording": f"{row['images']} images of {row['moments']} moments, headers checked, some looked at"
+        + ("" if row["times"] is None else f"; {row['times']['text']}")
         if row["images"]
         else "none",
         "memory": f"about {row['memory_bytes'] / 1e6:.0f} MB: planes {row['planes_bytes'] / 1e6:.1f} "
@@ -128,8 +168,12 @@ def _say(row: dict[str, Any]) -> None:
     }
     for key, text in lines.items():
         print(f"{key:9} {text}")
+        if key == "recording" and row["times"] is not None:
+            print("".join(f"times     {span}\n" for span in row["times"]["spans"]), end="")
     for note in row["notes"]:
         print(f"note      {note}")
+    for finding in row["findings"]:
+        print(f"{'STOP' if finding['stops'] else 'warning':9} {finding['text']}")
 
 
 def _draw(site: "Site", out: Path) -> None:
@@ -139,6 +183,6 @@ def _draw(site: "Site", out: Path) -> None:
     from elbowroom.view.draw.site import draw_site
 
     machine = site.machine()
-    triangles = None if machine is None else triangles_of(machine, machine.nearest_to_zero())
+    triangles = None if machine is None else triangles_of(machine, pose_to_draw(site, machine))
     with whole_file(out) as unfinished:
         draw_site(site.name, site.grid(), cameras_of(site), triangles).save(unfinished, format="PNG")

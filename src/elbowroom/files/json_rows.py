@@ -8,7 +8,7 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -66,9 +66,18 @@ def meta() -> dict[str, Any]:
         "versions": {
             "elbowroom": package_version(),
             "python": platform.python_version(),
-            **{name: metadata.version(name) for name in ("numpy", "numba", "trimesh", "embreex")},
+            **_versions("numpy", "numba", "trimesh", "embreex"),
         },
     }
+
+
+def _versions(*names: str) -> dict[str, str]:
+    """Of those of these packages that are installed."""
+    found = {}
+    for name in names:
+        with suppress(metadata.PackageNotFoundError):
+            found[name] = metadata.version(name)
+    return found
 
 
 def package_version() -> str:

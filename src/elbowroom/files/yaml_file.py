@@ -9,8 +9,12 @@ import yaml
 
 from elbowroom.errors import SiteError
 from elbowroom.files.atomic import whole_file
+from elbowroom.files.yaml_comments import said_anew
 
 MAX_YAML_BYTES = 1_000_000
+
+Said = tuple[Path, Mapping[str, Any]]
+"""A file, and what was read from it."""
 
 
 class _Loader(yaml.SafeLoader):
@@ -88,13 +92,15 @@ class _Dumper(yaml.SafeDumper):
         return True
 
 
-def write_yaml(path: Path, content: Mapping[str, Any], head: str) -> Path:
+def write_yaml(path: Path, content: Mapping[str, Any], head: str, like: Said | None = None) -> Path:
     """Writes a mapping, its keys in their order, whole or not at all.
 
     Args:
         path: the file.
         content: plain values.
         head: what the first line says, as a comment.
+        like: a file that says nearly the same, and what that means, as plain values: its comments stay, the order of
+            its keys, and how values stand in it; None: there is none.
 
     Returns:
         The path.
@@ -102,9 +108,18 @@ def write_yaml(path: Path, content: Mapping[str, Any], head: str) -> Path:
     Raises:
         InputError: the folder cannot be written to.
     """
-    text = yaml.dump(
-        dict(content), Dumper=_Dumper, sort_keys=False, allow_unicode=True, default_flow_style=None, width=110
-    )
+    if like is not None:
+        path_before, meant = like
+        text = said_anew(path_before.read_text(encoding="utf-8"), meant, content)
+    else:
+        text = yaml.dump(
+            dict(content),
+            Dumper=_Dumper,
+            sort_keys=False,
+            allow_unicode=True,
+            default_flow_style=None,
+            width=110,
+        )
     with whole_file(path) as unfinished:
         unfinished.write_text(f"# {head}\n{text}", encoding="utf-8")
     return path

@@ -14,6 +14,8 @@ from elbowroom.geometry.transforms import invert_rigid, nearest_rigid
 
 DepthKind = Literal["planar", "radial"]
 MAX_SIDE_PX = 16384
+AT_THE_END = 1e-6
+"""Depths within this share of the greatest range are at it: units of float32 are that wide."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,8 +30,10 @@ class DepthCamera:
         depth_kind: "planar" (distance along the optical axis) or "radial" (distance from the camera centre).
         noise: sigma of depth over depth; None: exact.
         margin: goes before the margin of the call that uses this camera; None: the call's.
-        min_depth_m, max_depth_m: what lies outside is no return [m, in the camera's kind of depth].
+        min_depth_m, max_depth_m: what lies outside, or at the greatest, is no return [m, in its kind of depth].
         flying_pixels: whether steps in depth carve only to the nearer side; None: only where there is a noise model.
+        mask: pixels that say nothing whatever they deliver, as if outside the image, shape (height, width), bool; None:
+            none. They free nothing and dispute nothing.
 
     Raises:
         CameraError: a value that no camera can have.
@@ -46,6 +50,7 @@ class DepthCamera:
     min_depth_m: float = 0.0
     max_depth_m: float = float("inf")
     flying_pixels: bool | None = None
+    mask: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         if not self.name or "/" in self.name or "\\" in self.name:
@@ -63,11 +68,18 @@ class DepthCamera:
                 f"camera {self.name}: depth from {self.min_depth_m} to {self.max_depth_m} m is no range; "
                 "min_depth_m must be at least 0 and below max_depth_m"
             )
+        if self.mask is not None:
+            object.__setattr__(self, "mask", _checked_mask(self.mask, self))
         pose = nearest_rigid(self.world_from_camera, f"camera {self.name}: world_from_camera")
         pose.setflags(write=False)
         object.__setattr__(self, "world_from_camera", pose)
         if self.flying_pixels is None:
             object.__setattr__(self, "flying_pixels", self.noise is not None)
+
+    @property
+    def deepest_m(self) -> float:
+        """The greatest depth that is a return [m]: just short of `max_depth_m`, often written for none."""
+        return self.max_depth_m * (1.0 - AT_THE_END)
 
     @property
     def camera_from_world(self) -> NDArray[np.float64]:
@@ -100,3 +112,18 @@ class DepthCamera:
             z = z / self.radial_over_planar
         in_camera = np.stack([x[None, :] * z, y[:, None] * z, z], axis=-1)
         return in_camera @ self.world_from_camera[:3, :3].T + self.centre_in_world
+
+
+def _checked_mask(mask: NDArray[np.bool_], camera: DepthCamera) -> NDArray[np.bool_] | None:
+    """A mask of the camera's size, read-only; None where it masks nothing."""
+    given = np.asarray(mask)
+    if given.dtype != np.bool_ or given.shape != (camera.height, camera.width):
+        raise CameraError(
+            f"camera {camera.name}: mask is {given.dtype} {given.shape}, must be bool of shape "
+            f"({camera.height}, {camera.width})"
+        )
+    if not given.any():
+        return None
+    own = np.ascontiguousarray(given).copy()
+    own.setflags(write=False)
+    return own

@@ -35,7 +35,11 @@ class Intrinsics:
         for name in ("fx", "fy"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value > 0):
-                raise CameraError(f"intrinsics: {name} is {value}, must be a finite number of pixels above 0")
+                mirrored = " (images are mirrored against the poses: mirror the world, and make it positive)"
+                raise CameraError(
+                    f"intrinsics: {name} is {value}, must be a finite number of pixels above 0"
+                    f"{mirrored if value < 0 else ''}"
+                )
         if not np.isfinite([self.cx, self.cy, *self.distortion]).all():
             raise CameraError("intrinsics: cx, cy and distortion must be finite")
         if len(self.distortion) not in (0, 5, 8):

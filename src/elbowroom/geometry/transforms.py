@@ -54,7 +54,9 @@ def nearest_rigid(matrix: ArrayLike, what: str, error: type[InputError] = Camera
     if not np.isfinite(given).all():
         raise error(f"{what}: contains NaN or infinity; every entry of a pose must be finite")
     if np.abs(given[3] - (0, 0, 0, 1)).max() > RIGID_TOLERANCE:
-        raise error(f"{what}: last row is {given[3].tolist()}, must be [0, 0, 0, 1]")
+        turned = np.abs(given[:, 3] - (0, 0, 0, 1)).max() <= RIGID_TOLERANCE
+        advice = "; the matrix is written column by column, transpose it" if turned else ""
+        raise error(f"{what}: last row is {given[3].tolist()}, must be [0, 0, 0, 1]{advice}")
     u, _, vt = np.linalg.svd(given[:3, :3])
     rotation = u @ vt
     if np.linalg.det(rotation) < 0:

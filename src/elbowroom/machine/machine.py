@@ -1,7 +1,7 @@
 """The machine: links with a body, joints that move them, and where the links are."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -10,9 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
+from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
 from elbowroom.machine.kernels.body import Tree, place_links
 from elbowroom.machine.link import Link
+from elbowroom.machine.shape import Shape
 
 LIMIT_TOLERANCE = 1e-6
 """Joint positions beyond a limit by this much are rounding, not a fault [m or rad]."""
@@ -23,7 +25,7 @@ Joints = Mapping[str, ArrayLike]
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A machine at a fixed place. Made by `Machine.from_urdf`; never changes.
+    """A machine at a place. Made by `Machine.from_urdf`; never changes. `at` says it of another place.
 
     Args:
         name: of the robot in the URDF.
@@ -44,8 +46,10 @@ class Machine:
     tree: Tree = field(repr=False)
     world_from_base: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     unchecked_links: tuple[str, ...] = ()
+    shape: Shape = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "shape", Shape.of(self.links))
         what = f"machine {self.name}"
         base = nearest_rigid(self.world_from_base, f"{what}: world_from_base", MachineError)
         base.setflags(write=False)
@@ -87,6 +91,45 @@ class Machine:
         parts = read_urdf(Path(path), [Path(folder) for folder in package_dirs])
         base = np.eye(4) if world_from_base is None else np.asarray(world_from_base, dtype=np.float64)
         return cls(*parts, world_from_base=base, unchecked_links=tuple(unchecked_links))
+
+    def at(self, world_from_base: ArrayLike) -> "Machine":
+        """The same machine with its base elsewhere. What was made of its links is shared, so it costs next to nothing.
+
+        Args:
+            world_from_base: where its first link is, shape (4, 4), rigid.
+
+        Raises:
+            MachineError: the pose is not rigid.
+        """
+        return replace(self, world_from_base=np.asarray(world_from_base, dtype=np.float64))
+
+    def with_free_base(self, kind: FreeKind, name: str = "base") -> "Machine":
+        """The machine on a base that moves: where it stands is then among its joint positions, at each frame's time.
+
+        Args:
+            kind: "planar": joints `base/x`, `base/y` [m] and `base/yaw` [rad], as a platform drives in the plane of
+                `world_from_base`; "floating": `base/x`, `base/y`, `base/z`, `base/yaw`, `base/pitch`, `base/roll`, of
+                which nobody asks a motion.
+            name: instead of `base`.
+
+        Raises:
+            MachineError: a name that is taken.
+        """
+        return replace(
+            self, **on_free_base(Skeleton(self.links, self.joints, self.tree), kind, name)._asdict()
+        )
+
+    def free_positions(self, joint: str, parent_from_child: ArrayLike) -> dict[str, float]:
+        """The positions that put the link of a planar or floating joint at a pose, by name [m or rad].
+
+        Args:
+            joint: its name, such as `base`.
+            parent_from_child: where its link is in the one before, shape (4, 4), rigid.
+
+        Raises:
+            MachineError: no such joint, a pose that is not rigid, or one out of the plane of a planar joint.
+        """
+        return free_positions(Skeleton(self.links, self.joints, self.tree), joint, parent_from_child)
 
     @cached_property
     def link_names(self) -> tuple[str, ...]:

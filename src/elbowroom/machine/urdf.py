@@ -12,6 +12,7 @@ from yourdfpy import urdf as yourdf
 
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
+from elbowroom.machine.free_joint import PARTS, FreeJoint, Skeleton, freed
 from elbowroom.machine.joint import Joint, Mimic
 from elbowroom.machine.kernels.body import FIXED, SLIDES, TURNS, Tree
 from elbowroom.machine.link import Link
@@ -51,7 +52,10 @@ def read_urdf(path: Path, package_dirs: Sequence[Path]) -> Parts:
     if not any(link.has_geometry for link in links):
         raise MachineError(f"{path}: no link has a mesh, box, cylinder or sphere; a machine needs a body")
     joints = tuple(_joint(into[name], path) for name in order if name in into and into[name].type in MOVABLE)
-    return Parts(robot.name, links, joints, _tree(order, into, joints, path))
+    skeleton = Skeleton(links, joints, _tree(order, into, joints, path))
+    return Parts(
+        robot.name, *freed(skeleton, [_free(joint, path) for joint in robot.joints if joint.type in PARTS])
+    )
 
 
 def _parse(path: Path) -> yourdf.Robot:
@@ -161,6 +165,16 @@ def _joint(joint: yourdf.Joint, path: Path) -> Joint:
     )
 
 
+def _free(joint: yourdf.Joint, path: Path) -> FreeJoint:
+    """A planar or floating joint."""
+    axis = np.asarray(joint.axis, dtype=np.float64)
+    if not (axis.shape == (3,) and np.isfinite(axis).all() and np.linalg.norm(axis) > 1e-6):
+        raise MachineError(
+            f"{path}: joint {joint.name}: axis {axis.tolist()} must be three finite numbers, not all zero"
+        )
+    return FreeJoint(joint.name, joint.type, joint.child, axis)
+
+
 def _origin(joint: yourdf.Joint, path: Path) -> NDArray[np.float64]:
     given = np.eye(4) if joint.origin is None else joint.origin
     return nearest_rigid(given, f"{path}: joint {joint.name}: origin", MachineError)
@@ -184,10 +198,10 @@ def _tree(order: list[str], into: dict[str, yourdf.Joint], joints: tuple[Joint, 
         if name not in into:
             continue
         given = into[name]
-        if given.type not in (*MOVABLE, "fixed"):
+        if given.type not in (*MOVABLE, *PARTS, "fixed"):
             raise MachineError(
                 f"{path}: joint {given.name} is of kind {given.type!r}; "
-                f"allowed are fixed, {', '.join(MOVABLE)}"
+                f"allowed are fixed, {', '.join((*MOVABLE, *PARTS))}"
             )
         tree.parent[row] = order.index(given.parent)
         tree.parent_from_joint[row] = _origin(given, path)

@@ -1,6 +1,7 @@
 """One pass: a snapshot in, a verdict for each motion out. Whatever goes wrong on the way is a stop."""
 
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -27,6 +28,7 @@ class Cycle:
         terms: how strictly space is judged.
         focused: only the space where the motions can go is looked at, all other space stays unseen.
         keeps_images: results keep the images that their free space was made of, so that it can be explained.
+        clock_ns: by which the time that a pass takes is told [ns]; it never goes back.
 
     Raises:
         InputError: no motions, since then nothing would ever say stop.
@@ -39,6 +41,7 @@ class Cycle:
     terms: Terms = field(default_factory=Terms)
     focused: bool = True
     keeps_images: bool = False
+    clock_ns: Callable[[], int] = time.perf_counter_ns
     sequence: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -46,24 +49,35 @@ class Cycle:
         if not self.motions:
             raise InputError("cycle: no motions to check, at least one is needed")
 
-    def run(self, snapshot: Snapshot) -> CycleResult:
+    def run(self, snapshot: Snapshot, begun_ns: int | None = None) -> CycleResult:
         """Judges all motions, from where the joints are now, by the newest frames.
 
-        It does not raise: a fault of any kind is a stop for every motion, with the reason beside it.
+        It does not raise: a fault of any kind is a stop for every motion, with the reason beside it. So is a pass at
+        whose end a frame that it used is past its age.
+
+        Args:
+            snapshot: what came.
+            begun_ns: when it came [ns of `clock_ns`]; None: now.
         """
+        begun_ns = self.clock_ns() if begun_ns is None else begun_ns
         stage_ms: dict[str, float] = {}
         try:
             oldest_ms = snapshot.oldest_age_ms
             space = self._space_of(snapshot, stage_ms)
             with timed("motion", stage_ms):
                 given = _usable(check_motions(space, self.machine, snapshot.joints or {}, self.motions))
+            late = self._late(snapshot, begun_ns)
         except Exception as error:  # at this border a fault becomes a decision: stop
             return self.failed(error, snapshot, stage_ms)
+        if late is not None:
+            given = {motion: self._stop(motion, Cause.STALE) for motion in self.motions}
         missing = [motion.name for motion in self.motions if motion not in given]
         fault = f"no usable verdict for {', '.join(missing)}" if missing else None
         verdicts = tuple(given.get(motion) or self._stop(motion) for motion in self.motions)
         kept = space if self.keeps_images else space.released()
-        return CycleResult(self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault)
+        return CycleResult(
+            self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault, late=late
+        )
 
     def failed(
         self, error: Exception, snapshot: Snapshot | None, stage_ms: dict[str, float] | None = None
@@ -83,6 +97,10 @@ class Cycle:
         fault = f"{type(error).__name__}: {error}"
         return CycleResult(self._number(), now_ns, None, verdicts, stage_ms or {}, oldest_ms, fault)
 
+    def _late(self, snapshot: Snapshot, begun_ns: int) -> str | None:
+        """What is said where a frame that was used has come of age since its pass began."""
+        return lateness(snapshot, self.terms.max_age_ns, (self.clock_ns() - begun_ns) / 1e6)
+
     def _space_of(self, snapshot: Snapshot, stage_ms: dict[str, float]) -> FreeSpace:
         reach = None
         if self.focused:
@@ -101,9 +119,28 @@ class Cycle:
         self.sequence += 1
         return self.sequence - 1
 
-    def _stop(self, motion: Motion) -> Verdict:
+    def _stop(self, motion: Motion, cause: Cause = Cause.FAULT) -> Verdict:
         units = {joint.name: joint.unit for joint in self.machine.joints}
-        return Verdict.stop(motion, units.get(motion.joint, "m or rad"), Cause.FAULT)
+        return Verdict.stop(motion, units.get(motion.joint, "m or rad"), cause)
+
+
+def lateness(snapshot: Snapshot, limit_ns: int | None, took_ms: float) -> str | None:
+    """What is said where a frame that was used has come of age since its pass began; None: none has.
+
+    Args:
+        snapshot: of the pass.
+        limit_ns: from which age on a frame counts no more [ns]; None: there is no limit.
+        took_ms: how long the pass took [ms].
+    """
+    if limit_ns is None:
+        return None
+    age_ms = snapshot.fresh(limit_ns).oldest_age_ms
+    if age_ms is None or age_ms + took_ms <= limit_ns / 1e6:
+        return None
+    return (
+        f"the oldest image is {age_ms + took_ms:.0f} ms old when the verdicts are out, at most "
+        f"{limit_ns / 1e6:g} ms are allowed (max_frame_age_ms); the pass took {took_ms:.0f} ms"
+    )
 
 
 def _usable(verdicts: Sequence[Verdict]) -> dict[Motion, Verdict]:

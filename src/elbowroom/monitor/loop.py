@@ -9,8 +9,10 @@ from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.face import Face, Pass
 from elbowroom.monitor.health.checks import Checks
 from elbowroom.monitor.result import CycleResult
+from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.sensing import Snapshot
 from elbowroom.sources import Room, Source
+from elbowroom.sources.pace import SLACK_S
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,14 +22,15 @@ class Loop:
     Args:
         room: whose source gives the snapshots.
         checks: look after cameras and machine.
-        cycle: judges.
-        pace: called with each snapshot before it is judged, and may wait; None: nobody waits.
+        cycle: judges; or, where no motion is asked, sees what is free.
+        pace: called with each snapshot before it is judged; says for how long it is early [s], and so long the loop
+            waits, unless the run ends before; None: nobody waits.
     """
 
     room: Room
     checks: Checks
-    cycle: Cycle
-    pace: Callable[[Snapshot], None] | None = None
+    cycle: Cycle | SpaceCycle
+    pace: Callable[[Snapshot], float | None] | None = None
 
     def run(self, faces: Sequence[Face], seconds: float | None = None) -> None:
         """Judges one snapshot after the other until the time is over or the source ends.
@@ -37,7 +40,8 @@ class Loop:
 
         Args:
             faces: who shows or keeps each pass, in the order in which they are told.
-            seconds: how long; None: until the source ends. One pass is always made, if there is a snapshot.
+            seconds: how long, also where the pace waits; None: until the source ends. One pass is always made, if there
+                is a snapshot.
         """
         until = time.perf_counter() + (float("inf") if seconds is None else seconds)
         snapshot: Snapshot | None = None
@@ -46,8 +50,8 @@ class Loop:
                 for face in faces:
                     face.begin(self.room)
                 for snapshot, source_ms in timed_source(self.room.source):
-                    if self.pace is not None:
-                        self.pace(snapshot)
+                    if not self._waited(snapshot, until):
+                        break
                     result = self.judge(snapshot)
                     for face in faces:
                         face.show(Pass(snapshot, result, source_ms))
@@ -59,8 +63,18 @@ class Loop:
 
     def judge(self, snapshot: Snapshot) -> CycleResult:
         """What one snapshot comes to; it does not raise."""
+        begun_ns = self.cycle.clock_ns()
         known = self.checks.hear(snapshot)
-        return self.cycle.run(snapshot).knowing(known)
+        return self.cycle.run(snapshot, begun_ns).knowing(known)
+
+    def _waited(self, snapshot: Snapshot, until_s: float) -> bool:
+        """Sleeps while a snapshot is early, if the run does not end before; whether it did not."""
+        early_s = (self.pace(snapshot) if self.pace is not None else None) or 0.0
+        if early_s <= SLACK_S:
+            return True
+        left_s = max(until_s - time.perf_counter(), 0.0)
+        time.sleep(min(early_s, left_s))
+        return early_s <= left_s
 
     def _say_stop(self, faces: Sequence[Face], snapshot: Snapshot | None, error: Exception) -> None:
         """Shows a failed pass to every face, also to those behind one that cannot show it."""

@@ -21,11 +21,13 @@ class CycleResult:
         space: the free space that was judged; None: there is none, since the pass failed.
         verdicts: one for each motion that was asked, in their order; where something failed: stop.
         stage_ms: time that each stage took [ms], in the order of the stages.
-        oldest_age_ms: age of the oldest frame that was used [ms]; None: no frame, or none with a stamp.
+        oldest_age_ms: age of the oldest frame when the pass began [ms]; None: no frame, or none with a stamp.
         fault: why verdicts are missing, one sentence; None: the pass is whole.
         health: whether cameras and machine are where they are said to be; None: nobody watches, or the watch failed.
             While it names a reason, every verdict is stop.
         findings: what the looks at the input found; while one of them stops, every verdict is stop.
+        late: that frames were past their age when the verdicts were out, so that every one is stop, one sentence; None:
+            they were in time, or there is no limit.
     """
 
     sequence: int
@@ -37,6 +39,7 @@ class CycleResult:
     fault: str | None = None
     health: Health | None = None
     findings: tuple[Finding, ...] = ()
+    late: str | None = None
 
     def knowing(self, known: Known) -> Self:
         """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""
@@ -53,11 +56,16 @@ class CycleResult:
 
     @property
     def stopped_by(self) -> str | None:
-        """Why every verdict is stop, whatever the space is: the fault, else input that cannot be right, else what the
-        watch found; None: none of them.
+        """Why every verdict is stop, whatever the space is: the fault, else frames that are too old by now, else input
+        that cannot be right, else what the watch found; None: none of them.
         """
         wrong = "; ".join(finding.text for finding in self.findings if finding.stops)
-        return self.fault or wrong or (self.health.reason if self.health is not None else None)
+        return self.fault or self.late or wrong or (self.health.reason if self.health is not None else None)
+
+    @property
+    def age_ms(self) -> float | None:
+        """Age of the oldest frame when the verdicts are out [ms]; None: as `oldest_age_ms`."""
+        return None if self.oldest_age_ms is None else self.oldest_age_ms + self.cycle_ms
 
     @property
     def cycle_ms(self) -> float:
@@ -73,7 +81,7 @@ class CycleResult:
 
 
 def _stopped(verdict: Verdict, cause: Cause) -> Verdict:
-    """Stop for the same motion; a fault stays one."""
-    if verdict.cause is Cause.FAULT:
+    """Stop for the same motion; a fault stays one, and so does what is too old."""
+    if verdict.cause in (Cause.FAULT, Cause.STALE):
         return verdict
     return Verdict.stop(verdict.motion, verdict.free_travel_unit, cause)

@@ -69,10 +69,14 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
         "stage_ms": dict(result.stage_ms),
         "source_ms": source_ms,
         "oldest_age_ms": result.oldest_age_ms,
+        "age_ms": result.age_ms,
+        "late": result.late,
         "fault": result.fault,
         "stopped_by": result.stopped_by,
         "findings": [asdict(finding) for finding in result.findings],
     }
+    if not result.verdicts and result.space is not None:
+        cycle |= shares_pct(result.space)
     return [cycle, *({"kind": "verdict", **shared, **verdict.row()} for verdict in result.verdicts)]
 
 

@@ -79,7 +79,7 @@ def check_motions(
 def joint_motions(
     machine: Machine, speeds: Mapping[str, float], braking_times: float | Mapping[str, float]
 ) -> list[Motion]:
-    """Every joint in both directions, + first, in the machine's order of joints.
+    """Every joint in both directions, + first, in the machine's order of joints; of a floating joint, as it has speeds.
 
     Args:
         machine: the machine.
@@ -99,13 +99,14 @@ def joint_motions(
         for name in given:
             machine.joint(name)
         for name in machine.joint_names:
-            if name not in given:
+            if name not in given and not machine.joint(name).is_posed:
                 raise MachineError(
                     f"machine {machine.name}: joint {name!r} has no {what}; all joints need one"
                 )
     return [
         Motion(name, direction, braking_distance(speeds[name], times[name]))
         for name in machine.joint_names
+        if name in speeds
         for direction in (1, -1)
     ]
 

@@ -9,13 +9,14 @@ Levels by the first blocked voxel that the swept body meets, S being the braking
     beyond, or nothing    CLEAR        0
 
 How verdicts combine (`most_cautious`): the lowest level of this table's order wins; within a level a fault goes
-before all else, then input that cannot be right, then what the watch found, then a verdict that cannot be overridden
-before one that can; then the one with the least free travel in braking distances; then the first. No verdict at all is
-an error, since nothing seen means stop.
+before all else, then images too old by now, then input that cannot be right, then what the watch found, then a
+verdict that cannot be overridden before one that can; then the one with the least free travel in braking distances;
+then the first. No verdict at all is an error, since nothing seen means stop.
 
 | cause              | may be overridden at low speed, while an operator holds on |
 |--------------------|------------------------------------------------------------|
 | FAULT              | no: nothing is known                                       |
+| STALE              | no: what is known is of a while ago                        |
 | INPUT              | no: what came in cannot be meant so                        |
 | WATCH              | no: what is known comes from a camera that is elsewhere    |
 | SURFACE            | no                                                         |
@@ -69,13 +70,14 @@ class Cause(Enum):
     UNSEEN = "nobody sees that space"
     NONE = "nothing"
     FAULT = "this program failed, so nothing is known"
+    STALE = "what was seen is too old by now"
     INPUT = "what came in cannot be right"
     WATCH = "a camera or the machine is not where it should be"
 
     @property
     def rank(self) -> int:
-        """0 for a fault, rising to 3 for what was seen: the lower, the more cautious."""
-        return {Cause.FAULT: 0, Cause.INPUT: 1, Cause.WATCH: 2}.get(self, 3)
+        """0 for a fault, rising to 4 for what was seen: the lower, the more cautious."""
+        return {Cause.FAULT: 0, Cause.STALE: 1, Cause.INPUT: 2, Cause.WATCH: 3}.get(self, 4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,8 +93,8 @@ class Verdict:
         link: the link that meets the block; None: none does.
         place_in_world: centre of the blocked voxel, or the link's point that leaves the grid [m]; None: no
             block.
-        cause: what the block is. NONE also where a joint limit, not a block, ends the travel. FAULT, INPUT and WATCH
-            are no blocks: whatever the space is, nothing may move.
+        cause: what the block is. NONE also where a joint limit, not a block, ends the travel. FAULT, STALE, INPUT
+            and WATCH are no blocks: whatever the space is, nothing may move.
     """
 
     motion: Motion | JointPath

@@ -3,6 +3,8 @@
 import math
 from dataclasses import replace
 
+import numpy as np
+
 from elbowroom.geometry import DepthCamera, Intrinsics
 
 
@@ -19,4 +21,8 @@ def with_joined_pixels(camera: DepthCamera, least_px: int) -> DepthCamera:
     intrinsics = Intrinsics(
         k.fx / step, k.fy / step, (k.cx + 0.5) / step - 0.5, (k.cy + 0.5) / step - 0.5, k.distortion
     )
-    return replace(camera, width=camera.width // step, height=camera.height // step, intrinsics=intrinsics)
+    width, height, mask = camera.width // step, camera.height // step, camera.mask
+    if mask is not None:
+        squares = mask[: height * step, : width * step].reshape(height, step, width, step)
+        mask = np.asarray(squares.any(axis=(1, 3)))
+    return replace(camera, width=width, height=height, intrinsics=intrinsics, mask=mask)

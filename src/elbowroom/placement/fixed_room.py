@@ -5,12 +5,11 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from elbowroom.errors import CameraError, InputError, SiteError
 from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry.ray_scene import RayScene
 from elbowroom.simulate import InterventionRoom, Moment, Solid, true_occupancy
 from elbowroom.simulate.kernels.touch import touch_surface
 from elbowroom.simulate.room_mesh import RoomMesh, listed, read_room_mesh
@@ -165,14 +164,11 @@ def clear_sight(
     """
     if not len(triangles) or not len(points_m):
         return np.ones(len(points_m), dtype=bool)
-    scene = EmbreeScene()
     # about the eye: float32 is finest there
-    corners = (triangles - eye_m).reshape(-1, 3).astype(np.float32)
-    TriangleMesh(scene, corners, np.arange(len(corners), dtype=np.int32).reshape(-1, 3))
+    corners = (triangles - eye_m).reshape(-1, 3)
+    scene = RayScene(corners, np.arange(len(corners)).reshape(-1, 3))
     rays = (points_m - eye_m).astype(np.float32)
-    origins = np.zeros_like(rays)
-    hit = scene.run(origins, rays, dists=np.ones(len(rays), dtype=np.float32), query="OCCLUDED")
-    return np.asarray(hit) < 0
+    return ~scene.occluded(np.zeros_like(rays), rays, np.ones(len(rays)))
 
 
 def _static(name: str, mesh: Mesh) -> Solid:

@@ -13,7 +13,7 @@ from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.placement.candidates import Candidate
 from elbowroom.placement.coarse import with_joined_pixels
-from elbowroom.placement.optimisation import Goal, free_candidates, named, places_of, step_rows
+from elbowroom.placement.optimisation import Goal, Search, free_candidates, named, places_of, step_rows
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera
 from elbowroom.placement.solver.run import Course, in_scenes
 from elbowroom.placement.solver.scene_layout import SceneModel
@@ -57,6 +57,9 @@ class FoundInUse:
         return step_rows(self.steps, "free_pct")
 
 
+LONG = Search()
+
+
 def optimise_in_use(
     candidates: Sequence[Candidate],
     scenes: Sequence[Moment],
@@ -64,8 +67,7 @@ def optimise_in_use(
     goal: Goal,
     *,
     existing: Sequence[DepthCamera] = (),
-    seconds: float = 60.0,
-    seed: int = 1,
+    search: Search = LONG,
     progress: Progress = silent,
 ) -> FoundInUse:
     """Chooses the candidates that find most of the free space of scenes, each carved with the code that runs.
@@ -79,8 +81,7 @@ def optimise_in_use(
         settings: how space is declared free; the rule must be three.
         goal: its share is that of the truly free space; a number of cameras; or the least price.
         existing: cameras that stay.
-        seconds: time for the search; carving the candidates comes on top.
-        seed: of noise and random choices.
+        search: its time, on top of which carving the candidates comes; the seed of noise and random choices.
         progress: called with what is being done.
 
     Raises:
@@ -94,16 +95,17 @@ def optimise_in_use(
     if not scenes:
         raise InputError("placement: no scene, at least one is needed")
     free = free_candidates(candidates, existing)
-    model = _model(free, existing, scenes, settings, goal, seed, progress)
+    model = _model(free, existing, scenes, settings, goal, search.seed, progress)
     share = None if goal.cameras is not None else goal.share_pct / 100
     if share is not None and model.share_bound < share:
         raise InputError(
             f"placement: {goal.share_pct:g} % is out of reach: all {len(free)} candidates together see through "
             f"{100 * model.share_bound:.2f} % of the free space of these scenes; add mounts or aims, or ask for less"
         )
-    course = Course(time.perf_counter())
+    course = Course(time.perf_counter(), stop=search.stop)
+    until = course.begun + search.seconds
     budget = math.inf if goal.cameras is None else float(goal.cameras - len(existing))
-    layout = in_scenes(model, share, budget, course.begun + seconds, course, seed=seed, progress=progress)
+    layout = in_scenes(model, share, budget, until, course, seed=search.seed, progress=progress)
     bought = named([free[c - len(existing)] for c in layout.chosen if c >= len(existing)], existing)
     return FoundInUse(
         (*existing, *(candidate.camera for candidate in bought)),

@@ -1,7 +1,7 @@
 """Where to put cameras so that few or cheap ones see an empty room well enough, or a given number as well as can be."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,7 +18,7 @@ from elbowroom.placement.requirement import Requirement
 from elbowroom.placement.solver.bound import price_bound, share_bound
 from elbowroom.placement.solver.layout import Layout
 from elbowroom.placement.solver.model import Model, build_model
-from elbowroom.placement.solver.run import Course, cheapest, fullest
+from elbowroom.placement.solver.run import Course, cheapest, fullest, never
 from elbowroom.placement.solver.sectors import CP_SAT
 from elbowroom.placement.verification import Verification, verify
 
@@ -73,11 +73,13 @@ class Search:
         seconds: time for search and bound; the first layout and the last verification may take a little longer.
         points: number of voxel centres, drawn at random, that the solver looks at.
         seed: of all random choices.
+        stop: asked many times a second; the search ends with the best that it has when it says so.
     """
 
     seconds: float = 60.0
     points: int = 20_000
     seed: int = 1
+    stop: Callable[[], bool] = never
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -183,11 +185,9 @@ def optimise(
     if aim.cameras is None and reach.share < aim.share_pct / 100 - 1e-12:
         raise InputError(_out_of_reach(aim.share_pct, reach, sample, wanted))
     until = begun + search.seconds
-    course = Course(begun)
+    course = Course(begun, stop=search.stop)
     progress("bounding what can be reached")
-    bound = _bound(
-        model, reach, aim, time.perf_counter() + BOUND_SHARE * (until - time.perf_counter()), len(existing)
-    )
+    bound = _bound(model, reach, aim, search, len(existing))
     share, first = aim.share_pct / 100, list[int]()
     for attempt in range(VERIFY_TRIES):
         if aim.cameras is None:
@@ -201,7 +201,7 @@ def optimise(
         bought = named([free[c - len(existing)] for c in layout.chosen if c >= len(existing)], existing)
         cameras = (*existing, *(candidate.camera for candidate in bought))
         found = verify(grid, cameras, room, wanted)
-        if aim.cameras is not None or found.valid_pct >= aim.share_pct:
+        if aim.cameras is not None or found.valid_pct >= aim.share_pct or search.stop():
             break
         share = min(max(share, layout.share) + (aim.share_pct - found.valid_pct) / 100 + SPARE, reach.share)
         first = layout.chosen
@@ -265,11 +265,12 @@ def _model(
     )
 
 
-def _bound(model: Model, reach: Layout, goal: Goal, until: float, existing: int) -> float:
+def _bound(model: Model, reach: Layout, goal: Goal, search: Search, existing: int) -> float:
     """Cameras in all, price, or share [%] that no layout does better than."""
+    until = time.perf_counter() + BOUND_SHARE * search.seconds
     if goal.cameras is not None:
-        return 100 * min(share_bound(model, goal.cameras - existing, until), reach.share)
-    least = price_bound(model, goal.share_pct / 100, until)
+        return 100 * min(share_bound(model, goal.cameras - existing, until, search.stop), reach.share)
+    least = price_bound(model, goal.share_pct / 100, until, search.stop)
     return float(_in_unit_of(goal, least, existing) or 0.0)
 
 

@@ -105,9 +105,11 @@ def plan(found: Verification, room: FixedRoom | None, name: str) -> Image.Image:
     plot.draw_segments(_sight_lines(found.cameras, room), LINE_INK, 1)
     plot.draw_segments(_frame(grid.lower_m[:2], grid.upper_m[:2]), WATCHED_INK, 3)
     if room is not None:
-        plot.draw_segments(cut_lines(room.triangles, 2, HEIGHT_M + 1e-3)[:, :, :2], INK, 2)
+        plot.draw_segments(_cuts(room), INK, 2)
     for camera in found.cameras:
         plot.draw_wedge(camera.centre_in_world[:2], camera.world_from_camera[:2, 2], CAMERA_INK)
+    for camera in found.cameras:
+        plot.draw_name(camera.centre_in_world[:2], camera.name)
     plot.draw_axes("x", "y")
     title(
         plot,
@@ -116,11 +118,11 @@ def plan(found: Verification, room: FixedRoom | None, name: str) -> Image.Image:
     )
     legend(
         plot,
-        {"all points above are valid": VALID, "none is": INVALID},
+        {"every point of the column is valid": VALID, "none of it is": INVALID},
         {
             "watched box": WATCHED_INK,
             "edges of fields of view": LINE_INK,
-            f"walls and furniture, cut at {HEIGHT_M:g} m": INK,
+            f"walls and furniture, cut at {HEIGHT_M:g} m or at half their height": INK,
         },
     )
     return plot.picture
@@ -183,6 +185,18 @@ def _bounds(cameras: int) -> list[int]:
     """The least count of each colour: 0, 1, 2, 3, then in even steps up to all cameras."""
     rest = np.unique(np.linspace(4, max(cameras, 5), len(COUNT_COLOURS) - 3).astype(int))[:-1]
     return [0, 1, 2, 3, *(int(b) for b in rest if b <= cameras)]
+
+
+def _cuts(room: FixedRoom) -> NDArray[np.float64]:
+    """Outlines of what stands in a room from above, shape (n, 2, 2) [m]: what is lower is cut at half its height."""
+    cuts = [np.zeros((0, 2, 2))]
+    for solid in room.moment.solids:
+        corners = solid.vertices_in_world
+        low, high = corners[:, 2].min(), corners[:, 2].max()
+        height = HEIGHT_M if low < HEIGHT_M < high else (low + high) / 2
+        if height <= HEIGHT_M and high > 0.02:
+            cuts.append(cut_lines(corners[solid.mesh.faces], 2, height + 1e-3)[:, :, :2])
+    return np.concatenate(cuts)
 
 
 def _sight_lines(cameras: Sequence[DepthCamera], room: FixedRoom | None) -> NDArray[np.float64]:

@@ -11,14 +11,15 @@ from elbowroom.geometry.bits import Words
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Explained
-from elbowroom.reconstruct.evidence import Counts, Evidence
+from elbowroom.reconstruct.evidence import Counts, Evidence, merge
 from elbowroom.reconstruct.images import RoomImages, room_images
 from elbowroom.reconstruct.kernels.carve import carve_cubes
 from elbowroom.reconstruct.kernels.planes import PLANES, Answers
 from elbowroom.reconstruct.kernels.points import carve_points
 from elbowroom.reconstruct.layout import layout_of
-from elbowroom.reconstruct.terms import Terms
+from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG, Terms
 from elbowroom.reconstruct.views import fill
+from elbowroom.reconstruct.witnesses import as_one, witnesses
 from elbowroom.sensing import DepthFrame
 
 SHARES = 16
@@ -34,6 +35,7 @@ def carve(
     complete: bool = False,
     model_depth: Mapping[str, NDArray[np.float32]] | None = None,
     unexplained: Words | None = None,
+    witness_angle_deg: float = WITNESS_ANGLE_DEG,
 ) -> Evidence:
     """What cameras know of each voxel by one frame each. A camera without a frame disputes all that it looks at.
 
@@ -48,13 +50,15 @@ def carve(
         complete: ask all cameras of every voxel and count them, as rules other than `three` need.
         model_depth: by camera, up to where the machine explains each pixel [m], 0: not explained (`machine.explain`).
         unexplained: plane of voxels in which returns lie that the machine does not explain.
+        witness_angle_deg: cameras nearer to each other than this are one witness, as seen from the grid (`witnesses`)
+            [deg]; 0: each is one.
 
     Raises:
         InputError: an unknown detail.
         CameraError: a camera named twice, a frame of an unknown camera, or more than 255 cameras.
         FrameError: two frames of one camera, or a frame of another size than its camera's.
     """
-    terms = Terms(detail=detail, margin=margin or Margin())
+    terms = Terms(detail=detail, margin=margin or Margin(), witness_angle_deg=witness_angle_deg)
     explained = Explained(dict(model_depth or {}), unexplained)
     return carve_images(grid, room_images(cameras, frames), explained, terms, complete=complete)
 
@@ -82,6 +86,28 @@ def carve_images(
     Raises:
         CameraError: more than 255 cameras.
     """
+    groups = witnesses(grid, images.cameras, terms.witness_angle_deg)
+    if not groups:
+        return _carve_all(grid, images, explained, terms, complete, focus)
+    names = [camera.name for camera in images.cameras]
+    near = [{names[number] for number in group} for group in groups]
+    alone = [name for name in names if not any(name in group for group in near)]
+    rest = Explained(explained.model_depth, None)
+    own = _carve_all(grid, images.of(*alone), explained, terms, complete, focus)
+    # of one witness every camera is asked, also where several see through: who disputes counts
+    shared = (_carve_all(grid, images.of(*group), rest, terms, True, focus) for group in near)
+    return merge([own, *(as_one(one, complete) for one in shared)])
+
+
+def _carve_all(
+    grid: VoxelGrid,
+    images: RoomImages,
+    explained: Explained,
+    terms: Terms,
+    complete: bool,
+    focus: NDArray[np.bool_] | None,
+) -> Evidence:
+    """As `carve_images`, each camera a witness of its own."""
     layout = layout_of(grid, images.cameras, terms.margin)
     asked = layout.inside.copy() if focus is None else np.where(focus, layout.inside, np.uint64(0))
     answers = _no_answers(asked, terms.detail, complete)

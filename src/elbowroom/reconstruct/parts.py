@@ -18,7 +18,7 @@ from elbowroom.reconstruct.kernels.pixel import settle_word
 from elbowroom.reconstruct.kernels.place import Boxes
 from elbowroom.reconstruct.layout import Layout, layout_of
 from elbowroom.reconstruct.records import cut_out
-from elbowroom.reconstruct.views import NO_TEXELS, texels_of
+from elbowroom.reconstruct.views import NO_TEXELS, put_mask, texels_of
 
 PARTS = 4
 """Along each axis a voxel is cut into so many parts: 64 in all, the bits of one word."""
@@ -160,6 +160,8 @@ def _parts_seen(
     model = None if model_m is None else np.ascontiguousarray(model_m[window])
     trust, doubt = (np.empty(least_m.shape, dtype=np.uint32) for _ in range(2))
     texels_of(camera, layout.counting[row], (least_m, greatest_m), model, (trust, doubt))
+    if camera.mask is not None:
+        put_mask(camera.mask[window], (trust, doubt))
     texels = Texels(trust.reshape(-1), doubt.reshape(-1), _tiles(trust), _tiles(doubt), NO_TEXELS)
     x, y, z = parts.first.tolist()
     words = settle_word(part, texels, ALL, Boxes(x, y, z, parts.edge, 0), np.empty(1, VOXEL)[0])

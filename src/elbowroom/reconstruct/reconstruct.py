@@ -1,5 +1,6 @@
 """The newest frames of all cameras -> free space: the main job up to where motion begins."""
 
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
@@ -8,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.choices import Detail, Rule
+from elbowroom.errors import ValueWarning
 from elbowroom.geometry import DepthCamera, VoxelGrid, parallel
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
@@ -15,9 +17,10 @@ from elbowroom.reconstruct.carve import carve_images
 from elbowroom.reconstruct.explained import explain
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.images import frames_by_camera, room_images
+from elbowroom.reconstruct.looking import found_in_space, require_plausible
 from elbowroom.reconstruct.resolve import decide
 from elbowroom.reconstruct.source import ImageSource
-from elbowroom.reconstruct.terms import Terms
+from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG, Terms
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 
 Timer = Callable[[str], AbstractContextManager[None]]
@@ -39,8 +42,10 @@ def reconstruct(
     explain_tolerance_m: float = 0.01,
     body_growth_m: float | None = None,
     focus: NDArray[np.bool_] | None = None,
+    witness_angle_deg: float = WITNESS_ANGLE_DEG,
     threads: int | None = None,
     timer: Timer | None = None,
+    looks: bool = True,
 ) -> FreeSpace:
     """Space seen to be free, from one frame of each camera and nothing older.
 
@@ -61,8 +66,12 @@ def reconstruct(
         body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: half a
             voxel.
         focus: blocks of 4 voxels that are looked at, of `motion.blocks_in_reach`; all others stay unseen. None: all.
+        witness_angle_deg: by rule `three`, cameras nearer to each other than this, as seen from the grid, are one
+            witness [deg]; 0: each is one.
         threads: None: all cores. The result does not depend on it.
         timer: called with the name of each stage, returns a context manager around it; None: nobody measures.
+        looks: whether values are looked at, at the first moments of these cameras: units, numbers that stand for no
+            return, lenses and poses that cannot be meant so.
 
     Returns:
         The space; it keeps the images, for `FreeSpace.explain` and to look again (`FreeSpace.released` lets go).
@@ -71,11 +80,30 @@ def reconstruct(
         CameraError, FrameError: two frames of one camera, a frame of an unknown camera or of another size.
         MachineError: joints that are unknown, missing or out of their limits, or a growth below a quarter voxel.
         InputError: an unknown rule or detail, a machine without joints, an age limit without the time.
+        ImplausibleError: values that read as valid and cannot be meant so.
+
+    Warns:
+        ValueWarning: values that are most likely not meant so.
     """
-    terms = Terms(rule, detail, margin or Margin(), max_age_ns, explain_tolerance_m, body_growth_m)
+    terms = Terms(
+        rule,
+        detail,
+        margin or Margin(),
+        max_age_ns,
+        explain_tolerance_m,
+        body_growth_m,
+        witness_angle_deg=witness_angle_deg,
+    )
     snapshot = Snapshot.taken(frames, None if machine is None else joints, now_ns, max_age_ns)
+    is_first = False
+    if looks:
+        frames_by_camera(cameras, frames)  # a frame of another size cannot be looked at
+        is_first = require_plausible(grid, cameras, frames, terms.margin)
     with parallel.threads(threads):
-        return free_space_of(grid, cameras, snapshot, machine, terms, focus=focus, timer=timer)
+        space = free_space_of(grid, cameras, snapshot, machine, terms, focus=focus, timer=timer)
+    for finding in found_in_space(space) if is_first and focus is None else ():
+        warnings.warn(finding.text, ValueWarning, stacklevel=2)
+    return space
 
 
 def free_space_of(

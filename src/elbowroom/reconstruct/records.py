@@ -58,7 +58,7 @@ def pitch_of(camera: DepthCamera) -> float:
 def counting_of(camera: DepthCamera, record: np.record) -> Counting:
     """How the camera of a record counts depth."""
     margin = DepthMargin(*record["margin"].item())
-    return Counting(float(camera.min_depth_m), float(camera.max_depth_m), float(record["quantum"]), margin)
+    return Counting(float(camera.min_depth_m), float(camera.deepest_m), float(record["quantum"]), margin)
 
 
 def cut_out(record: np.record, rows: slice, columns: slice) -> np.record:

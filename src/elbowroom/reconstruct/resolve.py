@@ -15,7 +15,8 @@ from elbowroom.reconstruct.evidence import Evidence, merge
 from elbowroom.reconstruct.explained import NOTHING
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.terms import Terms
+from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG, Terms
+from elbowroom.reconstruct.witnesses import witnesses
 
 
 def _three(evidence: Evidence) -> Words:
@@ -60,6 +61,7 @@ def resolve(
     machine: Machine | None = None,
     joints: Mapping[str, float] | None = None,
     body_growth_m: float | None = None,
+    witness_angle_deg: float = WITNESS_ANGLE_DEG,
 ) -> FreeSpace:
     """Decides for each voxel whether it is free.
 
@@ -74,13 +76,17 @@ def resolve(
         machine, joints: whose body to take out, and where it is; both None: the bare room.
         body_growth_m: by how much the body is grown, at least a quarter voxel [m]; None: half a voxel. Evidence of
             returns that the machine does not explain must have been looked for with the same growth.
+        witness_angle_deg: as the evidence was carved with.
 
     Raises:
         InputError: an unknown rule, or a machine without joints.
         MachineError: impossible joints, or a growth below a quarter voxel.
-        EvidenceError: the rule needs counts and the evidence has none.
+        EvidenceError: the rule needs counts and the evidence has none, or cameras that are one witness were carved
+            apart.
     """
-    terms = Terms(rule, detail, margin or Margin(), body_growth_m=body_growth_m)
+    terms = Terms(
+        rule, detail, margin or Margin(), body_growth_m=body_growth_m, witness_angle_deg=witness_angle_deg
+    )
     return decide(evidence, cameras, machine, joints, terms)
 
 
@@ -103,6 +109,7 @@ def decide(
     grid = evidence.grid
     if terms.needs_counts and evidence.counts is None:
         raise EvidenceError(f"resolve: rule {terms.rule} needs evidence carved with complete=True")
+    _require_one_witness(evidence, cameras, terms)
     evidence = _with_silent(evidence, cameras, terms)
     free = _DECIDE[terms.rule](evidence) & bits.inside(grid)
     body = _body(evidence, machine, joints, terms)
@@ -117,6 +124,20 @@ def decide(
         (evidence.disputed | evidence.unexplained) & blocked,
         body,
     )
+
+
+def _require_one_witness(evidence: Evidence, cameras: Sequence[DepthCamera], terms: Terms) -> None:
+    """Cameras that are one witness must have been carved together: evidence of each alone counts as one of its own."""
+    groups = (
+        witnesses(evidence.grid, tuple(cameras), terms.witness_angle_deg) if terms.rule == "three" else ()
+    )
+    for group in groups:
+        near = {cameras[number].name for number in group} & set(evidence.cameras)
+        if len(near) > 1 and not any(near <= together for together in evidence.as_one):
+            raise EvidenceError(
+                f"resolve: cameras {', '.join(sorted(near))} stand within {terms.witness_angle_deg:g} degrees of each "
+                "other, as seen from the grid, and are one witness: carve them together, or set witness_angle_deg"
+            )
 
 
 def _with_silent(evidence: Evidence, cameras: Sequence[DepthCamera], terms: Terms) -> Evidence:

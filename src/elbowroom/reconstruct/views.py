@@ -28,6 +28,8 @@ NO_IMAGE = np.zeros((0, 0), dtype=np.float32)
 NO_TEXELS = np.zeros((0, 0), dtype=np.uint32)
 Rectangle = tuple[int, int, int, int]
 """First row, one past the last, first column, one past the last."""
+NOTHING_FREE = np.uint32(0)
+"""The texel of a pixel without a return."""
 NOWHERE: Rectangle = (0, 0, 0, 0)
 Pair = tuple[NDArray[np.uint32], NDArray[np.uint32]]
 """Of trust and of doubt."""
@@ -44,7 +46,9 @@ def fill(layout: Layout, images: RoomImages, model_depth: Mapping[str, Image]) -
     Returns:
         What kernels take, and the buffers behind it, to be given back after the carve.
     """
-    split = bool(model_depth) or any(camera.flying_pixels for camera in layout.cameras)
+    split = bool(model_depth) or any(
+        camera.flying_pixels or camera.mask is not None for camera in layout.cameras
+    )
     buffers = layout.take_buffers(split)
     records = layout.records.copy()
 
@@ -57,6 +61,10 @@ def fill(layout: Layout, images: RoomImages, model_depth: Mapping[str, Image]) -
             record["explained"], apart = texels_of(
                 layout.cameras[c], layout.counting[c], bounds_m, model_depth.get(name), own
             )
+            mask = layout.cameras[c].mask
+            if mask is not None:
+                put_mask(mask, own)
+                record["explained"], apart = True, (0, mask.shape[0], 0, mask.shape[1])
         else:
             record["blank"] = True
             own[0][:], own[1][:] = 0, 0
@@ -103,6 +111,20 @@ def _read_only(image: Image) -> Image:
     view = image.view()
     view.setflags(write=False)
     return view
+
+
+def put_mask(mask: NDArray[np.bool_], own: Pair) -> None:
+    """Masked pixels free nothing and dispute nothing, whatever they measured and whatever explains them.
+
+    Pixels about them keep what they free and dispute: filters before this have taken a masked pixel for what it
+    measured, so that a mask never adds to what its own camera sees through.
+
+    Args:
+        mask: all of the image or a part of it.
+        own: texels of trust and of doubt, which must be kept apart; changed.
+    """
+    trust, doubt = own
+    trust[mask], doubt[mask] = NOTHING_FREE, texels.NEUTRAL
 
 
 def texels_of(

@@ -34,7 +34,9 @@ def warm_up(machine: Machine | None = None, details: Sequence[Detail] = DETAILS)
         else {j.name: min(max(0.0, j.lower), j.upper) for j in map(machine.joint, machine.joint_names)}
     )
     for detail in details:
-        reconstruct(grid, cameras, frames, machine=machine, joints=middle, detail=detail, threads=1)
+        reconstruct(
+            grid, cameras, frames, machine=machine, joints=middle, detail=detail, threads=1, looks=False
+        )
 
 
 def warm_up_pixel_test() -> None:

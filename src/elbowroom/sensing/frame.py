@@ -7,10 +7,18 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import FrameError
 
+FARTHEST_M = 100.0
+"""No depth camera measures half of its image beyond this [m]."""
+GLANCE = 4096
+"""About so many pixels of an image are looked at to tell metres from millimetres."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DepthFrame:
     """A depth image in metres. What is not a finite number above zero is no return.
+
+    It is what it was when it was made: pixels are copied, since drivers fill their buffers again. An array that owns
+    its pixels and was made read-only is kept as it is.
 
     Args:
         camera: name of the camera.
@@ -19,7 +27,7 @@ class DepthFrame:
             read-only.
 
     Raises:
-        FrameError: not a two-dimensional floating image.
+        FrameError: not a two-dimensional floating image, or most of its depths are hundreds of metres.
     """
 
     camera: str
@@ -33,8 +41,10 @@ class DepthFrame:
                 f"frame of {self.camera}: expected a floating image (height, width) in metres, got "
                 f"{depth.dtype} {depth.shape}; whole numbers go through DepthFrame.from_raw with their scale"
             )
-        depth = np.ascontiguousarray(depth, dtype=np.float32).view()
-        depth.setflags(write=False)
+        if not _is_fixed(depth):
+            depth = np.array(depth, dtype=np.float32, order="C")
+            depth.setflags(write=False)
+        _refuse_millimetres(self.camera, depth)
         object.__setattr__(self, "depth_m", depth)
 
     @classmethod
@@ -69,4 +79,25 @@ class DepthFrame:
         if bias_m:
             depth = np.maximum(depth + np.float32(bias_m), 0)
         depth[(raw == 0) | (raw == 65535)] = 0
+        depth.setflags(write=False)
         return cls(camera=camera, stamp_ns=stamp_ns, depth_m=depth)
+
+
+def _is_fixed(depth: NDArray[np.floating]) -> bool:
+    """Whether nobody else can write into an array of the kind that is kept."""
+    kept = depth.dtype == np.float32 and depth.flags.c_contiguous and type(depth) is np.ndarray
+    return bool(kept and depth.flags.owndata and not depth.flags.writeable)
+
+
+def _refuse_millimetres(camera: str, depth: NDArray[np.float32]) -> None:
+    """Raises FrameError where most of the returns lie hundreds of metres away."""
+    step = max(1, int((depth.size / GLANCE) ** 0.5))
+    some = depth[::step, ::step]
+    far = int(np.count_nonzero((some > FARTHEST_M) & (some < np.inf)))
+    if 2 * far <= np.count_nonzero((some > 0) & (some < np.inf)):
+        return
+    median = float(np.median(some[(some > 0) & (some < np.inf)]))
+    raise FrameError(
+        f"frame of {camera}: half of its depths are {median:.4g} m or more, depth_m is in metres; these look like "
+        f"millimetres ({median / 1e3:.3g} m): divide by 1000, or take DepthFrame.from_raw with scale_m"
+    )

@@ -1,8 +1,10 @@
 """A machine's joint positions over time, to be asked at each frame's time of exposure."""
 
 import csv
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,8 @@ END_SLACK_NS = 1_000_000
 """A record answers up to 1 ms beyond its ends with its first or last row; farther out it knows nothing."""
 MAX_CSV_BYTES = 1_000_000_000
 STAMP_COLUMN = "stamp_ns"
+STAMP_COLUMNS = {"stamp_ns": 1, "stamp_us": 1_000, "stamp_ms": 1_000_000, "stamp_s": 1_000_000_000}
+"""Names that the column of times may have, and the nanoseconds of its unit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,7 +80,8 @@ class JointRecord:
     def at(self, stamp_ns: int) -> dict[str, float]:
         """The joint positions at a time, straight between the two rows around it.
 
-        A continuous joint is not unwound: rows on both sides of a full turn are joined through zero.
+        A continuous joint is not unwound: rows on both sides of a full turn are joined through zero. But for a base
+        that moves, `<name>/yaw`, with `<name>/pitch` and `<name>/roll` or without: that turns the shortest way.
 
         Args:
             stamp_ns: time [ns].
@@ -108,14 +113,34 @@ class JointRecord:
             )
         # the differences are exact in whole nanoseconds; only their ratio is a float
         share = (clamped - int(stamps[before])) / gap
-        return {
+        found = {
             joint: float(values[before] + share * (values[after] - values[before]))
             for joint, values in self.positions.items()
         }
+        for yaw in self.positions:
+            if yaw.endswith("/yaw"):
+                found |= self._turned(yaw, before, share)
+        return found
+
+    def _turned(self, yaw: str, before: int, share: float) -> dict[str, float]:
+        """The angles of a base at a share of the way between two rows, the shortest way."""
+        angles = [yaw, *(yaw.replace("/yaw", f"/{angle}") for angle in ("pitch", "roll"))]
+        if not all(angle in self.positions for angle in angles):
+            start, end = self.positions[yaw][before : before + 2]
+            return {yaw: float(start + share * ((end - start + np.pi) % (2 * np.pi) - np.pi))}
+        from scipy.spatial.transform import Rotation, Slerp  # slow to load, and few machines need it
+
+        rows = np.stack([self.positions[angle][before : before + 2] for angle in angles], axis=1)
+        between = Slerp([0.0, 1.0], Rotation.from_euler("ZYX", rows))(share)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # nose up or down: one of the answers will do
+            return dict(zip(angles, between.as_euler("ZYX").tolist(), strict=True))
 
     @classmethod
     def from_csv(cls, path: str | Path, max_gap_ns: int | None = None) -> "JointRecord":
         """From a file with a header `stamp_ns,<joint>,...` and a row per time.
+
+        Times may be any column, also `stamp_us`, `stamp_ms` or `stamp_s`, whose numbers may have a decimal point.
 
         Args:
             path: a CSV file, UTF-8, comma-separated.
@@ -147,12 +172,8 @@ def _read_rows(
 ) -> tuple[list[str], list[int], list[list[float]]]:
     """Names of the joints, stamps, and positions row by row."""
     header = [name.strip() for name in next(reader, [])]
-    if len(header) < 2 or header[0] != STAMP_COLUMN:
-        raise JointsError(
-            f"{path}: line 1: header is {','.join(header)[:80]!r}, must be {STAMP_COLUMN},<joint>,..."
-        )
-    if len(set(header)) != len(header) or not all(header):
-        raise JointsError(f"{path}: line 1: header has an empty or a doubled name, each column needs its own")
+    time = _time_column(path, header)
+    joints = [name for n, name in enumerate(header) if n != time]
     stamps: list[int] = []
     rows: list[list[float]] = []
     for row in reader:
@@ -161,25 +182,44 @@ def _read_rows(
         where = f"{path}: line {line_number()}"
         if len(row) != len(header):
             raise JointsError(f"{where}: {len(row)} values, the header names {len(header)} columns")
-        stamp = _whole(row[0], where)
+        stamp = _stamp(row[time], where, header[time])
         if stamps and stamp <= stamps[-1]:
             raise JointsError(
-                f"{where}: {STAMP_COLUMN} is {stamp} after {stamps[-1]}; stamps must strictly rise"
+                f"{where}: {header[time]} is {row[time].strip()} after {stamps[-1]} ns; stamps must strictly rise"
             )
         stamps.append(stamp)
-        rows.append([_finite(text, where, name) for name, text in zip(header[1:], row[1:], strict=True)])
+        values = [text for n, text in enumerate(row) if n != time]
+        rows.append([_finite(text, where, name) for name, text in zip(joints, values, strict=True)])
     if not rows:
         raise JointsError(f"{path}: no rows below the header; at least one is needed")
-    return header[1:], stamps, rows
+    return joints, stamps, rows
 
 
-def _whole(text: str, where: str) -> int:
+def _time_column(path: Path, header: list[str]) -> int:
+    """Which column holds the times."""
+    shown = ",".join(header)[:80]
+    found = [n for n, name in enumerate(header) if name in STAMP_COLUMNS]
+    if len(header) < 2 or len(found) != 1:
+        semicolons = "; separate columns by commas" if len(header) == 1 and ";" in shown else ""
+        raise JointsError(
+            f"{path}: line 1: header is {shown!r}, must be {STAMP_COLUMN},<joint>,... with one column of times, "
+            f"{', '.join(STAMP_COLUMNS)}{semicolons}"
+        )
+    if len(set(header)) != len(header) or not all(header):
+        raise JointsError(f"{path}: line 1: header has an empty or a doubled name, each column needs its own")
+    return found[0]
+
+
+def _stamp(text: str, where: str, column: str) -> int:
+    """A time [ns] of a column that says its unit."""
+    unit = STAMP_COLUMNS[column]
     try:
-        stamp = int(text)
-    except ValueError:
-        raise JointsError(f"{where}: {STAMP_COLUMN} is {text[:40]!r}, must be whole nanoseconds") from None
+        stamp = int(text) if unit == 1 else int(Decimal(text.strip()) * unit)
+    except (ValueError, ArithmeticError):
+        allowed = "whole nanoseconds" if unit == 1 else "a number"
+        raise JointsError(f"{where}: {column} is {text[:40]!r}, must be {allowed}") from None
     if not -(2**63) <= stamp < 2**63:
-        raise JointsError(f"{where}: {STAMP_COLUMN} is {text[:40]}, must fit 64 bits")
+        raise JointsError(f"{where}: {column} is {text[:40]}, must fit 64 bits of nanoseconds")
     return stamp
 
 

@@ -67,7 +67,8 @@ def planar_images(camera: DepthCamera, frames: Sequence[DepthFrame], step: int |
     depth = np.zeros((len(frames), small.height, small.width), dtype=np.float32)
     for row, frame in enumerate(frames):
         raw = frame.depth_m
-        valid = (raw > 0) & (raw >= camera.min_depth_m) & (raw <= camera.max_depth_m) & (raw < np.inf)
+        seen = np.bool_(True) if camera.mask is None else ~camera.mask
+        valid = seen & (raw > 0) & (raw >= camera.min_depth_m) & (raw <= camera.deepest_m) & (raw < np.inf)
         clean = np.where(valid, raw, np.float32(0))
         depth[row] = (
             _interpolated(clean, *look)
@@ -91,7 +92,7 @@ def thinned(camera: DepthCamera, step: int, pad: float = 0.0) -> DepthCamera:
     pinhole = Intrinsics(
         k.fx / step, k.fy / step, (k.cx - first) / step + wider, (k.cy - first) / step + higher
     )
-    return replace(camera, width=width + 2 * wider, height=height + 2 * higher, intrinsics=pinhole)
+    return replace(camera, width=width + 2 * wider, height=height + 2 * higher, intrinsics=pinhole, mask=None)
 
 
 def _look_up(camera: DepthCamera, small: DepthCamera) -> tuple[NDArray, ...]:

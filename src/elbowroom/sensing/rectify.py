@@ -31,9 +31,13 @@ class IndexMap(NamedTuple):
 
 
 def rectified(camera: DepthCamera) -> DepthCamera:
-    """The pinhole twin of a camera: the same name, size, pose and focal lengths, no distortion."""
+    """The pinhole twin of a camera: the same name, size, pose and focal lengths, no distortion.
+
+    A pinhole pixel is masked if any raw pixel is that contributes to it.
+    """
     k = camera.intrinsics
-    return replace(camera, intrinsics=Intrinsics(fx=k.fx, fy=k.fy, cx=k.cx, cy=k.cy))
+    pinhole = Intrinsics(fx=k.fx, fy=k.fy, cx=k.cx, cy=k.cy)
+    return replace(camera, intrinsics=pinhole, mask=_mask_of(camera))
 
 
 def rectify(camera: DepthCamera, frame: DepthFrame) -> tuple[DepthCamera, Depth, Depth]:
@@ -63,17 +67,29 @@ def rectify(camera: DepthCamera, frame: DepthFrame) -> tuple[DepthCamera, Depth,
             f"its camera has {camera.width} x {camera.height}"
         )
     if not camera.intrinsics.is_distorted:
-        depth = _valid_only(frame.depth_m, camera.min_depth_m, camera.max_depth_m)
+        depth = _valid_only(frame.depth_m, camera.min_depth_m, camera.deepest_m)
         return rectified(camera), depth, depth
     least, greatest = np.empty_like(frame.depth_m), np.empty_like(frame.depth_m)
     index_map = index_map_of(camera.intrinsics, camera.width, camera.height)
-    bounds_of_contributors(frame.depth_m, index_map, camera.min_depth_m, camera.max_depth_m, least, greatest)
+    bounds_of_contributors(frame.depth_m, index_map, camera.min_depth_m, camera.deepest_m, least, greatest)
     return rectified(camera), least, greatest
 
 
 def _valid_only(depth_m: Depth, shallowest_m: float, deepest_m: float) -> Depth:
     valid = (depth_m > 0) & (depth_m >= shallowest_m) & (depth_m <= deepest_m) & (depth_m < np.inf)
     return np.where(valid, depth_m, np.float32(0))
+
+
+def _mask_of(camera: DepthCamera) -> NDArray[np.bool_] | None:
+    """The mask of a camera's pinhole image."""
+    if camera.mask is None or not camera.intrinsics.is_distorted:
+        return camera.mask
+    first_u, last_u, first_v, last_v = index_map_of(camera.intrinsics, camera.width, camera.height)
+    # how many masked pixels lie above and to the left of each corner
+    above = np.pad(camera.mask.astype(np.int64).cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+    inside = above[last_v + 1, last_u + 1] - above[first_v, last_u + 1]
+    inside += above[first_v, first_u] - above[last_v + 1, first_u]
+    return (first_u >= 0) & (inside > 0)
 
 
 @lru_cache(maxsize=CAMERAS_KEPT)

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.kept import kept
+from elbowroom.geometry.ray_scene import RayScene
 from elbowroom.sensing.rays import PixelRays, pixel_rays
 from elbowroom.simulate.kernels import sensor as kernels
 from elbowroom.simulate.solid import Mesh, Moment, Solid
@@ -80,12 +79,10 @@ def _cast(camera_from_world: NDArray[np.float64], solid: Solid, image: RangeImag
     if len(pixels):
         # all rays share one origin: an array of strides (0, 4) over three numbers
         origins = np.ndarray(turned.shape, dtype=np.float32, buffer=origin.data, strides=(0, 4))
-        hits = _scene_of(solid.mesh).run(origins, turned, dists=known, query="DISTANCE")
+        hits = _scene_of(solid.mesh).distances(origins, turned, known)
         kernels.keep_nearer(hits, pixels, solid.is_dark, image.depth, image.dark)
 
 
 @kept
-def _scene_of(mesh: Mesh) -> EmbreeScene:
-    scene = EmbreeScene()
-    TriangleMesh(scene, mesh.vertices.astype(np.float32), mesh.faces)
-    return scene
+def _scene_of(mesh: Mesh) -> RayScene:
+    return RayScene(mesh.vertices, mesh.faces)

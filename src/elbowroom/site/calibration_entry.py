@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from elbowroom.site.entry import Count, Entry, Flag, Matrix, NotNegative, Number, Point, Positive, Text, Whole
+from elbowroom.site.ranges import MILLIMETRES, up_to
 
 Corners = Annotated[Whole, Field(ge=3, le=60)]
 LARGEST_SQUARE_M = 1.0
@@ -27,11 +28,11 @@ class BoardEntry(Entry):
 
     columns: Corners
     rows: Corners
-    square_m: Positive
+    square_m: Annotated[Positive, up_to(1, "m", MILLIMETRES)]
     kind: Literal["printed", "cut_out"] = "printed"
-    border_m: NotNegative = 0.0
+    border_m: Annotated[NotNegative, up_to(2, "m", MILLIMETRES)] = 0.0
     marked: Flag | None = None
-    thickness_m: NotNegative = 0.0
+    thickness_m: Annotated[NotNegative, up_to(0.2, "m", MILLIMETRES)] = 0.0
 
     @model_validator(mode="after")
     def _in_metres(self) -> "BoardEntry":

@@ -7,9 +7,10 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from elbowroom.errors import SiteError
+from elbowroom.files.mask_file import read_mask
 from elbowroom.files.matrix_file import read_matrix
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
 from elbowroom.sensing import NOISE_PRESETS, Margin, NoiseModel
@@ -26,17 +27,21 @@ from elbowroom.site.entry import (
     Text,
 )
 from elbowroom.site.paths import expand
+from elbowroom.site.ranges import MILLIMETRES, mirrored_focal, unit_of_depth, up_to
 
+OFF_UNIT = 2e-3
+"""A quaternion's length may be off 1 by this: files write four digits."""
+Quaternion = tuple[Number, Number, Number, Number]
 PINHOLE = ("fx", "fy", "cx", "cy")
 
 
 class NoiseEntry(Entry):
     """sigma(z) = constant_m + linear z + quadratic max(z - offset_m, 0)^2 [m]."""
 
-    constant_m: NotNegative = 0.0
-    linear: NotNegative = 0.0
-    quadratic: NotNegative = 0.0
-    offset_m: NotNegative = 0.0
+    constant_m: Annotated[NotNegative, up_to(0.5, "m", MILLIMETRES)] = 0.0
+    linear: Annotated[NotNegative, up_to(0.5, "m a metre")] = 0.0
+    quadratic: Annotated[NotNegative, up_to(0.5, "m a square metre", MILLIMETRES)] = 0.0
+    offset_m: Annotated[NotNegative, up_to(20, "m", MILLIMETRES)] = 0.0
 
     def build(self) -> NoiseModel:
         """The noise model."""
@@ -60,11 +65,11 @@ def _noise(given: Any) -> Any:
 class MarginEntry(Entry):
     """What a pixel is not trusted to; what is left out has the defaults of `Margin`."""
 
-    sigmas: NotNegative = 3.0
-    bias_m: NotNegative = 0.0
-    lateral_px: NotNegative = 0.5
-    range_linear: NotNegative = 0.0
-    range_quadratic: NotNegative = 0.0
+    sigmas: Annotated[NotNegative, up_to(100, "standard deviations")] = 3.0
+    bias_m: Annotated[NotNegative, up_to(2, "m", MILLIMETRES)] = 0.0
+    lateral_px: Annotated[NotNegative, up_to(100, "pixels")] = 0.5
+    range_linear: Annotated[NotNegative, up_to(1, "m a metre", (0.01, "percent"))] = 0.0
+    range_quadratic: Annotated[NotNegative, up_to(1, "m a square metre", MILLIMETRES)] = 0.0
 
     def build(self) -> Margin:
         """The margin."""
@@ -76,21 +81,22 @@ class CameraSettings(Entry):
 
     width: Count | None = None
     height: Count | None = None
-    fx: Positive | None = None
-    fy: Positive | None = None
+    fx: Annotated[Number, AfterValidator(mirrored_focal(0))] | None = None
+    fy: Annotated[Number, AfterValidator(mirrored_focal(1))] | None = None
     cx: Number | None = None
     cy: Number | None = None
     intrinsics_file: Text | None = None
     distortion: tuple[Number, ...] = ()
     depth_kind: Literal["planar", "radial"] = "planar"
-    depth_scale_m: Positive = 0.001
-    depth_bias_m: Number = 0.0
+    depth_scale_m: Annotated[Positive, AfterValidator(unit_of_depth)] = 0.001
+    depth_bias_m: Annotated[Number, up_to(1, "m", MILLIMETRES)] = 0.0
     noise: Annotated[NoiseEntry | None, BeforeValidator(_noise)] = None
     margin: MarginEntry | None = None
     sensor_margin: MarginEntry | None = None
-    min_depth_m: NotNegative = 0.0
-    max_depth_m: Positive | None = None
+    min_depth_m: Annotated[NotNegative, up_to(20, "m", MILLIMETRES)] = 0.0
+    max_depth_m: Annotated[Positive, up_to(300, "m", MILLIMETRES)] | None = None
     flying_pixels: Flag | None = None
+    mask: Text | None = None
 
     @model_validator(mode="after")
     def _one_source_of_intrinsics(self) -> "CameraSettings":
@@ -115,6 +121,8 @@ class CameraSettings(Entry):
 class CameraEntry(CameraSettings):
     """One camera: its name, its place, and whatever is not shared.
 
+    Its pose is `world_from_camera`, or a file of it, or where it is with where it looks, or with how it is turned: a
+    quaternion of the camera's axes (x right, y down, z forward) in the world, its order in the key's name.
     `pose_covariance` is what a calibration leaves open: of the rotation vector [rad], then the translation [m], in the
     camera's frame, true world_from_camera = world_from_camera @ exp(error). `sensor_margin` is that part of `margin`
     which is the sensor's own; a calibration adds its part to it, so that calibrating twice does not widen twice.
@@ -126,6 +134,8 @@ class CameraEntry(CameraSettings):
     position_m: Point | None = None
     look_at_m: Point | None = None
     up: Point = (0.0, 0.0, 1.0)
+    quaternion_xyzw: Quaternion | None = None
+    quaternion_wxyz: Quaternion | None = None
     pose_covariance: Covariance | None = None
 
     @model_validator(mode="after")
@@ -141,10 +151,30 @@ class CameraEntry(CameraSettings):
 
     @model_validator(mode="after")
     def _one_pose(self) -> "CameraEntry":
-        ways = [self.world_from_camera, self.pose_file, self.position_m or self.look_at_m]
-        if sum(way is not None for way in ways) != 1 or (self.position_m is None) != (self.look_at_m is None):
-            raise ValueError("exactly one of world_from_camera, pose_file, or position_m with look_at_m")
+        turns = [self.look_at_m, self.quaternion_xyzw, self.quaternion_wxyz]
+        count = sum(turn is not None for turn in turns)
+        ways = [self.world_from_camera, self.pose_file, self.position_m]
+        if sum(way is not None for way in ways) != 1 or count != (self.position_m is not None):
+            raise ValueError(
+                "exactly one of world_from_camera, pose_file, or position_m with look_at_m, quaternion_xyzw or "
+                "quaternion_wxyz"
+            )
         return self
+
+    @model_validator(mode="after")
+    def _turns(self) -> "CameraEntry":
+        for key in ("quaternion_xyzw", "quaternion_wxyz"):
+            given = getattr(self, key)
+            length = 1.0 if given is None else float(np.linalg.norm(given))
+            if abs(length - 1) > OFF_UNIT:
+                raise ValueError(f"{key} of length 1, a rotation; its length is {length:.4g}")
+        return self
+
+    @property
+    def _quaternion_xyzw(self) -> NDArray[np.float64] | None:
+        if self.quaternion_wxyz is not None:
+            return np.roll(self.quaternion_wxyz, -1)
+        return None if self.quaternion_xyzw is None else np.array(self.quaternion_xyzw)
 
     def pose(self, beside: Path) -> NDArray[np.float64]:
         """world_from_camera as it was given, shape (4, 4); not yet checked to be rigid.
@@ -156,6 +186,14 @@ class CameraEntry(CameraSettings):
             return np.array(self.world_from_camera)
         if self.pose_file is not None:
             return read_matrix(expand(self.pose_file, beside), (4, 4), "pose, camera to world")
+        turn = self._quaternion_xyzw
+        if turn is not None:
+            from scipy.spatial.transform import Rotation  # slow to load, and most sites need none
+
+            pose = np.eye(4)
+            pose[:3, :3] = Rotation.from_quat(turn).as_matrix()
+            pose[:3, 3] = self.position_m
+            return pose
         if self.position_m is None or self.look_at_m is None:
             raise SiteError("camera without a pose: position_m and look_at_m are missing")
         return looking_at(self.position_m, self.look_at_m, self.up, SiteError)
@@ -201,6 +239,9 @@ def build_camera(
         min_depth_m=settings.get("min_depth_m", 0.0),
         max_depth_m=float("inf") if deepest is None else deepest,
         flying_pixels=settings.get("flying_pixels"),
+        mask=None
+        if settings.get("mask") is None
+        else read_mask(expand(settings["mask"], beside), settings["width"], settings["height"]),
     )
 
 

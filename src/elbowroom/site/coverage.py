@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera, VoxelGrid
-from elbowroom.geometry.lens import distorted
+from elbowroom.sensing.view import in_view
 
 MOST_SAMPLES = 20_000
 
@@ -28,21 +28,3 @@ def views_per_voxel(grid: VoxelGrid, cameras: Sequence[DepthCamera]) -> NDArray[
         (in_view(camera, centres_in_world).astype(np.int64) for camera in cameras),
         start=np.zeros(len(centres_in_world), dtype=np.int64),
     )
-
-
-def in_view(camera: DepthCamera, points_in_world: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether points lie within a camera's image and range of depth, shape (n,).
-
-    Args:
-        camera: of the room.
-        points_in_world: shape (n, 3), world frame [m].
-    """
-    in_camera = (points_in_world - camera.centre_in_world) @ camera.world_from_camera[:3, :3]
-    z = in_camera[:, 2]
-    depth = z if camera.depth_kind == "planar" else np.linalg.norm(in_camera, axis=1)
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        u, v = distorted(camera.intrinsics, in_camera[:, 0] / z, in_camera[:, 1] / z)
-    within = (np.abs(u - (camera.width - 1) / 2) <= camera.width / 2) & (
-        np.abs(v - (camera.height - 1) / 2) <= camera.height / 2
-    )
-    return within & (z > 0) & (depth >= camera.min_depth_m) & (depth <= camera.max_depth_m)

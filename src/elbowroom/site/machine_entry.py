@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -15,19 +15,22 @@ from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.motion import Motion, braking_distance
 from elbowroom.site.entry import Entry, Matrix, Positive, Text
 from elbowroom.site.paths import expand
+from elbowroom.site.ranges import MILLIMETRES, MILLISECONDS, MM_A_SECOND, up_to
 
 
 class MachineEntry(Entry):
     """The machine: one that ships with the package, or a URDF; where its base stands; links not to check.
 
-    `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself.
+    `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself. On a
+    `free_base` the machine drives or floats, and where it stands is among its joint positions.
     """
 
     builtin: Literal["ceiling_c_arm"] | None = None
     urdf: Text | None = None
     world_from_base: Matrix | None = None
     unchecked_links: tuple[Text, ...] = ()
-    explain_tolerance_m: Positive | None = None
+    explain_tolerance_m: Annotated[Positive, up_to(0.5, "m", MILLIMETRES)] | None = None
+    free_base: Literal["planar", "floating"] | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> "MachineEntry":
@@ -56,9 +59,9 @@ class MachineEntry(Entry):
 class JointEntry(Entry):
     """Full speed of a joint, in metres or degrees a second, and the time in which it brakes from it."""
 
-    max_speed_m_s: Positive | None = None
-    max_speed_deg_s: Positive | None = None
-    braking_time_s: Positive
+    max_speed_m_s: Annotated[Positive, up_to(20, "m/s", MM_A_SECOND)] | None = None
+    max_speed_deg_s: Annotated[Positive, up_to(5000, "degrees a second")] | None = None
+    braking_time_s: Annotated[Positive, up_to(60, "s", MILLISECONDS)]
 
     @model_validator(mode="after")
     def _one_speed(self) -> "JointEntry":

@@ -30,8 +30,21 @@ def notes_of(site: Site) -> tuple[str, ...]:
         without = [joint for joint in machine.joint_names if joint not in entry.joints]
         if without:
             notes.append(f"joints without a speed, whose motions are not checked: {', '.join(without)}")
+    notes += _masks(site)
     if isinstance(entry.recording, SevenScenes):
         notes.append("each frame is a camera of its own, all at one moment: the room must not have changed")
         if entry.recording.exclude:
             notes.append(f"frames left out: {', '.join(map(str, sorted(entry.recording.exclude)))}")
     return (*notes, *site.mended_poses)
+
+
+def _masks(site: Site) -> list[str]:
+    """Of which cameras a part of the image was declared to say nothing."""
+    cameras = () if site.simulated is not None and not site.lists_cameras else site.cameras()
+    shares = {camera.name: 100 * float(camera.mask.mean()) for camera in cameras if camera.mask is not None}
+    if not shares:
+        return []
+    names = ", ".join(f"{name} {share:.1f} %" for name, share in shares.items())
+    return [
+        f"masks: these parts of images were declared to say nothing, they free and dispute nothing: {names}"
+    ]

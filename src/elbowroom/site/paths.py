@@ -39,6 +39,28 @@ def expand(text: str, beside: Path) -> Path:
     return Path(os.path.normpath(beside / expanded))
 
 
+def led_from(text: str, old: Path, new: Path) -> str:
+    """The text of a path that leads from another folder to the same place; a variable at its beginning stays.
+
+    Args:
+        text: as written in a file of the old folder.
+        old, new: the folders of two site files.
+
+    Raises:
+        SiteError: as `expand`.
+    """
+    if old.absolute() == new.absolute():
+        return text
+    begins = _VARIABLE.match(text)
+    if begins is None:
+        return os.path.relpath(expand(text, old.absolute()), new)
+    name, otherwise = begins.groups()
+    if otherwise is None or Path(otherwise).is_absolute():
+        return text
+    led = os.path.relpath(expand(otherwise, old.absolute()), new)
+    return f"${{{name}:-{led}}}{text[begins.end() :]}"
+
+
 def existing_folder(text: str, beside: Path) -> Path:
     """As `expand`, and there must be a folder of that name.
 

@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from elbowroom.site.camera_entry import CameraSettings
 from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text
+from elbowroom.site.ranges import MILLIMETRES, up_to
 from elbowroom.site.room_entry import BoxEntry
 
 Angle = Annotated[Number, Field(ge=0, le=180)]
@@ -34,9 +35,9 @@ class MountEntry(Entry):
 class AlongEntry(Entry):
     """Mounts at equal distances along the walls at some heights, on the ceiling, and on the room's mesh."""
 
-    wall_spacing_m: Positive | None = None
-    heights_m: tuple[Number, ...] = (2.4,)
-    ceiling_spacing_m: Positive | None = None
+    wall_spacing_m: Annotated[Positive, up_to(50, "m", MILLIMETRES)] | None = None
+    heights_m: tuple[Annotated[Number, up_to(100, "m", MILLIMETRES)], ...] = (2.4,)
+    ceiling_spacing_m: Annotated[Positive, up_to(50, "m", MILLIMETRES)] | None = None
     mesh_count: Count | None = None
 
     @model_validator(mode="after")

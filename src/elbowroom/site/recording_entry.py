@@ -6,18 +6,24 @@ from pydantic import Field, model_validator
 
 from elbowroom.site.entry import Entry, NotNegative, Positive, Text, Whole
 
+StampUnit = Literal["ns", "us", "ms", "s"]
+"""Of the times that name images."""
+
 
 class StampedFolder(Entry):
-    """`<folder>/<camera>/<stamp_ns>.png` and, for a machine, a CSV of joints.
+    """`<folder>/<camera>/<stamp>.png` and, for a machine, a CSV of joints.
 
-    Frames of different cameras make one moment if they lie within `max_skew_ms` of each other. Rows of joints
-    farther apart than `max_joint_gap_ms` have nothing known between them. `ignore` names sub-folders of
-    images that belong to no camera.
+    Stamps are whole nanoseconds unless `stamp_unit` says otherwise, or seconds where they have a decimal point; angles
+    of joints are radians unless `angle_unit` says otherwise. Frames of different cameras make one moment if they lie
+    within `max_skew_ms` of each other. Rows of joints farther apart than `max_joint_gap_ms` have nothing known
+    between them. `ignore` names sub-folders of images that belong to no camera.
     """
 
     layout: Literal["folder"]
     folder: Text
+    stamp_unit: StampUnit | None = None
     joints_file: Text = "joints.csv"
+    angle_unit: Literal["rad", "deg"] = "rad"
     max_skew_ms: NotNegative = 50.0
     max_joint_gap_ms: Positive = 500.0
     ignore: tuple[Text, ...] = ()
@@ -27,7 +33,7 @@ class StamplessFolder(Entry):
     """Images without times: the n-th of each camera, in order of names, make the n-th moment.
 
     `files` gives per camera a pattern or a list of paths below the folder; what it leaves out is
-    `<camera>/*.png`.
+    `<camera>/*.png`. Numbers in names are in order as numbers: 9 goes before 10.
     """
 
     layout: Literal["stampless"]

@@ -7,16 +7,19 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from elbowroom.choices import Detail, Rule
 from elbowroom.geometry import VoxelGrid
+from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, WITNESS_ANGLE_DEG
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Number, Point, Positive, Text, Whole
 from elbowroom.site.machine_entry import JointEntry, MachineEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.placement_entry import PlacementEntry
+from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, up_to
 from elbowroom.site.recording_entry import RecordingEntry, SevenScenes
 from elbowroom.site.room_entry import RoomEntry
 from elbowroom.site.watch_entry import WatchEntry
 
+LARGEST_ROOM_M = 500.0
 Fov = Annotated[Number, Field(gt=10, lt=170)]
 
 
@@ -26,12 +29,21 @@ class GridEntry(Entry):
     origin_m: Point
     upper_m: Point | None = None
     shape: tuple[Count, Count, Count] | None = None
-    voxel_size_m: Annotated[Positive, Field(ge=1e-6)]
+    voxel_size_m: Annotated[Positive, Field(ge=1e-6), up_to(1, "m", MILLIMETRES, CENTIMETRES, usual=0.01)]
 
     @model_validator(mode="after")
     def _one_extent(self) -> "GridEntry":
         if (self.upper_m is None) == (self.shape is None):
             raise ValueError("exactly one of upper_m and shape")
+        shape = self.shape or (0, 0, 0)
+        upper = self.upper_m or [
+            low + n * self.voxel_size_m for low, n in zip(self.origin_m, shape, strict=True)
+        ]
+        span = max(high - low for low, high in zip(self.origin_m, upper, strict=True))
+        if span > LARGEST_ROOM_M:
+            raise ValueError(
+                f"a box of at most {LARGEST_ROOM_M:g} m; this one is {span:g} m long: most likely it is in millimetres"
+            )
         return self
 
     def build(self, voxel_size_m: float | None = None) -> VoxelGrid:
@@ -109,8 +121,9 @@ class SiteEntry(Entry):
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
     rule: Rule = "three"
     detail: Detail = "pixel"
+    witness_angle_deg: Annotated[Number, Field(ge=0, le=MOST_ANGLE_DEG)] = WITNESS_ANGLE_DEG
     margin: MarginEntry = MarginEntry()
-    max_frame_age_ms: Positive | None = None
+    max_frame_age_ms: Annotated[Positive, between(1, 3.6e6, "ms", SECONDS)] | None = None
     recording: RecordingEntry | None = None
     simulated: SimulatedEntry | None = None
     room: RoomEntry | None = None

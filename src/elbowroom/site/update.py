@@ -23,7 +23,10 @@ from elbowroom.site.written import (
     written,
 )
 
-POSE_KEYS = ("world_from_camera", "pose_file", "position_m", "look_at_m", "up", "pose_covariance")
+POSE_KEYS = (
+    "world_from_camera", "pose_file", "position_m", "look_at_m", "up", "quaternion_xyzw", "quaternion_wxyz",
+    "pose_covariance",
+)  # fmt: skip
 LENS_KEYS = ("intrinsics_file", *PINHOLE, "distortion")
 SIGNATURE = "calibrated by `elbowroom calibrate"
 """In the first line of each file that is written here: such a file may be written again."""
@@ -40,7 +43,7 @@ def update_site(
     """Writes the site again with what was found of its cameras; all that it says otherwise stays.
 
     Of each camera only pose, covariance, margin and, if they changed, intrinsics are replaced. Cameras that are not
-    given stay as they are. Paths are written so that they lead to the same files from the new place. Comments are lost.
+    given stay as they are. Paths are written so that they lead to the same files from the new place. Comments stay.
 
     Args:
         site: the old one.
@@ -73,7 +76,7 @@ def update_site(
         ]
     if world_from_base is not None:
         content["machine"]["world_from_base"] = matrix_entry(world_from_base)
-    return written(content, path, f"{site.name}: {SIGNATURE} {command}`")
+    return written(content, path, f"{site.name}: {SIGNATURE} {command}`", site)
 
 
 def update_lenses(site: Site, lenses: Mapping[str, Mapping[str, Any]], path: Path, command: str) -> Path:
@@ -99,7 +102,7 @@ def update_lenses(site: Site, lenses: Mapping[str, Mapping[str, Any]], path: Pat
             for key in LENS_KEYS:
                 entry.pop(key, None)
             entry.update(plain(dict(found)))
-    return written(content, path, f"{site.name}: {SIGNATURE} {command}`")
+    return written(content, path, f"{site.name}: {SIGNATURE} {command}`", site)
 
 
 def refuse_other_files(site: Site, path: Path) -> None:

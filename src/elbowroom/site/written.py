@@ -1,7 +1,6 @@
 """Site files that the program writes: the one place where they are put on disk, and how values stand in them."""
 
 import math
-import os
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -16,21 +15,24 @@ from elbowroom.files.yaml_file import write_yaml
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import Margin
 from elbowroom.site import Site
-from elbowroom.site.paths import expand
+from elbowroom.site.paths import led_from
 from elbowroom.site.schema import EVEN_SETTINGS
 
-PATH_KEYS = ("intrinsics_file", "pose_file", "urdf", "mesh", "folder")
+PATH_KEYS = ("intrinsics_file", "pose_file", "urdf", "mesh", "folder", "mask")
 """Keys whose values are paths beside the site file."""
+SHIPPED_ROOM = re.compile("setup[1-6]")
+"""A mesh of this name is no file but a room of the package."""
 DIGITS = 9
 
 
-def written(content: Mapping[str, Any], out: Path, by: str) -> Path:
+def written(content: Mapping[str, Any], out: Path, by: str, like: Site | None = None) -> Path:
     """Writes a site file and loads it again: what cannot be read is not called written.
 
     Args:
         content: what it says, key by key.
         out: the file.
         by: what wrote it, for the first line.
+        like: the site that it says again: its comments stay, and the order of its keys; None: there is none.
 
     Returns:
         The path.
@@ -39,7 +41,7 @@ def written(content: Mapping[str, Any], out: Path, by: str) -> Path:
         SiteError: the content is no site.
         InputError: the folder cannot be written to.
     """
-    write_yaml(out, content, by)
+    write_yaml(out, content, by, None if like is None else (like.path, _meant(like)))
     return _checked(out)
 
 
@@ -72,7 +74,7 @@ def written_with_key(site: Site, key: str, value: Mapping[str, Any], out: Path, 
 
 
 def said_again(site: Site, out: Path) -> dict[str, Any]:
-    """What a site says, for a file in another place that says what its cameras are; comments are lost.
+    """What a site says, for a file in another place that says what its cameras are.
 
     Paths lead from the new place to the same files. How a simulated room's cameras are made is left out.
 
@@ -84,10 +86,15 @@ def said_again(site: Site, out: Path) -> dict[str, Any]:
         SiteError: the new file would be the site's own.
     """
     refuse_own_file(site, out)
-    content = site.entry.model_dump(mode="json", exclude_unset=True)
+    content = _meant(site)
     if site.simulated is not None:
         content["simulated"] = {k: v for k, v in content["simulated"].items() if k not in EVEN_SETTINGS}
     return dict(moved(content, site.path.parent, out.absolute().parent))
+
+
+def _meant(site: Site) -> dict[str, Any]:
+    """What its file says, as plain values."""
+    return dict(site.entry.model_dump(mode="json", exclude_unset=True))
 
 
 def refuse_own_file(site: Site, out: Path) -> None:
@@ -104,7 +111,7 @@ def write_site(site: Site, cameras: Sequence[DepthCamera], path: Path) -> Path:
     """Writes the site again with these cameras in place of its own.
 
     All that the site says otherwise stays; paths are written so that they lead to the same files from the new place.
-    Comments are lost. Cameras stand with all that they are, so that nothing depends on `camera_defaults` any more.
+    Comments stay. Cameras stand with all that they are, so that nothing depends on `camera_defaults` any more.
 
     Args:
         site: what is taken over.
@@ -123,7 +130,7 @@ def write_site(site: Site, cameras: Sequence[DepthCamera], path: Path) -> Path:
     if site.simulated is not None:
         content.pop("camera_defaults", None)
     return written(
-        content, path, f"{site.name}: {len(cameras)} cameras, placed by `elbowroom placement optimise`"
+        content, path, f"{site.name}: {len(cameras)} cameras, placed by `elbowroom placement optimise`", site
     )
 
 
@@ -195,8 +202,10 @@ def moved(value: Any, old: Path, new: Path) -> Any:
     """
     if isinstance(value, dict):
         return {
-            key: os.path.relpath(expand(item, old.absolute()), new)
-            if key in PATH_KEYS and isinstance(item, str)
+            key: led_from(item, old, new)
+            if key in PATH_KEYS
+            and isinstance(item, str)
+            and not (key == "mesh" and SHIPPED_ROOM.fullmatch(item))
             else moved(item, old, new)
             for key, item in value.items()
         }

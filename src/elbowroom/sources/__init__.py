@@ -2,7 +2,16 @@
 
 from elbowroom.sources.cameras import cameras_of
 from elbowroom.sources.depth_png import read_depth_png
-from elbowroom.sources.recorded import Recorded, check_images, excluded_frames, moments, silent_cameras
+from elbowroom.sources.looked import looked_at
+from elbowroom.sources.recorded import (
+    Recorded,
+    check_images,
+    excluded_frames,
+    moments,
+    silent_cameras,
+    time_findings,
+    times_of,
+)
 from elbowroom.sources.room import Room, open_room
 from elbowroom.sources.source import Source
 
@@ -13,8 +22,11 @@ __all__ = [
     "cameras_of",
     "check_images",
     "excluded_frames",
+    "looked_at",
     "moments",
     "open_room",
     "read_depth_png",
     "silent_cameras",
+    "time_findings",
+    "times_of",
 ]

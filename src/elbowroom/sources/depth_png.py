@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from elbowroom.errors import FrameError
+from elbowroom.sources.depth_pgm import exchanged
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 MAX_FILE_BYTES_PER_PIXEL = 4
@@ -31,10 +32,15 @@ def check_depth_png(path: Path, width: int, height: int) -> None:
     with path.open("rb") as file:
         header = file.read(26)
     if len(header) < 26 or header[:8] != SIGNATURE or header[12:16] != b"IHDR":
-        raise FrameError(f"{path}: not a PNG file, or cut off in its first bytes; expected a 16-bit PNG")
+        raise FrameError(
+            f"{path}: not a PNG file, or cut off in its first bytes; expected a 16-bit PNG or PGM"
+        )
     found_width, found_height, depth, colour = struct.unpack(">IIBB", header[16:26])
     if (found_width, found_height) != (width, height):
-        raise FrameError(f"{path}: {found_width} x {found_height} pixels, its camera has {width} x {height}")
+        raise FrameError(
+            f"{path}: {found_width} x {found_height} pixels, its camera has {width} x {height}"
+            f"{exchanged((found_width, found_height), (width, height))}"
+        )
     if (depth, colour) != (16, 0):
         raise FrameError(f"{path}: {depth} bits of {COLOURS.get(colour, 'unknown')}, must be 16 bits of grey")
     allowed = MAX_FILE_BYTES_PER_PIXEL * width * height + 1_000_000

@@ -4,12 +4,20 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from elbowroom.errors import SiteError
+from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 from elbowroom.site.site import Site
+from elbowroom.sources.layouts.folder import Folder
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
 from elbowroom.sources.layouts.seven_scenes import SevenScenesFrames
+from elbowroom.sources.layouts.stampless import Stampless
+from elbowroom.sources.times.company import require_company
+from elbowroom.sources.times.joints import joint_findings
+from elbowroom.sources.times.meeting import Meeting
+from elbowroom.sources.times.numbers import padding_findings
+from elbowroom.sources.times.oddities import findings_of
 
 Joints = Mapping[str, float] | JointRecord
 """Positions by name that hold throughout [m or rad], or a record of them."""
@@ -33,7 +41,15 @@ class Recorded:
         return "reading"
 
     def __iter__(self) -> Iterator[Snapshot]:
-        """The moments, from the first one; raises as `moments`."""
+        """The moments, from the first one.
+
+        Raises:
+            SiteError: no moment has images of two cameras, though several have some: nothing could be judged.
+            InputError: as `moments`.
+        """
+        times = times_of(self.site)
+        if times is not None:
+            require_company(self.site.path, times)
         return moments(self.site, self.joints)
 
     def close(self) -> None:
@@ -84,13 +100,41 @@ def check_images(site: Site) -> tuple[int, int]:
 
 
 def silent_cameras(site: Site) -> tuple[str, ...]:
-    """Names of the cameras that no moment has an image of: as if lost, they dispute all that they look at.
+    """Names of the cameras that have no image at all: as if lost, they dispute all that they look at.
 
     Raises:
         SiteError: as `moments`.
     """
-    heard = {image.camera.name for group in layout_of(site).moments() for image in group}
-    return tuple(camera.name for camera in site.cameras() if camera.name not in heard)
+    layout = layout_of(site)
+    rows = layout.by_camera() if not isinstance(layout, SevenScenesFrames) else {}
+    return tuple(name for name, row in rows.items() if not row)
+
+
+def times_of(site: Site) -> Meeting | None:
+    """When the images of a recording were taken, and who meets whom; None: they have no times.
+
+    Raises:
+        SiteError, FrameError: as `moments`.
+    """
+    layout = layout_of(site) if site.entry.recording is not None else None
+    return layout.meeting if isinstance(layout, Folder) else None
+
+
+def time_findings(site: Site) -> tuple[Finding, ...]:
+    """What is odd about the times of a recording, though each moment can be judged.
+
+    Raises:
+        SiteError, FrameError, JointsError: as `moments`.
+    """
+    layout = layout_of(site) if site.entry.recording is not None else None
+    if isinstance(layout, Stampless):
+        return padding_findings({name: [i.path for i in row] for name, row in layout.by_camera().items()})
+    if not isinstance(layout, Folder):
+        return ()
+    layout.moments()
+    record = layout.joints() if site.entry.machine is not None and layout.joints_path.exists() else None
+    joints = () if record is None else joint_findings(layout.joints_path, record, layout.meeting)
+    return (*findings_of(layout.meeting), *joints)
 
 
 def excluded_frames(site: Site) -> tuple[tuple[DepthCamera, DepthFrame], ...]:

@@ -3,6 +3,7 @@
 import io
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,12 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
+from elbowroom.finding import Finding
 from elbowroom.geometry import VoxelGrid
 from elbowroom.monitor import CameraHealth, Condition, CycleResult, Health, LinkHealth, Pass, Shift
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.sensing import Snapshot
 from elbowroom.view.screen.run_log import RunLog
-from elbowroom.view.screen.terminal import TerminalView
+from elbowroom.view.screen.terminal import STYLES, TerminalView
 from elbowroom.view.screen.watched import Watched
 from elbowroom.view.screen.words import (
     LEVEL_WORDS,
@@ -194,3 +196,47 @@ def test_a_stop_of_the_watch_is_shown_with_its_reason_and_stays_in_the_summary(t
 
 def test_a_run_without_a_watch_says_so():
     assert "were not watched" in shown(120)
+
+
+def test_the_age_is_that_of_when_the_verdicts_are_out():
+    assert " cycle 35 ms age 47 ms " in shown(120, terminal=False)
+
+
+def test_a_pass_that_came_too_late_is_said_and_its_age_shown():
+    late = replace(a_result(), late="its verdicts are out when the oldest image is 47 ms old")
+    for terminal in (True, False):
+        console = Console(file=io.StringIO(), width=120, force_terminal=terminal, color_system=None)
+        view = TerminalView(console)
+        view.open(WATCHED)
+        view.show(a_pass(late))
+        view.end()
+        said = console.file.getvalue()
+        assert late.late in said and "47 ms" in said
+        assert "1 of 1 cycles said stop, as images were past max_frame_age_ms" in said
+        assert view.log.row()["late"] == 1
+
+
+def test_the_age_turns_red_where_it_is_past_its_limit():
+    console = Console(file=io.StringIO(), width=120, force_terminal=True, color_system="truecolor")
+    with TerminalView(console) as view:
+        view.open(WATCHED)
+        view.log.add(a_result(), 1.0)
+        for result, red in ((a_result(), False), (replace(a_result(), late="late"), True)):
+            spans = [span.style for span in view._speed(result).spans]
+            assert (str(STYLES[Level.STOP]) in map(str, spans)) is red
+
+
+def test_what_was_found_about_the_input_is_shown():
+    mild = Finding("gap", (), "nothing was recorded for 60 min", False)
+    grave = Finding("skew", ("north",), "camera north is 2 s behind", True)
+    found = replace(a_result(), findings=(mild, grave))
+    for terminal in (True, False):
+        console = Console(file=io.StringIO(), width=120, force_terminal=terminal, color_system=None)
+        view = TerminalView(console)
+        view.open(WATCHED)
+        for _ in range(3):
+            view.show(a_pass(found))
+        said = console.file.getvalue()
+        view.end()
+        assert mild.text in said and grave.text in said
+        assert terminal or said.count(mild.text) == 1

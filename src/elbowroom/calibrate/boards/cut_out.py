@@ -84,7 +84,7 @@ def cut_out_view(
 
 def _planar(camera: DepthCamera, rays: PixelRays, depth_m: NDArray[np.floating]) -> NDArray[np.float32]:
     """Planar depth, 0 where there is no return."""
-    usable = np.isfinite(depth_m) & (depth_m >= camera.min_depth_m) & (depth_m <= camera.max_depth_m)
+    usable = np.isfinite(depth_m) & (depth_m >= camera.min_depth_m) & (depth_m <= camera.deepest_m)
     z = np.where(usable & (depth_m > 0), depth_m, 0.0)
     if camera.depth_kind == "radial":
         z = z / np.sqrt(1 + rays.x.astype(float) ** 2 + rays.y.astype(float) ** 2)

@@ -259,7 +259,7 @@ def points_within(
     cv2.fillConvexPoly(mask, hull, 1)
     z = np.asarray(depth_m, dtype=float)
     rows, columns = np.nonzero(
-        (mask > 0) & np.isfinite(z) & (z > max(camera.min_depth_m, 0)) & (z <= camera.max_depth_m)
+        (mask > 0) & np.isfinite(z) & (z > max(camera.min_depth_m, 0)) & (z <= camera.deepest_m)
     )
     if len(rows) < LEAST_DEPTHS:
         return nothing

@@ -11,6 +11,7 @@ from elbowroom.cli.calibrate.simulate import simulate
 
 calibrate_app = typer.Typer(
     help="Where cameras are and how they see: from a board, from the machine, from the room; and how sure that is.",
+    epilog="Begin with: elbowroom calibrate extrinsics my_room.yaml --out calibrated.yaml",
     no_args_is_help=True,
 )
 calibrate_app.command(

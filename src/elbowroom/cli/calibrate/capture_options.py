@@ -36,8 +36,8 @@ Stands = Annotated[
         "one is on the floor. Default: 0; 64x48 images, which show no board on the floor: 10.",
     ),
 ]
-WrongDeg = Annotated[float, typer.Option(help="The site's poses are turned by so much [deg].")]
-WrongM = Annotated[float, typer.Option(help="The site's poses are moved by so much [m].")]
+WrongDeg = Annotated[float, typer.Option(help="The site's poses are turned by so many degrees.")]
+WrongM = Annotated[float, typer.Option(help="The site's poses are moved by so many metres.")]
 Focal = Annotated[float, typer.Option(metavar="PERCENT", help="True focal lengths differ by up to this.")]
 Lens = Annotated[bool, typer.Option("--lens", help="True lenses bend; the site knows nothing of it.")]
 DepthScale = Annotated[float, typer.Option(metavar="PERCENT", help="Depth is too long by up to this.")]
@@ -60,6 +60,6 @@ MovedPose = Annotated[
 Knock = Annotated[
     str | None, typer.Option(metavar="CAMERA", help="This camera was knocked after the site was written.")
 ]
-KnockDeg = Annotated[float, typer.Option(help="It is turned by so much [deg].")]
-KnockM = Annotated[float, typer.Option(help="It is moved by so much [m].")]
+KnockDeg = Annotated[float, typer.Option(help="It is turned by so many degrees.")]
+KnockM = Annotated[float, typer.Option(help="It is moved by so many metres.")]
 Seed = Annotated[int, typer.Option(min=0, help="Of all random numbers.")]

@@ -13,7 +13,7 @@ def commission(
         Path, typer.Option("--out", metavar="SITE", help="The new site file, in the old one's folder.")
     ],
     site: Annotated[
-        Path | None, typer.Argument(metavar="[SITE]", help="A site file. Default: the simulated room.")
+        Path | None, typer.Argument(metavar="SITE", help="A site file. Default: the simulated room.")
     ] = None,
     frames: Annotated[int, typer.Option(min=5, max=200, help="Moments to look at.")] = 20,
     every: Annotated[

@@ -35,7 +35,10 @@ def machine(
         ),
     ] = None,
     model_mm: Annotated[
-        float, typer.Option(min=0.1, max=50.0, help="How well the machine's model fits the machine [mm].")
+        float,
+        typer.Option(
+            min=0.1, max=50.0, help="How well the machine's model fits the machine, in millimetres."
+        ),
     ] = 2.0,
     confidence: Confidence = 0.95,
     near: Near = None,

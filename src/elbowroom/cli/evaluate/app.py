@@ -3,12 +3,18 @@
 import typer
 
 from elbowroom.cli.evaluate.bits import bits
+from elbowroom.cli.evaluate.contradictions import contradictions
+from elbowroom.cli.evaluate.looks import looks
 from elbowroom.cli.evaluate.placement import placement
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
 from elbowroom.cli.evaluate.scale import scale_budget, scale_cameras
 from elbowroom.cli.evaluate.thesis import all_parts, calibration, more, motions, reconstruction, scale
 
-evaluate_app = typer.Typer(help="Measure how right the answers are.", no_args_is_help=True)
+evaluate_app = typer.Typer(
+    help="Measure how right the answers are.",
+    epilog="Begin with: elbowroom evaluate room",
+    no_args_is_help=True,
+)
 
 
 def _example(words: str) -> str:
@@ -33,4 +39,8 @@ evaluate_app.command(epilog=_example("scale-cameras --poses 2 --step 20 --json c
 evaluate_app.command(epilog=_example("scale-budget --poses 4 --json budget.json"))(scale_budget)
 evaluate_app.command(epilog=_example("more --out report --json more.json"))(more)
 evaluate_app.command(epilog=_example("bits --json now.json --against benchmarks/results/bits.json"))(bits)
+evaluate_app.command(epilog=_example("contradictions --sites 5 --right 20 --json contradictions.json"))(
+    contradictions
+)
+evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
 evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

@@ -11,7 +11,7 @@ from elbowroom.cli.options import JsonFile
 def bits(
     examples: Annotated[
         Path | None,
-        typer.Argument(metavar="[EXAMPLES]", help="Folder of site files. Default: examples of a checkout."),
+        typer.Argument(metavar="EXAMPLES", help="Folder of site files. Default: examples of a checkout."),
     ] = None,
     data: Annotated[
         Path | None,

@@ -39,7 +39,7 @@ def room(
 def sevenscenes(
     site: Annotated[
         Path | None,
-        typer.Argument(metavar="[SITE]", help="Default: examples/sevenscenes.yaml of a checkout."),
+        typer.Argument(metavar="SITE", help="Default: examples/sevenscenes.yaml of a checkout."),
     ] = None,
     voxel_size: VoxelSizes = None,
     json: JsonFile = None,

@@ -20,7 +20,9 @@ from elbowroom.cli.placement.options import (
 )
 
 placement_app = typer.Typer(
-    help="Where to put the cameras: verify a placement, sweep, optimise, simulate.", no_args_is_help=True
+    help="Where to put the cameras: verify a placement, sweep, optimise, simulate.",
+    epilog="Begin with: elbowroom placement verify my_room.yaml --out pictures",
+    no_args_is_help=True,
 )
 
 
@@ -159,7 +161,7 @@ def optimise(
 def simulate(
     site: Annotated[
         Path | None,
-        typer.Argument(metavar="[SITE]", help="A site file (YAML). Default: the simulated room."),
+        typer.Argument(metavar="SITE", help="A site file (YAML). Default: the simulated room."),
     ] = None,
     scenes: Annotated[int, typer.Option(min=1, metavar="COUNT", help="How many random scenes.")] = 10,
     people: Annotated[

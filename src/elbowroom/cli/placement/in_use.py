@@ -6,6 +6,7 @@ from typing import Any
 
 from rich.console import Console
 
+from elbowroom.cli.interrupt import asked_to_end
 from elbowroom.cli.placement.options import OptimiseOptions
 from elbowroom.cli.placement.simulate import walled_room
 from elbowroom.cli.screen import show
@@ -14,7 +15,7 @@ from elbowroom.placement.bill import bill, bill_table
 from elbowroom.placement.candidates import Candidate, candidates_of
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.in_use import FoundInUse, optimise_in_use
-from elbowroom.placement.optimisation import Goal
+from elbowroom.placement.optimisation import Goal, Search
 from elbowroom.placement.rehearsal import Rehearsal, Settings, rehearse
 from elbowroom.placement.scenes import random_scenes
 from elbowroom.site import Site
@@ -66,15 +67,15 @@ def _optimised(
 ) -> tuple[FoundInUse, Rehearsal]:
     """The layout, and what it finds in other scenes."""
     seed = options.seed
-    with Console(stderr=True).status("drawing scenes") as status:
+    status = Console(stderr=True).status("drawing scenes")
+    with status, asked_to_end("the best layout so far is verified and written") as stop:
         done = optimise_in_use(
             candidates,
             list(random_scenes(site, settings.grid, room, options.scenes, seed=seed)),
             settings,
             goal,
             existing=cameras_of(site) if options.keep else (),
-            seconds=options.seconds,
-            seed=seed,
+            search=Search(options.seconds, seed=seed, stop=stop),
             progress=lambda text: status.update(text),
         )
         status.update("rehearsing in other scenes")

@@ -7,6 +7,7 @@ from typing import Any
 
 from rich.console import Console
 
+from elbowroom.cli.interrupt import asked_to_end
 from elbowroom.cli.placement.options import OptimiseOptions
 from elbowroom.cli.placement.room import room_of
 from elbowroom.cli.placement.verify import say_files, say_verification, verified_row
@@ -54,7 +55,8 @@ def run_optimise(options: OptimiseOptions, json_file: Path | None) -> None:
 
 def _optimised(site: Site, room: FixedRoom | None, goal: Goal, options: OptimiseOptions) -> Optimised:
     grid = site.grid()
-    with Console(stderr=True).status("") as status:
+    status = Console(stderr=True).status("")
+    with status, asked_to_end("the best layout so far is verified and written") as stop:
         return optimise(
             grid,
             room,
@@ -62,7 +64,7 @@ def _optimised(site: Site, room: FixedRoom | None, goal: Goal, options: Optimise
             requirement_of(site, options.required.views, options.required.angle_deg),
             goal,
             existing=cameras_of(site) if options.keep else (),
-            search=Search(seconds=options.seconds, points=options.points, seed=options.seed),
+            search=Search(options.seconds, options.points, options.seed, stop),
             progress=lambda text: status.update(text),
         )
 

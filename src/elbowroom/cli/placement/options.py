@@ -8,7 +8,7 @@ import typer
 
 OptionalSite = Annotated[
     Path | None,
-    typer.Argument(metavar="[SITE]", help="A site file (YAML). Default: the room of the thesis."),
+    typer.Argument(metavar="SITE", help="A site file (YAML). Default: the room of the thesis."),
 ]
 Views = Annotated[
     int | None,

@@ -44,7 +44,7 @@ def run_simulate(options: SimulateOptions, json_file: Path | None) -> None:
     )
     begun = time.perf_counter()
     with json_rows(json_file) as add:
-        status = Console(stderr=True).status("compiling kernels")
+        status = Console(stderr=True).status("readying kernels, which are compiled at the first start")
         with status, options_named(people="--people", table="--table"):
             done = rehearse(
                 cameras,

@@ -33,7 +33,7 @@ def run_verify(options: VerifyOptions, json_file: Path | None) -> None:
     cameras, room, grid = cameras_of(site), room_of(site), site.grid(options.voxel_size_m)
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 2) as steps:
-            steps.begin("compiling kernels")
+            steps.begin("readying kernels, which are compiled at the first start")
             verify(_two_cells(site, grid), cameras[:1], None, requirement)
             steps.begin(f"looking through {len(cameras)} cameras")
             begun = time.perf_counter()

@@ -68,7 +68,7 @@ def split_recording(site: Site, voxel_size_m: float) -> CheckViews:
 
 def _valid(camera: DepthCamera, frame: DepthFrame) -> NDArray[np.bool_]:
     depth = frame.depth_m
-    return (depth > 0) & (depth >= camera.min_depth_m) & (depth <= camera.max_depth_m) & np.isfinite(depth)
+    return (depth > 0) & (depth >= camera.min_depth_m) & (depth <= camera.deepest_m) & np.isfinite(depth)
 
 
 def rates(views: CheckViews, space: FreeSpace) -> tuple[float, float]:
@@ -86,16 +86,30 @@ def sevenscenes_rows(path: Path, voxel_sizes_m: tuple[float, ...]) -> Iterator[d
         free_pct, false_pct, points.
     """
     site = Site.load(path)
+    angle_deg = site.terms().witness_angle_deg
     for voxel_size_m in voxel_sizes_m:
         views = split_recording(site, voxel_size_m)
         plain = tuple(replace(camera, flying_pixels=False) for camera in views.cameras)
         for name, cameras, margin in (("site", views.cameras, views.margin), ("narrow", plain, NARROW)):
             for detail in DETAILS:
                 evidence = carve(
-                    views.grid, cameras, views.frames, detail=detail, margin=margin, complete=True
+                    views.grid,
+                    cameras,
+                    views.frames,
+                    detail=detail,
+                    margin=margin,
+                    complete=True,
+                    witness_angle_deg=angle_deg,
                 )
                 for rule in RULES:
-                    space = resolve(evidence, cameras, rule=rule, detail=detail, margin=margin)
+                    space = resolve(
+                        evidence,
+                        cameras,
+                        rule=rule,
+                        detail=detail,
+                        margin=margin,
+                        witness_angle_deg=angle_deg,
+                    )
                     free_pct, false_pct = rates(views, space)
                     yield {
                         "voxel_size_m": voxel_size_m,

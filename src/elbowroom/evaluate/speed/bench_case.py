@@ -1,7 +1,6 @@
 """One benchmark case in a process of its own, so that its peak memory is its own: `python -m` with a JSON argument."""
 
 import json
-import resource
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -13,6 +12,7 @@ import numpy as np
 from elbowroom.choices import Detail
 from elbowroom.evaluate.rooms.room import cameras_row
 from elbowroom.evaluate.speed.kernels.reference import reference
+from elbowroom.files.peak_memory import peak_memory_mb
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, parallel
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
@@ -78,7 +78,7 @@ def run_case(
     measured |= {f"cycle/{name}": [stage[name] for stage in stages[2:]] for name in stages[-1]}
     said = {"voxel_size_m": voxel_size_m, **cameras_row(scene.cameras), "detail": detail, "noise": noise}
     said |= {"threads": threads, "rounds": rounds}
-    peak = {"peak_rss_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024}
+    peak = {"peak_rss_mb": peak_memory_mb()}
     against = float(np.median(beside))
     return [
         {"case": case, **said, **_summary(spent), **peak, "ratio": float(np.median(spent)) / against}

@@ -188,7 +188,7 @@ def _counts_blocks(counts: Sequence[Row]) -> list[Block]:
         Line("free travel, of the truth", [(r["cameras"], r["travel_pct"]) for r in counts]),
     )
     drawn = chart(lines, "cameras", "%", y_range=(0, 102))
-    return [table, Picture(drawn, "More sensors give more freedom", 560)]
+    return [table, Picture(drawn, "Free space and free travel by the number of cameras", 560)]
 
 
 def _by_sensor(balls: Sequence[Row]) -> dict[tuple[str, str], list[Row]]:

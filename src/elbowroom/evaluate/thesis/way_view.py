@@ -10,11 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
+from elbowroom.geometry.ray_scene import RayScene
 from elbowroom.machine import Machine, body_words
 from elbowroom.motion import Motion
 from elbowroom.simulate import Moment, true_occupancy
@@ -63,14 +62,12 @@ class WayView:
         self._machine, self._joints, self._grid = machine, moment.joints, grid
         self._body = bits.unpack(body_words(machine, moment.joints, grid, body_growth_m), grid)
         self._occupied = true_occupancy(grid, moment).occupied
-        self._scene = EmbreeScene()
         firsts = np.cumsum([0] + [len(solid.mesh.vertices) for solid in moment.solids])
-        TriangleMesh(
-            self._scene,
-            np.concatenate([solid.vertices_in_world for solid in moment.solids]).astype(np.float32),
+        self._scene = RayScene(
+            np.concatenate([solid.vertices_in_world for solid in moment.solids]),
             np.concatenate(
                 [solid.mesh.faces + first for solid, first in zip(moment.solids, firsts[:-1], strict=True)]
-            ).astype(np.int32),
+            ),
         )
 
     def way(self, motion: Motion, length: float) -> Way:
@@ -153,7 +150,7 @@ class WayView:
             origins = np.repeat(camera.centre_in_world.astype(np.float32)[None], len(directions), axis=0)
             far = np.full(len(directions), 1e30, dtype=np.float32)
             # directions are not of unit length: 1 is the point itself
-            hits = self._scene.run(origins, directions, dists=far, query="DISTANCE")
+            hits = self._scene.distances(origins, directions, far)
             inside[inside] = hits > 1.0 - BEFORE_M / np.linalg.norm(directions, axis=1)
         return inside
 

@@ -1,35 +1,56 @@
 """The start of a run: all that it needs is made, and compiled by doing it once."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import bits
 from elbowroom.monitor.cycle import Cycle
+from elbowroom.monitor.health.clocks import Clocks
 from elbowroom.monitor.loop import Loop
+from elbowroom.monitor.space_cycle import SpaceCycle
+from elbowroom.monitor.start.looking import looks_of
 from elbowroom.monitor.start.watching import checks_of
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
-from elbowroom.sources import Recorded, Room
+from elbowroom.sources import Recorded, Room, times_of
 from elbowroom.sources.pace import Pace
+from elbowroom.sources.times.meeting import gap_ns
 
 
 def started(room: Room, begin: Callable[[str], None]) -> Loop:
     """A loop over a room, ready to run; a recording comes no faster than it was recorded.
 
     Args:
-        room: with a machine and speeds.
+        room: without a machine, or without speeds, its free space is seen and no motion is judged.
         begin: told what is being done.
 
     Raises:
-        InputError: no machine, no speeds, or the first cycle failed, so that all would.
+        InputError: the first cycle failed, so that all would.
         SiteError, CalibrationError: as `checks_of`.
     """
-    machine, motions = room.machine_and_motions()
-    cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
-    pace = Pace().wait if isinstance(room.source, Recorded) else None
-    loop = Loop(room, checks_of(room, begin), cycle, pace)
+    cycle = _cycle(room)
+    recorded = isinstance(room.source, Recorded)
+    pause_ns = _gap_ns(room) if recorded else gap_ns(None)
+    checks = replace(checks_of(room, begin), looks=looks_of(room))
+    loop = Loop(room, checks, cycle, Pace(pause_ns).early_s if recorded else None)
     _warm_up(loop, begin)
-    return loop
+    # after that, since the source begins anew, and its times with it
+    clocks = Clocks(room.terms.max_age_ns, recorded, pause_ns)
+    return replace(loop, checks=replace(loop.checks, looks=(*loop.checks.looks, clocks)))
+
+
+def _gap_ns(room: Room) -> int:
+    """How long nothing has to come in a recording to be a gap [ns]."""
+    times = times_of(room.site)
+    return gap_ns(None) if times is None else times.gap_ns
+
+
+def _cycle(room: Room) -> Cycle | SpaceCycle:
+    if room.unasked is not None:
+        return SpaceCycle(room.grid, room.cameras, room.machine, room.terms)
+    machine, motions = room.machine_and_motions()
+    return Cycle(room.grid, room.cameras, machine, motions, room.terms)
 
 
 def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
@@ -39,10 +60,11 @@ def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
     snapshot = next(iter(loop.room.source), None)
     if snapshot is None:
         return
-    begin("motions that are blocked")
-    nothing = bits.empty(cycle.grid)
-    all_blocked = FreeSpace(cycle.grid, nothing, nothing, nothing, nothing)
-    check_motions(all_blocked, cycle.machine, snapshot.joints or {}, cycle.motions)
+    if isinstance(cycle, Cycle):
+        begin("motions that are blocked")
+        nothing = bits.empty(cycle.grid)
+        all_blocked = FreeSpace(cycle.grid, nothing, nothing, nothing, nothing)
+        check_motions(all_blocked, cycle.machine, snapshot.joints or {}, cycle.motions)
     begin("first cycle")
     result = loop.judge(snapshot)
     if result.fault is not None:

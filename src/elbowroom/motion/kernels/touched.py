@@ -73,7 +73,7 @@ def touched_block(placed, mover, half, volume, samples, place, triangle):
         cluster = skin.cluster_of[sample]
         world_from_link = placed[skin.link[cluster]]
         x, y, z = carried(world_from_link, skin.points[sample])
-        grown = mover.speeds[cluster] * half + ROUNDING_M
+        grown = mover.speeds[cluster] * half + (ROUNDING_M + skin.off)
         patch = Patch(world_from_link, grown, skin, sample)
         r = skin.cover + grown
         if leaves(x, y, z, r, lattice) and _leaves_patch(patch, lattice):

@@ -8,6 +8,7 @@ down count as valid. So the optimum is never above the price of any layout that 
 
 import math
 import time
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,13 +96,14 @@ class _Relaxation:
         return added
 
 
-def price_bound(model: Model, share: float, until: float) -> float:
+def price_bound(model: Model, share: float, until: float, stop: Callable[[], bool] = lambda: False) -> float:
     """No layout with this share of valid points costs less.
 
     Args:
         model: all points.
         share: wanted, 0 to 1.
         until: when to come to an end [s, time.perf_counter].
+        stop: it ends as well when this says so.
 
     Returns:
         The bound; the price of as many cameras as views if there was no time for more.
@@ -114,16 +116,17 @@ def price_bound(model: Model, share: float, until: float) -> float:
     # a single valid point needs as many cameras as views: that is known without solving anything
     new = np.sort(np.delete(model.price, list(model.kept)))
     fewest = float(new[: max(0, model.requirement.views - len(model.kept))].sum()) if share > 0 else 0.0
-    return max(fewest, _solve(model, points, cost, count, -needed, until))
+    return max(fewest, _solve(model, points, cost, count, -needed, until, stop))
 
 
-def share_bound(model: Model, budget: float, until: float) -> float:
+def share_bound(model: Model, budget: float, until: float, stop: Callable[[], bool] = lambda: False) -> float:
     """No layout of at most this price has a greater share of valid points.
 
     Args:
         model: candidates and points.
         budget: greatest price of all that is new.
         until: when time is up, as `time.perf_counter` counts [s].
+        stop: it ends as well when this says so.
 
     Returns:
         The share, 0 to 1; 1 if there was no time.
@@ -133,7 +136,7 @@ def share_bound(model: Model, budget: float, until: float) -> float:
     price[list(model.kept)] = 0.0
     cost = np.concatenate([np.zeros(model.candidates), -np.ones(len(points))])
     limit = csr_matrix(np.concatenate([price, np.zeros(len(points))]))
-    least = _solve(model, points, cost, limit, budget, until)
+    least = _solve(model, points, cost, limit, budget, until, stop)
     valid = len(points) if not np.isfinite(least) else -least
     return min(1.0, (model.points - len(points) + valid + 1e-6) / model.points)
 
@@ -145,6 +148,7 @@ def _solve(
     extra: csr_matrix,
     extra_limit: float,
     until: float,
+    stop: Callable[[], bool],
 ) -> float:
     """The least cost of the relaxation; minus infinity if there was no time for it."""
     relaxation = _Relaxation(model, points)
@@ -159,7 +163,7 @@ def _solve(
     best = -np.inf
     for _ in range(ROUNDS):
         left = until - time.perf_counter()
-        if left <= 0:
+        if left <= 0 or stop():
             break
         matrix = vstack([extra, one_each, *relaxation.rows], format="csr")
         limits = np.concatenate([[extra_limit], np.ones(len(places)), np.zeros(len(relaxation.rows))])

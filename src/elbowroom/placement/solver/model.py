@@ -8,13 +8,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.lens import distorted, usable_radius
+from elbowroom.geometry.ray_scene import RayScene
 from elbowroom.placement.requirement import Requirement
 
 REACHED = 1.0 - 1e-5
@@ -117,11 +116,10 @@ def _stops(
     """Where the ray to each point first meets a surface, as a multiple of the way; infinite: nowhere."""
     if triangles is None:
         return None
-    scene = EmbreeScene()
-    vertices = (triangles - eye).reshape(-1, 3).astype(np.float32)
-    TriangleMesh(scene, vertices, np.arange(len(vertices), dtype=np.int32).reshape(-1, 3))
+    vertices = (triangles - eye).reshape(-1, 3)
+    scene = RayScene(vertices, np.arange(len(vertices)).reshape(-1, 3))
     rays = ways.astype(np.float32)
-    way = np.asarray(scene.run(np.zeros_like(rays), rays, query="DISTANCE"), dtype=np.float64)
+    way = scene.distances(np.zeros_like(rays), rays).astype(np.float64)
     return np.where(way < 1e30, way, np.inf)
 
 

@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -22,6 +22,11 @@ SEARCH_POINTS = 4000
 FINER = 1e-4
 
 
+def never() -> bool:
+    """Nobody asks to stop."""
+    return False
+
+
 @dataclass(slots=True, eq=False)
 class Course:
     """What a run has met so far.
@@ -31,11 +36,17 @@ class Course:
         steps: seconds since then, number of cameras, price and share of valid points of each better layout.
         sector_bound: price or share (0 to 1) that CP-SAT knows no choice by sectors does better at its points; None: it
             found none.
+        stop: whether to come to an end now, with what was found.
     """
 
     begun: float
     steps: list[tuple[float, int, float, float]] = field(default_factory=list)
     sector_bound: float | None = None
+    stop: Callable[[], bool] = never
+
+    def goes_on(self, until: float) -> bool:
+        """Whether there is time, and nobody asked to stop."""
+        return time.perf_counter() < until and not self.stop()
 
     def note(self, layout: Searched) -> None:
         """Adds a better layout."""
@@ -74,13 +85,13 @@ def cheapest(
     some = _some(model, rng)
     margin, step = 0.0, _step(model)
     here: Layout | None = None
-    while time.perf_counter() < until:
+    while course.goes_on(until):
         budget = best.price - step
         if budget < -ROUNDING:
             break
         progress(f"{len(best.chosen)} cameras, price {best.price:g}: looking for less than that")
         here = _within(here or Layout.of(some, best.chosen), budget)
-        here = _search(here, budget, min(share + margin, 1.0), rng, until)
+        here = _search(here, budget, min(share + margin, 1.0), rng, until, course.stop)
         if here.share < min(share + margin, 1.0):
             break
         whole = Layout.of(model, here.chosen)
@@ -120,9 +131,12 @@ def fullest(
     course.note(best)
     some = _some(model, rng)
     here = Layout.of(some, best.chosen)
-    while best.share < 1.0 and (left := until - time.perf_counter()) > 0:
+    while best.share < 1.0 and course.goes_on(until):
+        left = until - time.perf_counter()
         progress(f"{len(best.chosen)} cameras: {best.share:.2%} of the points valid")
-        here = _search(here, budget, 1.0, rng, time.perf_counter() + min(left, max(left / 8, 1.0)))
+        here = _search(
+            here, budget, 1.0, rng, time.perf_counter() + min(left, max(left / 8, 1.0)), course.stop
+        )
         whole = Layout.of(model, here.chosen)
         if whole.valid > best.valid:
             best = whole
@@ -161,11 +175,11 @@ def in_scenes(
     best = best if share is None else prune(best, share)
     course.note(best)
     here = best
-    while time.perf_counter() < until and best.share < 1.0:
+    while course.goes_on(until) and best.share < 1.0:
         progress(f"{len(best.chosen)} cameras find {best.share:.2%}")
         if share is None:
             left = until - time.perf_counter()
-            here = _search(here, budget, 1.0, rng, time.perf_counter() + max(left / 4, 0.5))
+            here = _search(here, budget, 1.0, rng, time.perf_counter() + max(left / 4, 0.5), course.stop)
             if here.valid > best.valid:
                 best = here
                 course.note(best)
@@ -173,7 +187,7 @@ def in_scenes(
         less = best.price - _step(model)
         if less < -ROUNDING:
             break
-        here = _search(_within(best, less), less, share, rng, until)
+        here = _search(_within(best, less), less, share, rng, until, course.stop)
         if here.share < share:
             break
         best = prune(here, share)
@@ -201,6 +215,7 @@ def _exact(
         hint=hint,
         seed=int(rng.integers(2**31)),
         threads=default_threads(),
+        stop=course.stop,
     )
     if found is None:
         return None
@@ -231,12 +246,22 @@ def _within(layout: Found, budget: float) -> Found:
     return layout
 
 
-def _search(layout: Found, budget: float, share: float, rng: np.random.Generator, until: float) -> Found:
+def _search(
+    layout: Found,
+    budget: float,
+    share: float,
+    rng: np.random.Generator,
+    until: float,
+    stop: Callable[[], bool],
+) -> Found:
     """Several searches side by side, one a core; the first that reaches the share ends all."""
     done = threading.Event()
 
+    def ends() -> bool:
+        return done.is_set() or stop()
+
     def one(seed: int) -> Found:
-        found = improve(layout, budget, share, np.random.default_rng(seed), until, done.is_set)
+        found = improve(layout, budget, share, np.random.default_rng(seed), until, ends)
         if found.share >= share:
             done.set()
         return found

@@ -4,7 +4,8 @@ A point with a view in each of `views` sectors of width 360 / views - angle, who
 views that are pairwise at least the angle apart. That is sufficient, not necessary: some points are valid otherwise.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,6 +36,7 @@ def sector_layout(
     hint: Sequence[int] = (),
     seed: int = 1,
     threads: int = 2,
+    stop: Callable[[], bool] = lambda: False,
 ) -> "SectorChoice | None":
     """The cheapest choice with which this share of the model's points has views in sectors; or the best for a budget.
 
@@ -45,6 +47,7 @@ def sector_layout(
         budget: greatest price, for as many points as possible; None: the share for the least price.
         hint: a choice to start from.
         seed, threads: of the solver.
+        stop: asked many times a second; the solver ends with what it has when it says so.
 
     Returns:
         The choice; None if none was found in time, or the sectors are too narrow.
@@ -80,11 +83,27 @@ def sector_layout(
     solver.parameters.max_time_in_seconds = seconds
     solver.parameters.num_workers = threads
     solver.parameters.random_seed = seed
-    if solver.solve(problem) not in (cp.OPTIMAL, cp.FEASIBLE):
+    # it would keep Ctrl-C for itself
+    solver.parameters.catch_sigint_signal = False
+    if _solved(solver, problem, stop) not in (cp.OPTIMAL, cp.FEASIBLE):
         return None
     members = [c for c in range(model.candidates) if solver.value(chosen[c])]
     bound = solver.best_objective_bound
     return SectorChoice(members, bound / scale if budget is None else bound / model.points)
+
+
+def _solved(solver: Any, problem: Any, stop: Callable[[], bool]) -> Any:
+    """The solver's status; beside it, so that Ctrl-C is heard while it works."""
+    with ThreadPoolExecutor(1) as pool:
+        working = pool.submit(solver.solve, problem)
+        try:
+            while not wait([working], timeout=0.05).done:
+                if stop():
+                    solver.stop_search()
+        except BaseException:
+            solver.stop_search()
+            raise
+        return working.result()
 
 
 def _choices(model: Model, problem: Any) -> list[Any]:

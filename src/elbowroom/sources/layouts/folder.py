@@ -1,19 +1,27 @@
 """Layout `folder`: `<camera>/<stamp_ns>.png`, and a CSV of joints; what lies near in time makes a moment."""
 
-from bisect import bisect_left
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+
+import numpy as np
 
 from elbowroom.errors import FrameError, SiteError
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import JointRecord
 from elbowroom.site.paths import inside
-from elbowroom.site.recording_entry import StampedFolder
+from elbowroom.site.recording_entry import StampedFolder, StampUnit
 from elbowroom.site.site import Site
 from elbowroom.sources.layouts.image import Image
+from elbowroom.sources.times.company import require_dates
+from elbowroom.sources.times.joints import of_machine, require_meeting
+from elbowroom.sources.times.meeting import Meeting
+from elbowroom.sources.times.series import Series
+from elbowroom.sources.times.stamp import require_possible, stamp_of, unit_of
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Folder:
     """A recording of this layout (`Layout`).
 
@@ -31,38 +39,65 @@ class Folder:
         """Images gathered around those of the camera that has most: of each other the nearest, within `max_skew_ms`.
 
         Raises:
-            SiteError: images of an unknown camera, or none at all.
+            SiteError: images of an unknown camera, none at all, or steps that no camera makes.
             FrameError: two images of a camera at one time, or a name that is no time.
         """
-        series = list(self.by_camera().values())
-        leader = max(series, key=len)
-        if not leader:
+        meeting = self.meeting
+        require_dates(self.site.path, meeting)
+        return [
+            [images[index] for images, index in zip(self._rows.values(), column, strict=True) if index >= 0]
+            for column in meeting.taken().T
+        ]
+
+    @cached_property
+    def meeting(self) -> Meeting:
+        """When each camera's images were taken, and who meets whom; raises as `moments`."""
+        series = tuple(
+            Series(name, np.array([image.stamp_ns for image in row], dtype=np.int64))
+            for name, row in self._rows.items()
+        )
+        if not any(map(len, series)):
             raise SiteError(
                 f"{self.site.path}: recording: no frames; expected {self.folder}/<camera>/<stamp_ns>.png"
             )
-        skew_ns = round(self.recording.max_skew_ms * 1e6)
-        groups = []
-        for lead in leader:
-            near = [_nearest(row, lead.stamp_ns or 0, skew_ns) for row in series]
-            groups.append([image for image in near if image is not None])
-        return groups
+        declared = self.recording.stamp_unit is not None
+        return Meeting(series, round(self.recording.max_skew_ms * 1e6), declared)
 
     def by_camera(self) -> dict[str, list[Image]]:
         """Each camera's images by rising time; none if it has no folder. Raises as `moments`."""
+        return dict(self._rows)
+
+    @property
+    def joints_path(self) -> Path:
+        """Of the CSV of joints."""
+        return self.folder / inside(self.folder, self.recording.joints_file)
+
+    @cached_property
+    def _rows(self) -> dict[str, list[Image]]:
         cameras = self.site.cameras()
         self._refuse_unknown({camera.name for camera in cameras})
-        return {camera.name: self._images_of(camera) for camera in cameras}
+        paths = {camera.name: sorted((self.folder / camera.name).glob("*.png")) for camera in cameras}
+        declared = self.recording.stamp_unit
+        unit = unit_of([path for row in paths.values() for path in row], declared)
+        rows = {camera.name: self._images_of(camera, paths[camera.name], unit) for camera in cameras}
+        stamps = {name: [image.stamp_ns or 0 for image in row] for name, row in rows.items()}
+        require_possible(self.site.path, stamps, unit, declared is not None)
+        return rows
 
     def joints(self) -> JointRecord | None:
         """The joints of `joints_file`; None: there is no such file, and no machine that needs it.
 
         Raises:
-            SiteError: the file is not usable, or missing where there is a machine.
+            JointsError: the file is not usable, missing where there is a machine, or not of this machine.
         """
-        path = self.folder / inside(self.folder, self.recording.joints_file)
-        if not path.exists() and self.site.entry.machine is None:
+        path, machine = self.joints_path, self.site.machine()
+        if not path.exists() and machine is None:
             return None
-        return JointRecord.from_csv(path, max_gap_ns=round(self.recording.max_joint_gap_ms * 1e6))
+        record = JointRecord.from_csv(path, max_gap_ns=round(self.recording.max_joint_gap_ms * 1e6))
+        if machine is None:
+            return record
+        require_meeting(path, record, self.meeting)
+        return of_machine(self.site, machine, path, record)
 
     def _refuse_unknown(self, known: set[str]) -> None:
         for path in sorted(self.folder.iterdir()):
@@ -77,14 +112,10 @@ class Folder:
                     "others are named in recording.ignore"
                 )
 
-    def _images_of(self, camera: DepthCamera) -> list[Image]:
+    def _images_of(self, camera: DepthCamera, paths: Sequence[Path], unit: StampUnit) -> list[Image]:
         images: dict[int, Image] = {}
-        for path in sorted((self.folder / camera.name).glob("*.png")):
-            if not (path.stem.isdecimal() and path.stem.isascii() and len(path.stem) <= 19):
-                raise FrameError(
-                    f"{path}: name must be the time of exposure in whole nanoseconds, <stamp_ns>.png"
-                )
-            stamp = int(path.stem)
+        for path in paths:
+            stamp = stamp_of(path, unit)
             if stamp in images:
                 raise FrameError(
                     f"{path}: two frames of camera {camera.name} at {stamp} ns, "
@@ -92,15 +123,3 @@ class Folder:
                 )
             images[stamp] = Image.of(self.site, camera, stamp, path)
         return [images[stamp] for stamp in sorted(images)]
-
-
-def _nearest(row: list[Image], stamp_ns: int, within_ns: int) -> Image | None:
-    stamps = [image.stamp_ns or 0 for image in row]
-    after = bisect_left(stamps, stamp_ns)
-    # the earlier of two that are equally near
-    near = min(
-        row[max(after - 1, 0) : after + 1],
-        key=lambda image: abs((image.stamp_ns or 0) - stamp_ns),
-        default=None,
-    )
-    return near if near is not None and abs((near.stamp_ns or 0) - stamp_ns) <= within_ns else None

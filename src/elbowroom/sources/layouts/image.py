@@ -3,10 +3,13 @@
 from pathlib import Path
 from typing import NamedTuple, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import DepthFrame
 from elbowroom.site.site import Site
-from elbowroom.sources.depth_png import check_depth_png, read_depth_png
+from elbowroom.sources.depth_image import check_depth_image, read_depth_image
 
 
 class Image(NamedTuple):
@@ -37,17 +40,25 @@ class Image(NamedTuple):
         name = camera.name
         return cls(camera, stamp_ns, path, site.depth_scale_m(name), site.depth_bias_m(name))
 
+    @property
+    def unit_m(self) -> float | None:
+        """Metres per unit, where depths are whole multiples of it."""
+        return self.scale_m if self.bias_m == 0 else None
+
     def read(self) -> DepthFrame:
         """The frame.
 
         Raises:
             FrameError: the file is not what its camera delivers.
         """
-        raw = read_depth_png(self.path, self.camera.width, self.camera.height)
         return DepthFrame.from_raw(
-            self.camera.name, self.stamp_ns, raw, scale_m=self.scale_m, bias_m=self.bias_m
+            self.camera.name, self.stamp_ns, self.raw(), scale_m=self.scale_m, bias_m=self.bias_m
         )
+
+    def raw(self) -> NDArray[np.uint16]:
+        """The sensor's whole numbers, shape (height, width); raises as `read`."""
+        return read_depth_image(self.path, self.camera.width, self.camera.height)
 
     def check(self) -> None:
         """Looks at the file's header alone; raises FrameError as `read` would."""
-        check_depth_png(self.path, self.camera.width, self.camera.height)
+        check_depth_image(self.path, self.camera.width, self.camera.height)

@@ -4,12 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 from PIL import Image
 
 from elbowroom.geometry import VoxelGrid, looking_at
+from elbowroom.geometry.ray_scene import RayScene
 from elbowroom.simulate.solid import Solid
 
 GREY = (0.62, 0.62, 0.60)
@@ -82,19 +81,17 @@ def shaded(
     Returns:
         RGB, view.width x view.height.
     """
-    scene = EmbreeScene()
-    faces = np.arange(3 * len(triangles), dtype=np.int32).reshape(-1, 3)
-    TriangleMesh(scene, triangles.reshape(-1, 3).astype(np.float32), faces)
+    scene = RayScene(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     directions = _rays(view, smooth)
     origin = np.asarray(view.eye_m, dtype=np.float64)
-    hit = scene.run(_repeated(origin, len(directions)), directions.astype(np.float32), output=True)
-    seen = hit["primID"] >= 0
-    face = hit["primID"][seen]
+    hit, far = scene.hits(_repeated(origin, len(directions)), directions.astype(np.float32))
+    seen = hit >= 0
+    face = hit[seen]
     normal, towards = normals[face], directions[seen]
     normal = np.where(np.sum(normal * towards, axis=1, keepdims=True) > 0, -normal, normal)
-    point = origin + hit["tfar"][seen, None] * towards + OFF_M * normal
+    point = origin + far[seen, None] * towards + OFF_M * normal
     light = 0.62 * _openness(scene, point, normal) + 0.55 * _lamplight(scene, point, normal, np.array(lamp_m))
     linear = np.tile(np.array(PAPER), (len(directions), 1))
     linear[seen] = colours[face] * light[:, None]
@@ -117,7 +114,7 @@ def _repeated(origin: NDArray[np.float64], count: int) -> NDArray[np.float32]:
 
 
 def _openness(
-    scene: EmbreeScene, point: NDArray[np.float64], normal: NDArray[np.float64]
+    scene: RayScene, point: NDArray[np.float64], normal: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Share of the hemisphere about each point that nothing near covers, 0 to 1."""
     random = np.random.default_rng(0)
@@ -127,19 +124,19 @@ def _openness(
         way /= np.linalg.norm(way, axis=1, keepdims=True)
         way = normal * 1.001 + way
         way /= np.linalg.norm(way, axis=1, keepdims=True)
-        far = scene.run(point.astype(np.float32), way.astype(np.float32), query="DISTANCE")
+        far = scene.distances(point, way)
         free += np.clip(far / CORNER_REACH_M, 0.0, 1.0)
     return free / CORNER_RAYS
 
 
 def _lamplight(
-    scene: EmbreeScene, point: NDArray[np.float64], normal: NDArray[np.float64], lamp: NDArray[np.float64]
+    scene: RayScene, point: NDArray[np.float64], normal: NDArray[np.float64], lamp: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Cosine of the angle at which a lamp's light falls in, 0 in shadow."""
     way = lamp - point
     length = np.linalg.norm(way, axis=1)
     way /= length[:, None]
-    far = scene.run(point.astype(np.float32), way.astype(np.float32), query="DISTANCE")
+    far = scene.distances(point, way)
     return np.where(far >= length, np.clip(np.sum(way * normal, axis=1), 0.0, 1.0), 0.0)
 
 

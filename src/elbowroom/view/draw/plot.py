@@ -132,6 +132,25 @@ class Plot:
         ImageDraw.Draw(self.picture).ellipse((x - 5, y - 5, x + 5, y + 5), fill=colour, outline=PAPER)
         return True
 
+    def draw_name(self, point_m: NDArray[np.float64], words: str) -> None:
+        """Writes a name beside a place, towards the middle of the plot, so that it stays within it.
+
+        Args:
+            point_m: shape (2,) [m].
+            words: the name.
+        """
+        x, y = self.area_px(point_m) + np.array([self.left_px, self.top_px])
+        on_left = point_m[0] < (self.lower_m[0] + self.upper_m[0]) / 2
+        ImageDraw.Draw(self.picture).text(
+            (x + (9 if on_left else -9), y),
+            words,
+            fill=INK,
+            font=font(14),
+            anchor="lm" if on_left else "rm",
+            stroke_width=2,
+            stroke_fill=PAPER,
+        )
+
     def draw_axes(self, right: str, up: str) -> None:
         """Draws a frame, ticks at round numbers of metres and the names of both axes."""
         pen = ImageDraw.Draw(self.picture)

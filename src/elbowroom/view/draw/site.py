@@ -14,15 +14,16 @@ VIEW_PX, EDGE_PX, TITLE_PX = 720, 60, 64
 PAPER, INK, SOFT = (250, 250, 248, 255), (30, 34, 40, 255), (110, 116, 124, 255)
 GRID_FILL, FAN_FILL, FAN_EDGE, DOT = (
     (222, 239, 248, 255),
-    (0, 114, 178, 22),
+    (0, 114, 178, 40),
     (0, 114, 178, 120),
     (213, 94, 0, 255),
 )
 MACHINE, MACHINE_OPACITY = (64, 70, 78), 0.35
 NAME_WIDTH_PX, NAME_HEIGHT_PX = 64, 15
 """A name that would lie on another within this distance is left out."""
-FEW_CAMERAS = 4
-"""Up to so many, fields of view are drawn far enough to see where they overlap."""
+REACH = ((4, 0.75), (8, 0.25), (255, 0.08))
+"""Up to so many cameras, fields of view are drawn to so much of the box's diagonal: few so far that it is seen
+where they overlap, many so short that it is seen which is whose."""
 STEPS_M = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 
 
@@ -59,7 +60,7 @@ def draw_site(
         An RGB picture.
     """
     diagonal_m = float(np.linalg.norm(grid.upper_m - grid.lower_m))
-    reach_m = diagonal_m * (0.75 if len(cameras) <= FEW_CAMERAS else 0.25)
+    reach_m = diagonal_m * next((share for most, share in REACH if len(cameras) <= most), REACH[-1][1])
     triangles = np.zeros((0, 3, 3)) if machine_in_world is None else machine_in_world
     frusta = [frustum_in_world(camera, min(camera.max_depth_m, reach_m)) for camera in cameras]
     everything = np.concatenate([grid.lower_m[None], grid.upper_m[None], triangles.reshape(-1, 3), *frusta])
@@ -115,7 +116,7 @@ def _draw_view(
         ((x, y),) = view.at(camera.centre_in_world)
         draw.ellipse((x - 4, y - 4, x + 4, y + 4), fill=DOT)
         if all(abs(x - a) > NAME_WIDTH_PX or abs(y - b) > NAME_HEIGHT_PX for a, b in named):
-            draw.text((x + 6, y - 6), camera.name, INK, font=_font(12))
+            draw.text((x + 6, y - 6), camera.name, INK, font=_font(12), stroke_width=2, stroke_fill=PAPER)
             named.append((x, y))
     _draw_scale(draw, view, upper_m)
 

@@ -1,7 +1,5 @@
 """What a run of the monitor came to: rates, times, levels, faults."""
 
-import resource
-import sys
 import time
 from collections import Counter, deque
 from collections.abc import Iterator, Sequence
@@ -13,7 +11,9 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from elbowroom.files.peak_memory import peak_memory_mb
 from elbowroom.monitor import CycleResult
+from elbowroom.monitor.rows import shares_pct
 from elbowroom.motion import Level
 from elbowroom.view.screen.words import LEVEL_WORDS, NOT_CERTIFIED
 
@@ -39,8 +39,10 @@ class RunLog:
     age_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
     stages: deque[dict[str, float]] = field(default_factory=lambda: deque(maxlen=RECENT), init=False)
     ends_s: deque[float] = field(default_factory=lambda: deque(maxlen=RECENT + 1), init=False)
+    free_pct: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
     levels: dict[str, Counter[Level]] = field(default_factory=dict, init=False)
     faults: Counter[str] = field(default_factory=Counter, init=False)
+    late: int = field(default=0, init=False)
     stops: dict[str, str] = field(default_factory=dict, init=False)
     is_watched: bool = field(default=False, init=False)
     cycles: int = field(default=0, init=False)
@@ -56,14 +58,18 @@ class RunLog:
         self.cycles += 1
         self.cycle_ms.append(result.cycle_ms)
         self.source_ms.append(source_ms)
-        if result.oldest_age_ms is not None:
-            self.age_ms.append(result.oldest_age_ms + result.cycle_ms)
+        if result.age_ms is not None:
+            self.age_ms.append(result.age_ms)
         self.stages.append(dict(result.stage_ms))
         self.ends_s.append(time.perf_counter())
         for verdict in result.verdicts:
             self.levels.setdefault(verdict.motion.name, Counter())[verdict.level] += 1
+        if not result.verdicts and result.space is not None:
+            self.free_pct.append(shares_pct(result.space)["free_pct"])
         if result.fault is not None:
             self.faults[result.fault] += 1
+        if result.late is not None:
+            self.late += 1
         if result.health is not None:
             self.is_watched = True
             self.stops = dict(result.health.stops)
@@ -95,14 +101,14 @@ class RunLog:
             "cycles": self.cycles,
             "rate_hz": self.whole_rate_hz,
             "faults": self.faults.total(),
+            "late": self.late,
             "watched": self.is_watched,
             "stop_reasons": list(self.stops.values()),
         }
         for name, values in (("cycle", self.cycle_ms), ("source", self.source_ms)):
             for statistic, share in (("median", 50), ("p99", 99), ("max", 100)):
                 row[f"{name}_{statistic}_ms"] = float(np.percentile(values, share)) if values else None
-        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        row["peak_rss_mb"] = peak / (1e6 if sys.platform == "darwin" else 1e3)
+        row["peak_rss_mb"] = peak_memory_mb()
         return row
 
     def recent(self, values: Sequence[float]) -> float:
@@ -135,8 +141,13 @@ class RunLog:
                 times.add_row(name, f"{p50:.1f} ms", f"{p99:.1f} ms", f"{worst:.1f} ms")
         return times
 
-    def _shares(self) -> Table:
-        """How often each motion was at each level."""
+    def _shares(self) -> RenderableType:
+        """How often each motion was at each level; where none is asked, what was free."""
+        if self.free_pct:
+            low, mid, high = np.percentile(self.free_pct, (0, 50, 100))
+            return Text(
+                f"free: {mid:.1f} % of the watched box, {low:.1f} to {high:.1f} %; no motion was judged"
+            )
         shares = Table("movement", *LEVEL_WORDS.values(), box=None, pad_edge=False, header_style="dim")
         for name, counts in self.levels.items():
             total = counts.total()
@@ -151,6 +162,10 @@ class RunLog:
             fault, times_seen = self.faults.most_common(1)[0]
             count = self.faults.total()
             yield Text(f"{count} cycles failed and said stop; most often ({times_seen}): {fault}", "bold red")
+        if self.late:
+            late = f"{self.late} of {self.cycles} cycles said stop"
+            text = f"{late}, as images were past max_frame_age_ms when their verdicts were out"
+            yield Text(f"{text}: larger voxels, fewer pixels or more cores make a pass shorter", "bold red")
         for reason in self.stops.values():
             yield Text(f"Every motion was stopped: {reason}", "bold red")
         if self.stops:

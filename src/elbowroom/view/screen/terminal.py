@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from elbowroom.monitor import CycleResult, Pass
+from elbowroom.monitor.rows import shares_pct
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.sources import Room
 from elbowroom.view.screen.run_log import RunLog
@@ -23,8 +24,10 @@ from elbowroom.view.screen.words import (
     NOT_CERTIFIED,
     counts_text,
     health_text,
+    place_first,
     place_text,
     plain_line,
+    shares_text,
     travel_bar,
     travel_text,
 )
@@ -44,6 +47,8 @@ BAR_STYLES: dict[Level, str] = {
 REFRESH_S = 0.125
 """The screen is drawn anew no more often than this: eyes need no more, and drawing takes milliseconds."""
 PLAIN_EVERY_S = 1.0
+WIDE_BAR, NARROW_BAR = 20, 5
+"""Characters of the bar of free travel, on screens of 100 columns or more, and below."""
 
 
 class TerminalView:
@@ -68,6 +73,7 @@ class TerminalView:
         self._live = live
         self._last_screen: RenderableType | None = None
         self._last_shown_s = float("-inf")
+        self._said: dict[tuple[str, tuple[str, ...]], str] = {}
 
     def __enter__(self) -> "TerminalView":
         return self
@@ -100,6 +106,7 @@ class TerminalView:
         """Notes a pass and, if it is time, shows it."""
         result = done.result
         self.log.add(result, done.source_ms)
+        self._warn(result)
         now = time.perf_counter()
         if now - self._last_shown_s < (REFRESH_S if self._live is not None else PLAIN_EVERY_S):
             return
@@ -113,11 +120,26 @@ class TerminalView:
     def end(self) -> None:
         """Ends the screen and prints what the run came to."""
         self.stop()
+        if self._live is not None:
+            for text in self._said.values():
+                self._print_warning(text)
         self.console.print(self.log.summary())
 
     def note(self, text: str) -> None:
         """Prints a line that the user should know before it starts."""
         self.console.print(f"note: {text}", highlight=False, soft_wrap=True)
+
+    def _warn(self, result: CycleResult) -> None:
+        """Says what was found about the input, each thing once: at once in plain lines, at the end of a screen."""
+        for finding in result.findings:
+            of = finding.kind, finding.about
+            if of not in self._said:
+                self._said[of] = finding.text
+                if self._live is None:
+                    self._print_warning(finding.text)
+
+    def _print_warning(self, text: str) -> None:
+        self.console.print(f"warning: {text}", highlight=False, soft_wrap=True, markup=False)
 
     def screen(self, result: CycleResult) -> RenderableType:
         """All of the live screen for one pass."""
@@ -127,11 +149,12 @@ class TerminalView:
             Text(self.watched.room, "dim"),
             self._speed(result),
             Text(),
-            self._table(result.verdicts, wide),
+            self._judged(result, wide),
             Text(),
             Text(health_text(result.health), "dim"),
         ]
         lines += [Text(f" {line} ", STYLES[Level.STOP]) for line in _stops(result)]
+        lines += [Text(f"Warning: {finding.text}") for finding in result.findings if not finding.stops]
         if self.watched.unchecked_links:
             lines.append(
                 Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
@@ -141,7 +164,7 @@ class TerminalView:
 
     def line(self, result: CycleResult) -> str:
         """One pass in one plain line."""
-        age = "" if result.oldest_age_ms is None else f" age {result.oldest_age_ms:.0f} ms"
+        age = "" if result.age_ms is None else f" age {result.age_ms:.0f} ms"
         head = (
             f"{result.stamp_ns / 1e9:8.2f} s {self.log.rate_hz:5.1f} Hz cycle {result.cycle_ms:.0f} ms{age}"
         )
@@ -149,33 +172,43 @@ class TerminalView:
             return f"{head} | STOP, the cycle failed: {result.fault}"
         if result.stopped_by is not None:
             return f"{head} | STOP: {result.stopped_by}"
+        if not result.verdicts and result.space is not None:
+            return f"{head} | {shares_text(shares_pct(result.space))}"
         return " | ".join([head, *map(plain_line, result.verdicts)])
 
     def _speed(self, result: CycleResult) -> Text:
         log = self.log
-        age = log.recent(log.age_ms)
+        age = result.age_ms if result.late is not None else log.recent(log.age_ms)
         stages = " + ".join(f"{name} {ms:.0f}" for name, ms in log.recent_stage_ms.items())
         levels = [verdict.level for verdict in result.verdicts]
         text = Text()
         text.append(f"{log.rate_hz:.1f} Hz", "bold")
         text.append("  frame age ")
-        text.append("unknown" if result.oldest_age_ms is None else f"{age:.0f} ms", "bold")
+        style = "bold" if result.late is None else STYLES[Level.STOP]
+        text.append("unknown" if result.age_ms is None else f"{age:.0f} ms", style)
         text.append("  cycle ")
         text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
         text.append(f" = {stages}", "dim")
-        text.append(f"\n{result.stamp_ns / 1e9:.1f} s, cycle {result.sequence + 1}: {counts_text(levels)}")
+        judged = counts_text(levels) or "no motion is judged"
+        text.append(f"\n{result.stamp_ns / 1e9:.1f} s, cycle {result.sequence + 1}: {judged}")
         text.append(
             f"  ({self.watched.source} apart: {log.recent(log.source_ms):.0f} ms; Ctrl-C ends)", "dim"
         )
         return text
 
+    def _judged(self, result: CycleResult, wide: bool) -> RenderableType:
+        """The verdicts; where no motion is asked, what is free."""
+        if result.verdicts or result.space is None:
+            return self._table(result.verdicts, wide)
+        return Text(shares_text(shares_pct(result.space)), "bold")
+
     def _table(self, verdicts: Sequence[Verdict], wide: bool) -> Table:
-        table = Table(box=None, pad_edge=False, header_style="dim", padding=(0, 2, 0, 0))
+        table = Table(box=None, pad_edge=False, header_style="dim", padding=(0, 2 if wide else 1, 0, 0))
+        bar = WIDE_BAR if wide else NARROW_BAR
         table.add_column("movement", no_wrap=True)
         table.add_column("level", no_wrap=True, width=14)
         table.add_column("free", justify="right", no_wrap=True, width=9)
-        if wide:
-            table.add_column("   S   M           L", no_wrap=True, width=20)
+        table.add_column("   S   M           L" if wide else "SM  L", no_wrap=True, width=bar)
         table.add_column("cause", no_wrap=True)
         table.add_column("where", no_wrap=True, overflow="ellipsis", ratio=1)
         for verdict in verdicts:
@@ -184,7 +217,7 @@ class TerminalView:
 
     def _row(self, verdict: Verdict, wide: bool) -> list[Text]:
         level = verdict.level
-        filled, rest = travel_bar(verdict)
+        filled, rest = travel_bar(verdict, WIDE_BAR if wide else NARROW_BAR)
         whole_reach = verdict.free_travel >= _looked_at(verdict) * (1 - 1e-9)
         more = "≥ " if whole_reach else ""
         at_limit = verdict.cause is Cause.NONE and not whole_reach
@@ -193,12 +226,11 @@ class TerminalView:
             Text(f" {MARKS[level]} {LEVEL_WORDS[level]} ".ljust(14), STYLES[level]),
             Text(more + travel_text(verdict.free_travel, verdict.free_travel_unit), "bold"),
         ]
-        if wide:
-            cells.append(Text.assemble((filled, BAR_STYLES[level]), (rest, "dim")))
         return [
             *cells,
+            Text.assemble((filled, BAR_STYLES[level]), (rest, "dim")),
             Text("joint limit" if at_limit else CAUSE_WORDS[verdict.cause]),
-            Text(place_text(verdict), "dim"),
+            Text(place_text(verdict) if wide else place_first(verdict), "dim"),
         ]
 
 
@@ -206,6 +238,9 @@ def _stops(result: CycleResult) -> list[str]:
     """Why every motion is stop, a line each."""
     found = () if result.health is None else result.health.stops.values()
     lines = [f"Stop: {reason}. Stays until the monitor is started again." for reason in found]
+    lines += [f"Stop: {finding.text}" for finding in result.findings if finding.stops]
+    if result.late is not None:
+        lines.append(f"Stop: {result.late}")
     return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
 
 

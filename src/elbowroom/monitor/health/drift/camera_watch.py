@@ -141,7 +141,7 @@ class CameraWatch:
 
     def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[Counts, Fit]:
         """Adds a frame to a memory: numbers of spots, and the motion that fits them."""
-        gate = Gate(float(self.camera.min_depth_m), float(self.camera.max_depth_m), GATE_M)
+        gate = Gate(float(self.camera.min_depth_m), float(self.camera.deepest_m), GATE_M)
         counts, fit = judge_image(
             frame.depth_m.ravel(), self._spots, gate, TURN_PRIOR_RAD, MOVE_PRIOR_M, memory
         )

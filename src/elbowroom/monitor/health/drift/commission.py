@@ -82,9 +82,7 @@ class Commissioning:
             number = self._counts[camera.name]
             if number >= self.frames:
                 raise CalibrationError(f"commission: more than the {self.frames} frames that were announced")
-            usable = (frame.depth_m >= max(camera.min_depth_m, UNIT_M)) & (
-                frame.depth_m <= camera.max_depth_m
-            )
+            usable = (frame.depth_m >= max(camera.min_depth_m, UNIT_M)) & (frame.depth_m <= camera.deepest_m)
             usable &= frame.depth_m < 65535 * UNIT_M
             if self.machine is not None:
                 usable &= ~_machine_pixels(self.machine, camera, snapshot.joints_at(camera.name) or {})

@@ -1,0 +1,68 @@
+"""What is found in the values of a site: its cameras' lenses and places, and the images of some moments."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from elbowroom.finding import Finding
+from elbowroom.geometry import DepthCamera
+from elbowroom.reconstruct.contradiction.findings import contradictions
+from elbowroom.sensing.values import look_at_images, look_at_setting
+from elbowroom.site import Site
+from elbowroom.site.plausible import look_at_site
+from elbowroom.sources.cameras import cameras_of
+from elbowroom.sources.layouts.image import Image
+from elbowroom.sources.layouts.layout import layout_of
+
+MOMENTS = 3
+"""So many moments of a recording are read: the first, the last, and those evenly between."""
+
+
+def looked_at(site: Site) -> tuple[Finding, ...]:
+    """What is found in a site and its recording; nothing is carved.
+
+    Images are read that `moments` would read, of a few moments; none of a recording that is not there yet.
+
+    Raises:
+        SiteError, FrameError: as `moments`.
+    """
+    grid, cameras = site.grid(), cameras_of(site)
+    found = [*look_at_setting(grid, cameras), *look_at_site(site)]
+    is_there = site.entry.recording is not None and site.missing_recording is None
+    if is_there and not any(finding.stops for finding in found):
+        for group in _some(layout_of(site).moments()):
+            frames = [image.read() for image in group]
+            found += look_at_images(
+                grid, cameras, frames, {image.camera.name: image.unit_m for image in group}
+            )
+            # images that cannot be right contradict each other as well: that says nothing new
+            if not any(finding.stops for finding in found):
+                found += contradictions(cameras, frames, site.margin())
+    return once(found)
+
+
+def units_of(site: Site, cameras: Sequence[DepthCamera]) -> Mapping[str, float]:
+    """Metres per unit of a recording's images, by camera; of none where there is no recording.
+
+    Args:
+        site: of the cameras.
+        cameras: whose units are asked for.
+    """
+    if site.entry.recording is None:
+        return {}
+    return {
+        camera.name: site.depth_scale_m(camera.name)
+        for camera in cameras
+        if site.depth_bias_m(camera.name) == 0
+    }
+
+
+def once(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """The first finding of each kind about the same cameras."""
+    kept: dict[tuple[str, tuple[str, ...], bool], Finding] = {}
+    for finding in findings:
+        kept.setdefault((finding.kind, finding.about, finding.stops), finding)
+    return tuple(kept.values())
+
+
+def _some(groups: Sequence[list[Image]]) -> list[list[Image]]:
+    last = len(groups) - 1
+    return [groups[at] for at in sorted({round(last * n / (MOMENTS - 1)) for n in range(MOMENTS)}) if groups]

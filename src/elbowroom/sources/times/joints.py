@@ -1,0 +1,185 @@
+"""Whether a record of joints is one of this machine, in its units, and of the images' time."""
+
+import difflib
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import JointsError
+from elbowroom.finding import Finding
+from elbowroom.machine import Joint, Machine
+from elbowroom.sensing import JointRecord
+from elbowroom.sensing.joints import END_SLACK_NS
+from elbowroom.site.recording_entry import StampedFolder
+from elbowroom.site.site import Site
+from elbowroom.sources.times.cause import Span, cause_text
+from elbowroom.sources.times.meeting import Meeting
+from elbowroom.sources.times.series import length_text, span_text, usual_step_ns
+from elbowroom.sources.times.stamp import NS, WORDS
+
+FASTEST_ROWS_HZ = 20_000
+"""No machine tells its joints more often."""
+SCARCE = 0.1
+"""Where joints are known at less than this share of the images, another unit is tried."""
+TOO_FAST, SLOW_ENOUGH = 10.0, 1.5
+"""Speeds above so many times full speed are none; those below so many times may be."""
+
+
+def of_machine(site: Site, machine: Machine, path: Path, record: JointRecord) -> JointRecord:
+    """The columns of a record that are joints of the machine, in metres and radians.
+
+    Args:
+        site: of the recording.
+        machine: the site's.
+        path: of the record, to be named.
+        record: as the file has it.
+
+    Raises:
+        JointsError: a joint without a column, or turning joints that are in degrees where radians are said.
+    """
+    recording = site.entry.recording
+    assert isinstance(recording, StampedFolder)
+    for name in machine.joint_names:
+        if name not in record.joints:
+            near = difflib.get_close_matches(name, record.joints, n=1)
+            meant = f" (is it {near[0]}?)" if near else ""
+            raise JointsError(
+                f"{path}: no column for joint {name}{meant}; columns are {', '.join(record.joints)}"
+            )
+    turning = [name for name in machine.joint_names if machine.joint(name).unit == "rad"]
+    if recording.angle_unit == "rad":
+        _require_radians(site, path, [machine.joint(name) for name in turning], record)
+    in_radians = np.radians if recording.angle_unit == "deg" else np.asarray
+    return replace(
+        record,
+        positions={
+            name: in_radians(record.positions[name]) if name in turning else record.positions[name]
+            for name in machine.joint_names
+        },
+    )
+
+
+def _require_radians(site: Site, path: Path, joints: Sequence[Joint], record: JointRecord) -> None:
+    for joint in joints:
+        given, entry = record.positions[joint.name], site.entry.joints.get(joint.name)
+        beyond = float(((given < joint.lower - 0.1) | (given > joint.upper + 0.1)).mean())
+        turned = np.radians(given)
+        fits = bool(((turned >= joint.lower - 0.1) & (turned <= joint.upper + 0.1)).all())
+        why = ""
+        if beyond > 0.2 and fits:
+            why = f"up to {np.abs(given).max():g}, its limits are {joint.lower:g} to {joint.upper:g} rad"
+        elif entry is not None and len(given) > 1:
+            fastest = _fastest(record.stamps_ns, given)
+            limit = entry.speed_of(joint)
+            if fastest > TOO_FAST * limit and np.radians(fastest) < SLOW_ENOUGH * limit:
+                why = f"moves at {fastest:.3g} rad/s, its full speed is {limit:.3g} rad/s"
+        if why:
+            raise JointsError(
+                f"{path}: joint {joint.name} {why}: these look like degrees; say angle_unit: deg in recording"
+            )
+
+
+def _fastest(stamps_ns: NDArray[np.int64], positions: NDArray[np.float64]) -> float:
+    """The speed that nineteen of twenty moving rows stay below [units of the positions a second]."""
+    speeds = np.abs(np.diff(positions)) / (np.diff(stamps_ns) / 1e9)
+    moving = speeds[speeds > 0]
+    return float(np.percentile(moving, 95)) if len(moving) else 0.0
+
+
+def require_meeting(path: Path, record: JointRecord, meeting: Meeting) -> None:
+    """Refuses a record whose times cannot be those of the images.
+
+    Args:
+        path: of the record, to be named.
+        record: of the machine.
+        meeting: of the images.
+
+    Raises:
+        JointsError: rows closer than any machine tells, or from another time than all images.
+    """
+    rows, images = _span(record), _images(meeting)
+    step = usual_step_ns(record.stamps_ns)
+    known = float(_known(record, meeting.lead.stamps_ns).mean())
+    for unit, ns in NS.items():
+        if ns > 1 and known < SCARCE and _fits(rows, images, ns):
+            raise JointsError(
+                f"{path}: as nanoseconds, joints are known at {100 * known:.0f} % of the images, as {WORDS[unit]} from "
+                f"beginning to end: name that column stamp_{unit}"
+            )
+    if step is not None and step < 1e9 / FASTEST_ROWS_HZ:
+        fits = [unit for unit, ns in NS.items() if ns > 1 and 1 / 60 < 1e9 / (step * ns) <= FASTEST_ROWS_HZ]
+        likely = (
+            f"they look like {WORDS[fits[0]]}: name that column stamp_{fits[0]}"
+            if fits
+            else "are they times?"
+        )
+        raise JointsError(f"{path}: as nanoseconds, {1e9 / step:,.0f} rows a second; {likely}")
+    if known == 0 and not rows.covers(images):
+        raise JointsError(
+            f"{path}: joints from {span_text(rows.first_ns, rows.last_ns)}, images from "
+            f"{span_text(images.first_ns, images.last_ns)}: they never meet; {cause_text(rows, images)}. "
+            "The column of times may be named stamp_ns, stamp_us, stamp_ms or stamp_s"
+        )
+
+
+def _fits(rows: Span, images: Span, ns: int) -> bool:
+    """Whether rows in another unit begin and end where the images do, give or take a fifth of their length."""
+    slack = 0.2 * (images.last_ns - images.first_ns)
+    begins, ends = abs(rows.first_ns * ns - images.first_ns), abs(rows.last_ns * ns - images.last_ns)
+    return begins <= slack and ends <= slack
+
+
+def joint_findings(path: Path, record: JointRecord, meeting: Meeting) -> Iterator[Finding]:
+    """Moments of which a record does not know where the machine was.
+
+    Args:
+        path: of the record.
+        record: of the machine.
+        meeting: of the images.
+    """
+    taken = meeting.taken()
+    known = np.ones(len(meeting.lead), dtype=np.bool_)
+    for row, index in zip(meeting.series, taken, strict=True):
+        there = index >= 0
+        known[there] &= _known(record, row.stamps_ns[index[there]])
+    without = int((~known).sum())
+    if not without:
+        return
+    rows, images = _span(record), _images(meeting)
+    parts = []
+    if rows.first_ns > images.first_ns + END_SLACK_NS:
+        parts.append(f"begin {length_text(rows.first_ns - images.first_ns)} after the images")
+    if rows.last_ns < images.last_ns - END_SLACK_NS:
+        parts.append(f"end {length_text(images.last_ns - rows.last_ns)} before them")
+    if not parts:
+        parts.append("have gaps longer than max_joint_gap_ms")
+    first = int(np.argmin(known))
+    text = (
+        f"{path.name}: joints {' and '.join(parts)}: {without} of {len(known)} moments have none, the first is moment "
+        f"{first}, where monitor ends"
+    )
+    yield Finding("joints", (), text, False)
+
+
+def _known(record: JointRecord, stamps_ns: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """At which times `JointRecord.at` has an answer."""
+    rows = record.stamps_ns
+    inside = (stamps_ns >= rows[0] - END_SLACK_NS) & (stamps_ns <= rows[-1] + END_SLACK_NS)
+    if record.max_gap_ns is None or len(rows) < 2:
+        return inside
+    clamped = np.clip(stamps_ns, rows[0], rows[-1])
+    after = np.searchsorted(rows, clamped)
+    before = np.maximum(after - 1, 0)
+    return inside & ((rows[after] == clamped) | (rows[after] - rows[before] <= record.max_gap_ns))
+
+
+def _span(record: JointRecord) -> Span:
+    return Span(int(record.stamps_ns[0]), int(record.stamps_ns[-1]))
+
+
+def _images(meeting: Meeting) -> Span:
+    heard = [row for row in meeting.series if len(row)]
+    return Span(min(row.first_ns for row in heard), max(row.last_ns for row in heard))
