@@ -143,8 +143,18 @@ def sightings(site: Site, on_image: Callable[[int, int], None] = lambda done, of
     if not views:
         what = instead_of(site, board, work) or _commonest(troubles)
         raise CalibrationError(f"{site.path}: {len(work)} images and none shows the board; {what}")
-    require_own_images(work, views)
+    require_own_images(_pictures(site, work), views)
     return Sightings(board, views, troubles, len(poses))
+
+
+def _pictures(site: Site, work: Sequence[tuple[Image, int]]) -> list[tuple[Image, int]]:
+    """The files in which the board was looked for, instead of depth images, where these are others."""
+    entry = site.entry.calibration
+    if entry is None or entry.images.folder is None:
+        return list(work)
+    return [
+        (image._replace(path=picture_path(site, entry.images, image, pose)), pose) for image, pose in work
+    ]
 
 
 def images_of(site: Site, cameras: Sequence[str]) -> list[tuple[Image, int]]:
