@@ -41,7 +41,7 @@ class Link:
 
     name: str
     vertices: NDArray[np.float64]
-    faces: NDArray[np.integer]
+    faces: NDArray[np.int32]
     seen: Self | None = None
 
     def __post_init__(self) -> None:
