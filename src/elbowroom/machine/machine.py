@@ -288,7 +288,7 @@ class Machine:
             multiplier=np.append(tree.multiplier, 1.0),
             offset=np.append(tree.offset, 0.0),
         )
-        carried = Link(part.name, part.surface.vertices, part.surface.faces)
+        carried = Link(part.name, part.surface.vertices, part.surface.faces.astype(np.int32))
         touched = [(part.name, self.link_names[other]) for other in self._held_with(row)]
         return replace(
             self,
