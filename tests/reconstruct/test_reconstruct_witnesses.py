@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from elbowroom.errors import EvidenceError, InputError
 from elbowroom.geometry import VoxelGrid, bits
+from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.reconstruct import Terms, carve, free_space_of, merge, resolve
 from elbowroom.reconstruct.witnesses import witnesses
@@ -132,10 +133,20 @@ def test_the_order_of_cameras_does_not_matter():
 def test_cameras_that_are_one_witness_must_be_carved_together():
     _, grid, cameras, frames = crowded_room(3)
     parts = [carve(grid, [camera], [frame]) for camera, frame in zip(cameras, frames, strict=True)]
-    with pytest.raises(EvidenceError, match="are one witness: carve them together"):
-        resolve(merge(parts), cameras, witness_angle_deg=ANGLE_DEG)
-    resolve(merge(parts), cameras, witness_angle_deg=0.0)
-    resolve(carve(grid, cameras, frames, witness_angle_deg=ANGLE_DEG), cameras, witness_angle_deg=ANGLE_DEG)
+    with pytest.raises(EvidenceError, match="are one witness: carve them in one group"):
+        resolve(merge(parts), cameras)
+    together = resolve(carve(grid, cameras, frames), cameras)
+    np.testing.assert_array_equal(together.free, space_of(grid, cameras, frames, Margin(), 2.0).free)
+
+
+def test_a_room_whose_cameras_are_all_one_witness_has_what_nobody_disputes():
+    _, grid, cameras, frames = crowded_room(3)
+    near = [cameras[0], beside(cameras[0], "b", 0.01), beside(cameras[0], "c", 0.02)]
+    same = [DepthFrame(camera.name, NOW, frames[0].depth_m) for camera in near]
+    evidence = carve(grid, near, same)
+    assert not bits.unpack(evidence.through[1], grid).any()
+    free = resolve(evidence, near).free
+    np.testing.assert_array_equal(free, bits.unpack(evidence.through[0] & ~evidence.disputed, grid))
 
 
 @pytest.mark.parametrize("angle_deg", [-1.0, 46.0, np.nan])

@@ -9,7 +9,7 @@ from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.monitor.why.why import Why, why
-from elbowroom.motion import Motion, Verdict, check_motion
+from elbowroom.motion import Cause, Motion, Verdict, check_motion
 from elbowroom.reconstruct import FreeSpace, warm_up
 from elbowroom.reconstruct.point_report import Sight
 from elbowroom.reconstruct.source import ImageSource
@@ -43,7 +43,7 @@ def ask(
         console = Console(stderr=True)
         compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
         with Steps(console, 4) as steps:
-            steps.begin("compiling kernels")
+            steps.begin("loading kernels")
             warm_up(machine, [room.terms.detail])
             steps.begin("reading images")
             snapshot = room.snapshot(moment)
@@ -52,7 +52,7 @@ def ask(
             steps.begin("checking the motion")
             verdict = check_motion(space, machine, snapshot.joints or {}, motion)
         found = why(space, machine, snapshot.joints or {}, verdict)
-        reasons = [] if found.report is None else str(found.report).splitlines()
+        reasons = _reasons(found, verdict)
         pictures = _pictures(space, found, out)
         add(
             {
@@ -69,13 +69,16 @@ def ask(
                 "advice": list(found.advice),
                 "pictures": [str(path) for path in pictures],
                 "unchecked_links": machine.unchecked_links,
+                "bodiless_links": machine.bodiless_links,
+                "allowances": machine.allowances,
             }
         )
     print(f"{verdict.motion.name}: {verdict.level.value}")
     print(_travel(motion, verdict))
     if verdict.place_in_world is not None:
         x, y, z = verdict.place_in_world
-        print(f"What ends it: {verdict.cause.value}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
+        what = verdict.cause.value + (f", {verdict.other_link}" if verdict.other_link else "")
+        print(f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
     if verdict.overridable:
         print("An operator who holds on may drive on at low speed, since nobody sees that space.")
     for line in [*reasons, *_numbers(found), *map(_sentence, found.advice)]:
@@ -84,6 +87,10 @@ def ask(
         print(f"{len(pictures)} pictures, one of each camera that has the voxel in its image, in {out}")
     if machine.unchecked_links:
         print(f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}.")
+    if machine.bodiless_links:
+        print(f"Without a body, by the site's word: {', '.join(machine.bodiless_links)}.")
+    for line in machine.allowances:
+        print(f"{line}.")
     print(NOT_CERTIFIED)
 
 
@@ -103,6 +110,19 @@ def _numbers(found: Why) -> list[str]:
 
 def _sentence(words: str) -> str:
     return f"{words[0].upper()}{words[1:]}."
+
+
+def _reasons(found: Why, verdict: Verdict) -> list[str]:
+    """What each camera saw at the place that ends the travel, a line each; nothing if that lies nowhere.
+
+    Of the machine itself: what to do if its links are meant to touch.
+    """
+    if verdict.cause is Cause.MACHINE:
+        return [
+            f"{verdict.link} and {verdict.other_link} may be meant to touch: then name both in the site's machine: "
+            "allowed_contacts."
+        ]
+    return [] if found.report is None else str(found.report).splitlines()
 
 
 def _pictures(space: FreeSpace, found: Why, out: Path | None) -> list[Path]:

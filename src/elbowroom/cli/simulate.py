@@ -13,6 +13,8 @@ def simulate(
     site: options.OptionalSite = None,
     room: options.RoomFile = None,
     out: options.OutFolder = None,
+    up: options.MeshUp = None,
+    unit: options.MeshUnit = None,
     moments: options.Moments = None,
     rate: options.Rate = 10.0,
     moving: options.Moving = None,
@@ -35,13 +37,15 @@ def simulate(
     of it and of its own machine, as a recording in its own units. Go on with
     elbowroom site check SITE, reconstruct, check, or monitor.
 
-    Without SITE, objects of the GLB are solids, in metres. Writes a recording and
-    a site file: go on with elbowroom reconstruct DIR/site.yaml, check, or monitor.
+    Without SITE, objects of the file (.glb, .gltf, .dae, .obj, .ply, .stl) are
+    closed solids. Writes a recording and a site file: go on with elbowroom
+    reconstruct DIR/site.yaml, check, or monitor.
     With --out, writes colour.png and depth.png, too: the room from above, and one
     camera's image.
 
     Ctrl-C ends with the moments that are there.
     """
+    from elbowroom.cli.simulate_mesh import RoomFile
     from elbowroom.cli.simulate_run import Asked, WallOptions, simulate_site, simulate_walls
 
     positions = parse_joints(joints)
@@ -53,7 +57,7 @@ def simulate(
         "--voxel-size": voxel_size,
     }
     asked = Asked(
-        room=room,
+        room=None if room is None else RoomFile(room, up, unit),
         out=out,
         moments=moments or (1 if site is None else USUAL_MOMENTS),
         rate_hz=rate,

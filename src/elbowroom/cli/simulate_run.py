@@ -12,6 +12,7 @@ from elbowroom.cli.interrupt import ended_by_interrupt
 from elbowroom.cli.noise import noise_named
 from elbowroom.cli.options import options_named
 from elbowroom.cli.progress import Steps
+from elbowroom.cli.simulate_mesh import RoomFile
 from elbowroom.cli.simulate_options import Size
 from elbowroom.cli.simulate_site import SiteRoom, site_room
 from elbowroom.errors import InputError
@@ -20,7 +21,7 @@ from elbowroom.files.json_rows import json_rows
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.sensing import DepthFrame
-from elbowroom.simulate import Moment, Walls, render, setup, solids_of_glb, true_occupancy, wall_cameras
+from elbowroom.simulate import Moment, Walls, render, setup, true_occupancy, wall_cameras
 from elbowroom.simulate.crowd import Floor
 from elbowroom.simulate.floor import floor_height
 from elbowroom.simulate.inside import check_outside
@@ -42,7 +43,7 @@ SITE_START_S = 100.0
 class Asked:
     """What the command line says of any room; see its help."""
 
-    room: str | None
+    room: RoomFile | None
     out: Path | None
     moments: int
     rate_hz: float
@@ -125,9 +126,17 @@ def simulate_walls(asked: Asked, options: WallOptions, json: Path | None) -> Non
         shot = Shot(scene, cameras, tuple(course.times_s), box, out / "images", units)
         _check_outside(shot, " (--height, --cameras, --box)")
         moments, row = _shoot(shot, asked, steps)
-        what = Recording(Path(asked.room).stem, box, scene.at(course.times_s[0]).joints or None, noise)
+        what = Recording(Path(asked.room.name).stem, box, scene.at(course.times_s[0]).joints or None, noise)
         site = write_site_of(out, what, cameras)
-        add({**row, "room": asked.room, "noise": noise, "site": str(site), "notes": list(scene.notes)})
+        add(
+            {
+                **row,
+                "room": asked.room and asked.room.name,
+                "noise": noise,
+                "site": str(site),
+                "notes": list(scene.notes),
+            }
+        )
     for words in scene.notes:
         print(f"note: {words}")
     print(
@@ -155,12 +164,22 @@ def simulate_site(path: Path, asked: Asked, json: Path | None) -> None:
         with options_named(joints="--joints", people="--moving", room="--room", out="--out", noise="--noise"):
             room = site_room(path, asked.room, asked.out, asked.noise)
             refuse_foreign(room.images)
+            if room.machine is not None:
+                room.machine.require_joints(asked.joints or {})
             scene, notes = room.scene(course)
         shot = Shot(scene, room.cameras, tuple(course.times_s), room.box, room.images, room.units)
         _check_outside(shot, "")
         moments, row = _shoot(shot, asked, steps)
         site = room.write(asked.out)
-        add({**row, "room": asked.room, "noise": asked.noise, "site": str(site), "notes": list(notes)})
+        add(
+            {
+                **row,
+                "room": asked.room and asked.room.name,
+                "noise": asked.noise,
+                "site": str(site),
+                "notes": list(notes),
+            }
+        )
     for words in notes:
         print(f"note: {words}")
     print(f"{row['images']} images of {len(room.cameras)} cameras{_of(moments, asked)} in {room.images}")
@@ -236,16 +255,19 @@ def _walled(
 ) -> tuple[Surroundings, dict[str, float] | None]:
     """The room without a site, and where the C-arm is; None: it is not there."""
     assert asked.room is not None
-    if asked.room in {f"setup{n}" for n in range(1, 7)}:
-        shipped = setup(asked.room)
-        solids, usual = shipped.solids(), dict(shipped.joints)
+    solids = asked.room.solids(box)
+    if asked.room.is_shipped:
+        usual = dict(setup(asked.room.name).joints)
     else:
-        solids = solids_of_glb(asked.room)
         usual = dict.fromkeys(ceiling_c_arm().joint_names, 0.0)
     if not any(_meets(s.vertices_in_world, box) for s in solids):
-        raise InputError(f"{asked.room}: no object reaches into the box {options.box}; give another --box")
+        raise InputError(
+            f"{asked.room.name}: no object reaches into the box {options.box}; give another --box"
+        )
     floor = Floor(box.lower_m[:2], box.upper_m[:2], floor_height(box, solids) if asked.people else 0.0)
     joints = {**usual, **(asked.joints or {})} if options.machine else None
+    if joints is not None:
+        ceiling_c_arm().require_joints(joints)
     eyes = np.array([camera.centre_in_world for camera in cameras])
     return Surroundings(box, solids, (), floor, eyes), joints
 
@@ -284,6 +306,7 @@ def _box(text: str, voxel_size_m: float) -> VoxelGrid:
 def _draw(out: Path, grid: VoxelGrid, moment: Moment, frame: DepthFrame) -> None:
     """The room without what hangs above it or stands between it and the eye, and the first camera's image."""
     shown = [s for s in moment.solids if s.is_machine or _is_inside(s.vertices_in_world, grid)]
+    shown = shown or list(moment.solids)  # all of it stands in the way
     middle, size = (grid.lower_m + grid.upper_m) / 2, float(np.linalg.norm(grid.upper_m - grid.lower_m))
     eye = middle + np.array([0.66, -0.70, 0.50]) * size
     view = View(

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from elbowroom.cli.simulate_mesh import RoomFile
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
-from elbowroom.placement.fixed_room import SETUP_NAMES, FixedRoom
-from elbowroom.simulate import InterventionRoom, Moment, setup, solids_of_glb
+from elbowroom.placement.fixed_room import FixedRoom
+from elbowroom.simulate import InterventionRoom, Moment
 from elbowroom.simulate.crowd import Floor
 from elbowroom.simulate.floor import floor_height
 from elbowroom.simulate.scene import Course, InUse, Surroundings, scene_in
@@ -54,7 +55,7 @@ class SiteRoom:
     walls_m: np.ndarray | None
     images: Path
     noise: str | None
-    mesh: str | None
+    mesh: RoomFile | None
 
     @property
     def units(self) -> dict[str, Units]:
@@ -98,10 +99,7 @@ class SiteRoom:
         content = {key: value for key, value in said_again(self.site, path).items() if key not in UNMOVED}
         content["recording"] = {"layout": "folder", "folder": "images"}
         if self.mesh is not None:
-            named = self.mesh in SETUP_NAMES
-            content["room"] = {
-                "mesh": self.mesh if named else os.path.relpath(Path(self.mesh).absolute(), out.absolute())
-            }
+            content["room"] = self.mesh.entry(out)
         if self.noise is not None:
             content["camera_defaults"] = {**content.get("camera_defaults", {}), "noise": self.noise}
             for camera in content.get("cameras", ()):
@@ -151,12 +149,12 @@ class Intervention:
         return self.room.at(time_s, joints=joints)
 
 
-def site_room(path: Path, room: str | None, out: Path | None, noise: str | None) -> SiteRoom:
+def site_room(path: Path, room: RoomFile | None, out: Path | None, noise: str | None) -> SiteRoom:
     """A site as the simulator takes it.
 
     Args:
         path: of the site file.
-        room: a GLB or a setup's name instead of the site's room; None: the site's.
+        room: instead of the site's; None: the site's.
         out: where images go, in `images`; None: to the site's recording.
         noise: instead of the site's, by name; None: the site's.
 
@@ -202,14 +200,16 @@ def _images(site: Site, out: Path | None) -> Path:
     return expand(recording.folder, site.path.parent)
 
 
-def _solids(site: Site, room: str | None) -> tuple[tuple[Solid, ...], tuple[Solid, ...], np.ndarray | None]:
+def _solids(
+    site: Site, room: RoomFile | None
+) -> tuple[tuple[Solid, ...], tuple[Solid, ...], np.ndarray | None]:
     """Closed solids, surfaces, and the inner faces of the walls if they are known."""
     if site.simulated is not None:
         if room is not None:
             raise InputError(f"room: {site.path} is a simulated room and brings its own; leave it out")
         return (), (), None
     if room is not None:
-        return (setup(room).solids() if room in SETUP_NAMES else solids_of_glb(room)), (), None
+        return room.solids(site.grid()), (), None
     fixed = FixedRoom.of_site(site)
     if fixed is None:
         raise InputError(

@@ -81,8 +81,8 @@ def canvas(height: int, width: int, inverse: NDArray[np.float32] | None = None) 
 
 
 def mesh_of(machine: Machine) -> Mesh:
-    """All triangles of the machine as kernels take them; made once."""
-    return _mesh(machine.shape, 0.0)
+    """All triangles that cameras see of the machine, as kernels take them; made once."""
+    return _mesh(machine.as_seen.shape, 0.0)
 
 
 def drawn_mesh(machine: Machine, bound_m: float) -> tuple[Mesh, float]:
@@ -95,8 +95,9 @@ def drawn_mesh(machine: Machine, bound_m: float) -> tuple[Mesh, float]:
     Returns:
         The triangles, and how far they may lie from the surface at most, 0 for a machine that is drawn as it is [m].
     """
-    bound = machine.shape.bound(bound_m)
-    return _mesh(machine.shape, bound), bound
+    shape = machine.as_seen.shape
+    bound = shape.bound(bound_m)
+    return _mesh(shape, bound), bound
 
 
 @kept

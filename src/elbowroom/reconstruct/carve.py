@@ -17,7 +17,7 @@ from elbowroom.reconstruct.kernels.carve import carve_cubes
 from elbowroom.reconstruct.kernels.planes import PLANES, Answers
 from elbowroom.reconstruct.kernels.points import carve_points
 from elbowroom.reconstruct.layout import layout_of
-from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG, Terms
+from elbowroom.reconstruct.terms import Terms
 from elbowroom.reconstruct.views import fill
 from elbowroom.reconstruct.witnesses import as_one, witnesses
 from elbowroom.sensing import DepthFrame
@@ -35,9 +35,10 @@ def carve(
     complete: bool = False,
     model_depth: Mapping[str, NDArray[np.float32]] | None = None,
     unexplained: Words | None = None,
-    witness_angle_deg: float = WITNESS_ANGLE_DEG,
 ) -> Evidence:
     """What cameras know of each voxel by one frame each. A camera without a frame disputes all that it looks at.
+
+    Cameras nearer to each other than `terms.WITNESS_ANGLE_DEG` are one witness (`witnesses`).
 
     Args:
         grid: the watched box.
@@ -50,15 +51,13 @@ def carve(
         complete: ask all cameras of every voxel and count them, as rules other than `three` need.
         model_depth: by camera, up to where the machine explains each pixel [m], 0: not explained (`machine.explain`).
         unexplained: plane of voxels in which returns lie that the machine does not explain.
-        witness_angle_deg: cameras nearer to each other than this are one witness, as seen from the grid (`witnesses`)
-            [deg]; 0: each is one.
 
     Raises:
         InputError: an unknown detail.
         CameraError: a camera named twice, a frame of an unknown camera, or more than 255 cameras.
         FrameError: two frames of one camera, or a frame of another size than its camera's.
     """
-    terms = Terms(detail=detail, margin=margin or Margin(), witness_angle_deg=witness_angle_deg)
+    terms = Terms(detail=detail, margin=margin or Margin())
     explained = Explained(dict(model_depth or {}), unexplained)
     return carve_images(grid, room_images(cameras, frames), explained, terms, complete=complete)
 
@@ -87,13 +86,11 @@ def carve_images(
         CameraError: more than 255 cameras.
     """
     groups = witnesses(grid, images.cameras, terms.witness_angle_deg)
-    if not groups:
-        return _carve_all(grid, images, explained, terms, complete, focus)
     names = [camera.name for camera in images.cameras]
-    near = [{names[number] for number in group} for group in groups]
+    near = [[names[number] for number in group] for group in groups]
     alone = [name for name in names if not any(name in group for group in near)]
+    own = _carve_all(grid, images.of(*alone) if near else images, explained, terms, complete, focus)
     rest = Explained(explained.model_depth, None)
-    own = _carve_all(grid, images.of(*alone), explained, terms, complete, focus)
     # of one witness every camera is asked, also where several see through: who disputes counts
     shared = (_carve_all(grid, images.of(*group), rest, terms, True, focus) for group in near)
     return merge([own, *(as_one(one, complete) for one in shared)])
@@ -127,6 +124,7 @@ def _carve_all(
         answers.planes,
         bits.empty(grid) if explained.unexplained_words is None else explained.unexplained_words,
         Counts(answers.through_count, answers.dispute_count) if complete else None,
+        witness_angle_deg=terms.witness_angle_deg,
     )
 
 

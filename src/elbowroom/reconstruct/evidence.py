@@ -35,6 +35,7 @@ class Evidence:
         unexplained: voxels in which a return lies that the machine's model does not explain, though its body does.
         counts: numbers of cameras, or None.
         as_one: groups of cameras that were counted as one witness each, those of more than one.
+        witness_angle_deg: below which cameras were one witness, as far as they were carved together [deg].
 
     Raises:
         EvidenceError: a camera is named twice.
@@ -46,6 +47,7 @@ class Evidence:
     unexplained: Words
     counts: Counts | None = None
     as_one: frozenset[frozenset[str]] = frozenset()
+    witness_angle_deg: float = 0.0
 
     def __post_init__(self) -> None:
         names = tuple(sorted(self.cameras))
@@ -142,5 +144,7 @@ def _merge_two(a: Evidence, b: Evidence) -> Evidence:
         if len(a.cameras) + len(b.cameras) > 255:
             raise EvidenceError("merge: more than 255 cameras cannot be counted")
         counts = Counts(a.counts.through + b.counts.through, a.counts.disputes + b.counts.disputes)
-    groups = a.as_one | b.as_one
-    return Evidence(a.grid, a.cameras + b.cameras, planes, a.unexplained | b.unexplained, counts, groups)
+    groups, angle_deg = a.as_one | b.as_one, max(a.witness_angle_deg, b.witness_angle_deg)
+    return Evidence(
+        a.grid, a.cameras + b.cameras, planes, a.unexplained | b.unexplained, counts, groups, angle_deg
+    )

@@ -15,7 +15,7 @@ from elbowroom.reconstruct.evidence import Evidence, merge
 from elbowroom.reconstruct.explained import NOTHING
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG, Terms
+from elbowroom.reconstruct.terms import Terms
 from elbowroom.reconstruct.witnesses import witnesses
 
 
@@ -61,7 +61,6 @@ def resolve(
     machine: Machine | None = None,
     joints: Mapping[str, float] | None = None,
     body_growth_m: float | None = None,
-    witness_angle_deg: float = WITNESS_ANGLE_DEG,
 ) -> FreeSpace:
     """Decides for each voxel whether it is free.
 
@@ -76,7 +75,6 @@ def resolve(
         machine, joints: whose body to take out, and where it is; both None: the bare room.
         body_growth_m: by how much the body is grown, at least a quarter voxel [m]; None: half a voxel. Evidence of
             returns that the machine does not explain must have been looked for with the same growth.
-        witness_angle_deg: as the evidence was carved with.
 
     Raises:
         InputError: an unknown rule, or a machine without joints.
@@ -84,9 +82,7 @@ def resolve(
         EvidenceError: the rule needs counts and the evidence has none, or cameras that are one witness were carved
             apart.
     """
-    terms = Terms(
-        rule, detail, margin or Margin(), body_growth_m=body_growth_m, witness_angle_deg=witness_angle_deg
-    )
+    terms = Terms(rule, detail, margin or Margin(), body_growth_m=body_growth_m)
     return decide(evidence, cameras, machine, joints, terms)
 
 
@@ -109,7 +105,8 @@ def decide(
     grid = evidence.grid
     if terms.needs_counts and evidence.counts is None:
         raise EvidenceError(f"resolve: rule {terms.rule} needs evidence carved with complete=True")
-    _require_one_witness(evidence, cameras, terms)
+    if terms.rule == "three":
+        _require_one_witness(evidence, cameras)
     evidence = _with_silent(evidence, cameras, terms)
     free = _DECIDE[terms.rule](evidence) & bits.inside(grid)
     body = _body(evidence, machine, joints, terms)
@@ -126,17 +123,14 @@ def decide(
     )
 
 
-def _require_one_witness(evidence: Evidence, cameras: Sequence[DepthCamera], terms: Terms) -> None:
+def _require_one_witness(evidence: Evidence, cameras: Sequence[DepthCamera]) -> None:
     """Cameras that are one witness must have been carved together: evidence of each alone counts as one of its own."""
-    groups = (
-        witnesses(evidence.grid, tuple(cameras), terms.witness_angle_deg) if terms.rule == "three" else ()
-    )
-    for group in groups:
+    for group in witnesses(evidence.grid, tuple(cameras), evidence.witness_angle_deg):
         near = {cameras[number].name for number in group} & set(evidence.cameras)
         if len(near) > 1 and not any(near <= together for together in evidence.as_one):
             raise EvidenceError(
-                f"resolve: cameras {', '.join(sorted(near))} stand within {terms.witness_angle_deg:g} degrees of each "
-                "other, as seen from the grid, and are one witness: carve them together, or set witness_angle_deg"
+                f"resolve: cameras {', '.join(sorted(near))} stand within {evidence.witness_angle_deg:g} degrees of "
+                "each other, as seen from the grid, and are one witness: carve them in one group"
             )
 
 
@@ -152,9 +146,16 @@ def _with_silent(evidence: Evidence, cameras: Sequence[DepthCamera], terms: Term
 def _body(
     evidence: Evidence, machine: Machine | None, joints: Mapping[str, float] | None, terms: Terms
 ) -> Words:
-    """Plane of the voxels that the machine's body covers, but for those in which something else was seen."""
+    """Plane of the voxels that the machine's body covers, but for those in which something else was seen.
+
+    Where the model is larger than what cameras see of it, nothing else may be disputed either: a hand in its excess is.
+    """
     if machine is None:
         return bits.empty(evidence.grid)
     if joints is None:
         raise InputError("resolve: a machine without joints; give its joint positions by name")
-    return body_words(machine, joints, evidence.grid, terms.body_growth_m) & ~evidence.unexplained
+    body: Words = body_words(machine, joints, evidence.grid, terms.body_growth_m) & ~evidence.unexplained
+    if machine.as_seen is not machine:
+        seen = body_words(machine.as_seen, joints, evidence.grid, terms.body_growth_m)
+        body &= seen | ~evidence.disputed
+    return body

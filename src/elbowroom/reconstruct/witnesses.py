@@ -1,5 +1,6 @@
 """Which cameras are one witness: those that look from nearly one place err together."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -52,4 +53,4 @@ def as_one(evidence: Evidence, counted: bool) -> Evidence:
     planes[TWO] = planes[THREE] = 0
     group = frozenset({frozenset(evidence.cameras)})
     counts = evidence.counts if counted else None
-    return Evidence(evidence.grid, evidence.cameras, planes, evidence.unexplained, counts, group)
+    return replace(evidence, planes=planes, counts=counts, as_one=group)

@@ -7,7 +7,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.sensing.frame import DepthFrame
 
 RETURNS = 0.3
-"""Where more than this share of its masked pixels return, a mask is of other images: people before far walls are less."""
+"""Where a larger share of its masked pixels returns, a mask is of other images: people before far walls are less."""
 
 
 def masked_returns(cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]) -> tuple[Finding, ...]:
@@ -25,8 +25,8 @@ def masked_returns(cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame])
         share = float(((depth > 0) & (depth >= camera.min_depth_m) & (depth <= camera.deepest_m)).mean())
         if share > RETURNS:
             text = (
-                f"{camera.name}: {100 * share:.0f} % of the pixels that its mask says nothing of return; the mask is of other "
-                "images, flipped, or out of date: elbowroom site mask makes it anew"
+                f"{camera.name}: {100 * share:.0f} % of the pixels under its mask return; the mask is of "
+                "other images, flipped, or out of date: elbowroom site mask makes it anew"
             )
             findings.append(Finding("mask", (camera.name,), text, False))
     return tuple(findings)

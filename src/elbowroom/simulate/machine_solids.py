@@ -19,7 +19,7 @@ COURSE: dict[str, tuple[float, float]] = {
 
 
 def link_solids(machine: Machine, joints: Mapping[str, float]) -> tuple[Solid, ...]:
-    """One solid for each link that has a body.
+    """One solid for each link that has a body: what cameras see of it.
 
     Args:
         machine: any machine.
@@ -31,7 +31,7 @@ def link_solids(machine: Machine, joints: Mapping[str, float]) -> tuple[Solid, .
     world_from_links = machine.world_from_links(joints)
     return tuple(
         Solid(name, mesh, world_from_links[name], is_machine=True)
-        for name, mesh in _meshes_of(machine.shape).items()
+        for name, mesh in _meshes_of(machine.as_seen.shape).items()
     )
 
 

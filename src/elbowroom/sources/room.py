@@ -112,6 +112,7 @@ def open_room(
     if joints is not None:
         if machine is None:
             raise InputError(f"joints: {site.path} names no machine; leave them out")
+        machine.require_joints(joints)
         machine.checked(joints)
     made = cameras_of(site, cameras, resolution)
     source = _source(site, made, joints, knocks)

@@ -49,7 +49,7 @@ def _meets_patch(patch, x, y, z, half_edge, triangle):
 
 
 @njit(inline="always")
-def _kind(volume, word, bit):
+def kind_of(volume, word, bit):
     """What a blocked voxel is."""
     if volume.surface[word] & bit:
         return SURFACE
@@ -109,7 +109,7 @@ def _touched_by(patch, ball, volume, found, place, triangle):
                 word, bit = word_of(i, j, k, lattice.cubes_y, lattice.cubes_z), bit_of(i, j, k)
                 if not volume.words[word] & bit or du * du + dv * dv + dw * dw > s * s:
                     continue
-                kind = _kind(volume, word, bit)
+                kind = kind_of(volume, word, bit)
                 if kind >= found:
                     continue
                 x, y, z = (

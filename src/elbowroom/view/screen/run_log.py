@@ -30,10 +30,14 @@ class RunLog:
     Args:
         source: what brings the frames, such as "simulator".
         unchecked_links: links of the machine that are not checked; every summary names them.
+        bodiless_links: links that move without a body; every summary names them too.
+        allowances: what else the site lets pass, a line each.
     """
 
     source: str = "source"
     unchecked_links: Sequence[str] = ()
+    bodiless_links: Sequence[str] = ()
+    allowances: Sequence[str] = ()
     cycle_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
     source_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
     age_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
@@ -178,3 +182,6 @@ class RunLog:
             yield Text("No camera moved, and the machine was where its joints said.")
         if self.unchecked_links:
             yield Text(f"Not checked, by the site's word: {', '.join(self.unchecked_links)}")
+        if self.bodiless_links:
+            yield Text(f"Without a body, by the site's word: {', '.join(self.bodiless_links)}")
+        yield from map(Text, self.allowances)

@@ -89,7 +89,10 @@ class TerminalView:
 
     def open(self, watched: Watched) -> None:
         """As `begin`, by what its head says."""
-        self.watched, self.log = watched, RunLog(watched.source, watched.unchecked_links)
+        self.watched, self.log = (
+            watched,
+            RunLog(watched.source, watched.unchecked_links, watched.bodiless_links, watched.allowances),
+        )
         if self._live is not None:
             self._live.start()
         else:
@@ -159,6 +162,11 @@ class TerminalView:
             lines.append(
                 Text(f"Not checked, by the site's word: {', '.join(self.watched.unchecked_links)}", "dim")
             )
+        if self.watched.bodiless_links:
+            lines.append(
+                Text(f"Without a body, by the site's word: {', '.join(self.watched.bodiless_links)}", "dim")
+            )
+        lines += [Text(line, "dim") for line in self.watched.allowances]
         lines.append(Text(NOT_CERTIFIED, "dim"))
         return Padding(Group(*lines), (0, 1))
 

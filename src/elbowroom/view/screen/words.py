@@ -21,6 +21,7 @@ CAUSE_WORDS: dict[Cause, str] = {
     Cause.SURFACE: "surface",
     Cause.BLIND: "blind",
     Cause.OUTSIDE_GRID: "outside the grid",
+    Cause.MACHINE: "itself",
     Cause.UNSEEN: "unseen",
     Cause.NONE: "",
     Cause.FAULT: "fault",
@@ -52,7 +53,8 @@ def place_text(verdict: Verdict) -> str:
     if verdict.place_in_world is None:
         return verdict.link or ""
     x, y, z = verdict.place_in_world
-    return f"{verdict.link} at {x:.2f}, {y:.2f}, {z:.2f} m"
+    link = verdict.link if verdict.other_link is None else f"{verdict.link} and {verdict.other_link}"
+    return f"{link} at {x:.2f}, {y:.2f}, {z:.2f} m"
 
 
 def travel_bar(verdict: Verdict, width: int = 20) -> tuple[str, str]:
