@@ -200,6 +200,6 @@ def test_machines_that_differ_by_their_place_alone_share_what_is_kept(arm):
         there = machine.at(pose_of(seed))
         assert there.anywhere is machine and machine.anywhere is machine
         assert there.as_seen.shape is machine.as_seen.shape
-        np.testing.assert_array_equal(there.as_seen.world_from_base, there.world_from_base)
+        np.testing.assert_allclose(there.as_seen.world_from_base, there.world_from_base, atol=1e-12)
     assert replace(machine, unchecked_links=()).anywhere is not machine
     assert machine.allowing(("foot", "fore")).anywhere is not machine
