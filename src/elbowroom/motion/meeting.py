@@ -53,7 +53,7 @@ class Meeting:
     @classmethod
     def of(cls, machine: Machine, world_from_link: NDArray[np.float64]) -> Self:
         """At one place of the machine, whose links are there: shape (n_links, 4, 4)."""
-        pairs = pairs_of(machine)
+        pairs = pairs_of(machine.anywhere)
         gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
         gaps_now(pairs, world_from_link, LEAST_IN_COVERS * pairs.skin.cover, gaps, least)
         return cls(machine, pairs, world_from_link, gaps, least)
