@@ -44,11 +44,8 @@ def found_at(
     setting = look_at_setting(grid, cameras)
     if any(finding.stops for finding in setting):
         return setting
-    return (
-        *setting,
-        *look_at_images(grid, cameras, frames, units_m),
-        *contradictions(cameras, frames, margin or Margin()),
-    )
+    found = (*setting, *look_at_images(grid, cameras, frames, units_m))
+    return (*found, *contradictions(cameras, frames, margin or Margin(), found))
 
 
 def require_plausible(
