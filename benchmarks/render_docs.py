@@ -229,6 +229,19 @@ moments boxes were moved, played again and again; its first camera's reference i
         "elbowroom bench calibration --part drift",
         tables.drift_tables,
     ),
+    Section(
+        "robots.json",
+        "Robots as published",
+        """
+URDF and xacro files of packages on PyPI, unpacked and loaded as they are, without a word of help, and posed
+([what is read and what refused](robots.md)). *whole*: a second, plain reader finds links with geometry and joints
+between them, and every mesh that they name is in the package; *machines*: any joint moves. The others are parts of
+files, files without links, and packages that lack meshes. *lose a part unsaid*: a link for which the second reader
+finds geometry has no body, and nothing is said of it. Left out are 1,000 random solids of one package.
+""",
+        "elbowroom evaluate robots PACKAGES... --leave-out random_urdfs",
+        tables.robot_tables,
+    ),
 )
 
 

@@ -4,6 +4,7 @@ from result_tables.calibration import calibration_tables
 from result_tables.cells import Row, any_tables
 from result_tables.drift import drift_tables
 from result_tables.placement import placement_tables, sweep_tables
+from result_tables.robots import robot_tables
 from result_tables.space import room_tables, sevenscenes_tables
 from result_tables.speed import bench_tables, start_tables
 from result_tables.verdicts import alone_tables, poses_tables, travel_tables
@@ -17,6 +18,7 @@ __all__ = [
     "drift_tables",
     "placement_tables",
     "poses_tables",
+    "robot_tables",
     "room_tables",
     "sevenscenes_tables",
     "start_tables",

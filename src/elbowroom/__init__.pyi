@@ -7,7 +7,11 @@ from elbowroom.geometry import (
     Intrinsics as Intrinsics,
     VoxelGrid as VoxelGrid,
 )
-from elbowroom.machine import Machine as Machine
+from elbowroom.machine import (
+    Machine as Machine,
+    Part as Part,
+    Stand as Stand,
+)
 from elbowroom.machine.c_arm import ceiling_c_arm as ceiling_c_arm
 from elbowroom.motion import (
     Cause as Cause,

@@ -14,3 +14,6 @@ LAWFUL: tuple[Rule, ...] = ("three", "majority")
 Detail = Literal["footprint", "pixel", "point"]
 """How closely images are looked at (`reconstruct.carve`)."""
 DETAILS: tuple[Detail, ...] = get_args(Detail)
+
+ExplainWith = Literal["auto", "visual", "collision"]
+"""Which geometry of a machine says what cameras see of it (`machine.seen`)."""

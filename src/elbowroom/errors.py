@@ -15,6 +15,7 @@
 
 Two are warnings, not errors. `PoseWarning`: a pose was a little off a rotation and was brought to the nearest one.
 `ValueWarning`: something that was given reads as valid, but is most likely not meant so.
+`MachineWarning`: a URDF has a slip that passes; the message says how it is taken.
 """
 
 
@@ -64,6 +65,10 @@ class EvidenceError(ElbowroomError):
 
 class PackageError(ElbowroomError):
     """A package that only some commands need is not installed; the message says how to install it."""
+
+
+class MachineWarning(UserWarning):
+    """A URDF has a slip that other readers pass over, and so does this one; the message names its place."""
 
 
 class PoseWarning(UserWarning):

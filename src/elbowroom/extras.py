@@ -15,6 +15,7 @@ PACKAGES = {
     "matplotlib": ("charts need Matplotlib", "evaluate"),
     "ortools": ("finding a placement needs CP-SAT of OR-Tools", "placement"),
     "small_gicp": ("calibration by the machine needs small_gicp", "calibrate"),
+    "xacro": ("expanding a xacro file needs xacro", "xacro"),
 }
 """What needs each of them, and the extra of elbowroom that names its version."""
 

@@ -3,6 +3,7 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import ndimage
 
 from elbowroom.errors import MachineError
 from elbowroom.machine import Link, Machine, body_samples, ceiling_c_arm
@@ -148,3 +149,21 @@ def test_sizes_that_no_voxel_has_are_refused(arm):
             body_samples(arm, size)
     with pytest.raises(MachineError, match="use larger voxels"):
         interior_points(BALL, 1e-4)
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.tuples(*[st.integers(1, 9)] * 3), st.floats(0, 0.6))
+def test_cells_are_outside_if_the_first_one_reaches_them(seed, shape, share):
+    cells = (np.random.default_rng(seed).random(shape) < share).astype(np.uint8)
+    cells[0, 0, 0] = kernels.OPEN
+    parts, _ = ndimage.label(cells == kernels.OPEN)
+    expected = np.where(parts == parts[0, 0, 0], kernels.OUTSIDE, cells)
+    kernels.flood(cells)
+    assert (cells == expected).all()
+
+
+def test_a_comb_of_many_runs_is_flooded_too():
+    cells = np.ones((3, 3, 9001), dtype=np.uint8)
+    cells[:, :, ::2], cells[0, 0] = kernels.OPEN, kernels.OPEN
+    kernels.flood(cells)
+    assert (cells[:, :, ::2] == kernels.OUTSIDE).all() and (cells[1:, 1:, 1::2] == kernels.SURFACE).all()

@@ -1,11 +1,14 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.errors import MachineError, PoseWarning
+from elbowroom.errors import MachineError, MachineWarning, PoseWarning
 from elbowroom.machine import Machine
+from elbowroom.machine.machine import Tolerance
 from reference import machine_twins as naive
 
 AT_REST = {"slide": 0.0, "elbow": 0.0, "grip": 0.02}
@@ -93,8 +96,9 @@ def test_round_solids_lie_within_their_polyhedra(arm):
     ("joints", "message"),
     [
         ({"slide": 0.0, "elbow": 0.0}, "'grip' has no position"),
-        ({**AT_REST, "wrist": 0.0}, "no joint 'wrist'; joints are slide, elbow, grip"),
-        ({**AT_REST, "follow": 0.0}, "no joint 'follow'"),
+        ({**AT_REST, "follow": 0.5}, "follow: 0.5 m, but it follows grip, which puts it at"),
+        ({**AT_REST, "follow": float("nan")}, "follow: position is not finite"),
+        ({**AT_REST, "grip": [0.0, 0.1], "follow": [0.0, 0.1, 0.2]}, "is out of its limits|unlike lengths"),
         ({**AT_REST, "slide": float("nan")}, "slide: position is not finite"),
         ({**AT_REST, "slide": 0.7}, r"slide: 0.7 m is out of its limits, -0.5 to 0.5 m"),
         ({**AT_REST, "elbow": -3}, r"elbow: -3 rad is out of its limits, -2 to 2 rad"),
@@ -108,6 +112,198 @@ def test_impossible_joints_are_named(arm, joints, message):
         arm.world_from_links(joints)
 
 
+def test_whole_joint_states_are_taken_with_followers_and_joints_of_other_machines(arm):
+    state = {**AT_REST, "follow": -0.03, "wrist_of_another": 3.0}
+    placed = arm.world_from_links(state)
+    assert set(arm.checked(state)) == set(arm.joint_names)
+    assert all(np.array_equal(placed[name], at) for name, at in arm.world_from_links(AT_REST).items())
+    with pytest.raises(MachineError, match="no joint 'wrist_of_another'; joints are slide, elbow, grip"):
+        arm.require_joints(state)
+
+
+@pytest.mark.parametrize("way", [-1, 1])
+def test_a_position_beyond_a_limit_by_little_is_taken_as_it_is(arm, way):
+    over = np.radians(0.9)
+    assert arm.checked({**AT_REST, "elbow": way * (2 + over)})["elbow"] == way * (2 + over)
+    with pytest.raises(MachineError, match="out of its limits"):
+        arm.checked({**AT_REST, "elbow": way * (2 + np.radians(1.1))})
+    strict = replace(arm, tolerance=Tolerance(rad=0.0, m=0.0))
+    with pytest.raises(MachineError, match="out of its limits"):
+        strict.checked({**AT_REST, "elbow": way * (2 + over)})
+
+
+def two_fingers(folder, follower, leader=(0, 0.3), mimic='<mimic joint="j" multiplier="1" offset="0.02"/>'):
+    limit = '<limit lower="{}" upper="{}"/>'
+    second = joint("prismatic", limit.format(*follower), child="c", more=mimic).replace(
+        '"j" type', '"k" type'
+    )
+    first = joint("prismatic", limit.format(*leader))
+    return Machine.from_urdf(urdf(folder, BOX + '<link name="b"/><link name="c"/>' + first + second))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.floats(-1, 1), st.floats(0.1, 1), st.sampled_from([-2.0, -1.0, 0.5, 1.0]), st.floats(-0.2, 0.2))
+def test_a_leader_ends_where_the_first_of_its_followers_ends(
+    tmp_path_factory, lower, span, multiplier, offset
+):
+    mimic = f'<mimic joint="j" multiplier="{multiplier}" offset="{offset}"/>'
+    machine = two_fingers(tmp_path_factory.mktemp("fingers"), (lower, lower + span), (-0.6, 0.7), mimic)
+    leader = machine.joint("j")
+    ends = multiplier * np.array([leader.lower, leader.upper]) + offset
+    within = (ends >= lower - 1e-9).all() and (ends <= lower + span + 1e-9).all()
+    # limits that no position of the leader meets cannot be meant, and are said
+    assert within or any("leave no travel" in finding.text for finding in machine.findings)
+    assert -0.6 <= leader.lower < leader.upper <= 0.7
+
+
+def test_a_follower_that_ends_first_cuts_its_leader(tmp_path):
+    machine = two_fingers(tmp_path, (0, 0.1))
+    assert (machine.joint("j").lower, machine.joint("j").upper) == pytest.approx((0, 0.08))
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "kept"), [("-inf", "inf", (-np.inf, np.inf)), ("0", "1e16", (0, np.inf))]
+)
+def test_limits_too_wide_to_be_any_are_none_and_said(tmp_path, lower, upper, kept):
+    limit = f'<limit lower="{lower}" upper="{upper}"/>'
+    for kind in ("revolute", "prismatic"):
+        machine = Machine.from_urdf(urdf(tmp_path, BOX + '<link name="b"/>' + joint(kind, limit)))
+        assert (machine.joint("j").lower, machine.joint("j").upper) == kept
+        assert "taken for none" in machine.findings[0].text
+
+
+def test_a_joint_whose_limits_are_both_zero_cannot_move_and_is_said(tmp_path):
+    for limit in ('<limit lower="0" upper="0"/>', '<limit effort="1" velocity="1"/>'):
+        machine = Machine.from_urdf(urdf(tmp_path, BOX + '<link name="b"/>' + joint(limit=limit)))
+        assert "cannot move" in machine.findings[0].text
+
+
+def stl_link(folder, size, scale="", name="a", kind="stl"):
+    trimesh.creation.box(size).export(folder / f"{name}.{kind}")
+    return mesh_link(f"{name}.{kind}", name=name).replace("/></geo", f"{scale}/></geo")
+
+
+def test_a_mesh_in_millimetres_and_a_link_too_long_are_refused(tmp_path):
+    with pytest.raises(MachineError, match=r'link a: .*300 m long.*scale="0.001 0.001 0.001" makes it 0.3 m'):
+        Machine.from_urdf(urdf(tmp_path, stl_link(tmp_path, (300, 100, 60))))
+    crane = BOX.replace("1 1 1", "30 6 6")
+    with pytest.raises(MachineError, match=r"link a: .*30 m long, at most 20 m"):
+        Machine.from_urdf(urdf(tmp_path, crane))
+    assert Machine.from_urdf(urdf(tmp_path, crane), largest_link_m=40).checked_links == ("a",)
+
+
+def test_a_small_part_in_millimetres_is_out_of_proportion(tmp_path):
+    """A finger of 12 mm is 12 m long, no longer than a link may be."""
+    base = BOX.replace("1 1 1", "0.3 0.3 0.3")
+    at = '<origin xyz="0.4 0 0"/>'
+    with pytest.raises(MachineError, match=r"link b: .*12 m long, the next one 0.3 m.*millimetres"):
+        Machine.from_urdf(urdf(tmp_path, base + stl_link(tmp_path, (12, 3, 3), name="b") + joint(more=at)))
+    rail = '<limit lower="0" upper="11"/>'
+    long = Machine.from_urdf(
+        urdf(
+            tmp_path, base + stl_link(tmp_path, (12, 0.3, 0.3), name="b") + joint("prismatic", rail, more=at)
+        )
+    )
+    assert long.checked_links == ("a", "b")
+
+
+def test_origins_and_limits_in_other_units_are_noticed(tmp_path):
+    far = '<origin xyz="0 0 340"/>'
+    shape = BOX.replace("<geo", f"{far}<geo")
+    with pytest.raises(MachineError, match=r"link a: .*lies 33\d.* m from its link's own frame"):
+        Machine.from_urdf(urdf(tmp_path, shape))
+    arm = BOX + BOX.replace('"a"', '"b"') + BOX.replace('"a"', '"c"') + joint()
+    second = joint(child="c", more=far).replace('"j"', '"k"').replace('"a"', '"b"')
+    with pytest.raises(
+        MachineError, match="joint k: lies 340 m from the frame of b; is its origin in millimetres"
+    ):
+        Machine.from_urdf(urdf(tmp_path, arm + second))
+    for kind, limit, unit in (("revolute", 170, "degrees"), ("prismatic", 400, "millimetres")):
+        wide = f'<limit lower="0" upper="{limit}"/>'
+        with pytest.warns(MachineWarning, match=f"are they in {unit}"):
+            Machine.from_urdf(urdf(tmp_path, BOX + '<link name="b"/>' + joint(kind, wide)))
+
+
+def test_a_mesh_scaled_twice_is_said(tmp_path):
+    with pytest.warns(MachineWarning, match="0.3 mm long; is its mesh scaled twice"):
+        Machine.from_urdf(urdf(tmp_path, stl_link(tmp_path, (0.3, 0.1, 0.1), ' scale="0.001 0.001 0.001"')))
+
+
+@pytest.mark.parametrize("scale", ["-1 1 1", "1 -2 1", "-1 -1 -1", "-1 -1 1", "2"])
+def test_a_mirrored_mesh_keeps_its_surface_turned_outward(tmp_path, scale):
+    link = Machine.from_urdf(urdf(tmp_path, stl_link(tmp_path, (1, 2, 3), f' scale="{scale}"'))).links[0]
+    assert trimesh.Trimesh(link.vertices, link.faces).volume > 0
+
+
+def test_scenes_of_glb_files_are_read_where_their_nodes_put_them(tmp_path):
+    scene = trimesh.Scene()
+    for n in range(2):
+        scene.add_geometry(
+            trimesh.creation.box((1, 1, 1)),
+            transform=trimesh.transformations.translation_matrix((0, 0, 4 * n)),
+        )
+    for kind in ("glb", "gltf"):
+        if kind == "glb":
+            scene.export(tmp_path / "a.glb")
+        else:
+            for name, content in scene.export(file_type="gltf").items():
+                (tmp_path / name.replace("model", "a")).write_bytes(content)
+        link = Machine.from_urdf(urdf(tmp_path, mesh_link(f"a.{kind}"))).links[0]
+        assert np.ptp(link.vertices, axis=0) == pytest.approx([1, 1, 5])
+
+
+def test_packed_and_bent_gltf_is_refused_by_name(tmp_path):
+    for said, document in (
+        (
+            "KHR_draco_mesh_compression, which is not read",
+            '{"extensionsRequired": ["KHR_draco_mesh_compression"]}',
+        ),
+        ("bends by a skin", '{"skins": [{"joints": [0]}]}'),
+        ("no glTF", "{"),
+    ):
+        (tmp_path / "a.gltf").write_text(document)
+        with pytest.raises(MachineError, match=said):
+            Machine.from_urdf(urdf(tmp_path, mesh_link("a.gltf")))
+
+
+@pytest.mark.parametrize("suffix", ["STL", "Obj", "PLY", "DAE"])
+def test_suffixes_may_be_in_capital_letters(tmp_path, suffix):
+    if suffix == "DAE":
+        pytest.importorskip("collada")
+    content = trimesh.creation.box((1, 2, 3)).export(file_type=suffix.lower())
+    path = tmp_path / f"a.{suffix}"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    link = Machine.from_urdf(urdf(tmp_path, mesh_link(path.name))).links[0]
+    assert np.ptp(link.vertices, axis=0) == pytest.approx([1, 2, 3], abs=1e-5)
+
+
+def test_a_stl_in_letters_and_one_that_only_says_so_are_read(tmp_path):
+    box = trimesh.creation.box((1, 2, 3))
+    (tmp_path / "a.stl").write_text(trimesh.exchange.stl.export_stl_ascii(box))
+    binary = trimesh.exchange.stl.export_stl(box)
+    (tmp_path / "b.stl").write_bytes(b"solid of a binary file".ljust(80) + binary[80:])
+    for name in ("a.stl", "b.stl"):
+        link = Machine.from_urdf(urdf(tmp_path, mesh_link(name))).links[0]
+        assert np.ptp(link.vertices, axis=0) == pytest.approx([1, 2, 3])
+
+
+def test_links_and_bodies_agree_with_another_reader(tmp_path):
+    yourdfpy = pytest.importorskip("yourdfpy")
+    path = tmp_path / "arm.urdf"
+    path.write_text(naive.ARM)
+    robot = yourdfpy.URDF.load(str(path), load_meshes=False, build_scene_graph=False).robot
+    machine = Machine.from_urdf(path)
+    assert set(machine.link_names) == {link.name for link in robot.links}
+    assert {link.name for link in machine.links if link.has_geometry} == {
+        link.name for link in robot.links if link.collisions or link.visuals
+    }
+    by_name = {joint.name: joint for joint in robot.joints}
+    for own in machine.joints:
+        assert np.allclose(
+            own.parent_from_joint, np.eye(4) if by_name[own.name].origin is None else by_name[own.name].origin
+        )
+
+
 def test_checked_joints_come_in_the_order_of_their_names_and_take_rounding(arm):
     checked = arm.checked({"grip": 0.0, "elbow": 2.0 + 1e-9, "slide": -0.5})
     assert list(checked) == list(arm.joint_names)
@@ -119,7 +315,7 @@ def test_checked_joints_come_in_the_order_of_their_names_and_take_rounding(arm):
         ("not XML at all", "not XML"),
         ("<sdf/>", "outermost element is <sdf>"),
         ('<robot name="r"><link name="a"/></robot>', "no link has a mesh"),
-        ("<robot/>", "not a complete URDF"),
+        ("<robot/>", "the robot has no <link>"),
     ],
 )
 def test_files_that_are_no_machine_are_refused(tmp_path, content, message):
@@ -135,16 +331,19 @@ def test_files_that_are_no_machine_are_refused(tmp_path, content, message):
         (BOX + BOX, "link 'a' is there twice"),
         (BOX + '<link name="b"/>', "one tree; without a parent are: a, b"),
         (BOX + joint(child="c"), "names link 'c'"),
-        (BOX + '<link name="b"/>' + joint("floating"), "'floating'; allowed are fixed, prismatic"),
+        (BOX + '<link name="b"/>' + joint("screw"), "'screw'; allowed are fixed, prismatic"),
         (BOX + '<link name="b"/>' + joint(limit=""), "needs <limit"),
         (
             BOX + '<link name="b"/>' + joint(limit='<limit lower="1" upper="-1"/>'),
-            "must be finite and rising",
+            "must rise",
         ),
         (BOX + '<link name="b"/>' + joint(axis="0 0 0"), "axis"),
         (BOX + '<link name="b"/>' + joint(more='<mimic joint="k"/>'), "mimics 'k', which leads nowhere"),
         (BOX.replace("1 1 1", "1 0 1"), "above 0"),
-        (mesh_link("package://robot/meshes/a.stl"), "link a: mesh 'package://robot/meshes/a.stl' is missing"),
+        (
+            mesh_link("package://robot/meshes/a.stl"),
+            "link a: .*: mesh 'package://robot/meshes/a.stl' is missing",
+        ),
         (mesh_link("bent.stl"), "cannot be read|no triangles"),
         (mesh_link("a.step"), "unknown kind"),
     ],
@@ -190,11 +389,20 @@ def test_packages_are_found_above_the_urdf_in_named_folders_and_without_their_fi
     assert Machine.from_urdf(beside, package_dirs=[tmp_path / "elsewhere"]).checked_links == ("a",)
 
 
-def test_a_visual_mesh_that_is_absent_does_not_matter(tmp_path):
+def test_a_visual_mesh_that_is_absent_does_not_matter_where_there_is_a_body(tmp_path):
     body = mesh_link("package://x/y/z.dae", "visual").replace("</link>", "") + BOX.split(">", 1)[1]
     assert Machine.from_urdf(urdf(tmp_path, body)).checked_links == ("a",)
-    only_visual = BOX + mesh_link("package://x/y/z.dae", "visual", "b") + joint()
-    assert Machine.from_urdf(urdf(tmp_path, only_visual)).checked_links == ("a",)
+
+
+def test_a_link_that_has_a_picture_and_no_body_is_refused_or_moves_without_one_by_somebodys_word(tmp_path):
+    path = urdf(tmp_path, BOX + mesh_link("package://x/y/z.dae", "visual", "b") + joint())
+    with pytest.raises(MachineError, match=r"line 1: link b: .*is missing; .*without_body"):
+        Machine.from_urdf(path)
+    machine = Machine.from_urdf(path, without_body=("b",))
+    assert machine.checked_links == ("a",)
+    assert machine.bodiless_links == ("b",)
+    with pytest.raises(MachineError, match="link without body 'c' does not exist; links are a, b"):
+        Machine.from_urdf(path, without_body=("c",))
 
 
 def test_a_six_axis_arm_agrees_with_pinocchio(data_folder):

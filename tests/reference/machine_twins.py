@@ -242,3 +242,32 @@ def touches_box(corners, lower, upper):
             if not polygon:
                 return False
     return True
+
+
+def fan_rise(ring, place, rng, count):
+    """The greatest difference in height, at many places, of a ring closed from its middle, and from a place.
+
+    `ring`: (k, 3), x, y and height over its middle, which lies at 0. Most places are on the lines from there.
+    """
+    k = len(ring)
+    middle = [np.array([np.zeros(3), ring[n], ring[(n + 1) % k]]) for n in range(k)]
+    fan = [ring[[place, (place + n) % k, (place + n + 1) % k]] for n in range(1, k - 1)]
+    points = [rng.dirichlet((0.4, 0.4, 0.4), count // 4) @ triangle for triangle in middle]
+    points += [np.linspace(0, 1, count)[:, None] * corner for corner in ring]
+    found = 0.0
+    for x, y, height in np.concatenate(points):
+        others = [h for h in (_height(corners, x, y) for corners in fan) if h is not None]
+        found = max(found, min((abs(height - other) for other in others), default=0.0))
+    return found
+
+
+def _height(corners, x, y):
+    """Height of a triangle over a place; None beside it."""
+    (a, b, c), (d, e, f), (g, h, i) = corners
+    area = (d - a) * (h - b) - (g - a) * (e - b)
+    second, third = (
+        ((x - a) * (h - b) - (g - a) * (y - b)) / area,
+        ((d - a) * (y - b) - (x - a) * (e - b)) / area,
+    )
+    inside = min(second, third, 1 - second - third) >= -1e-9
+    return c + second * (f - c) + third * (i - c) if inside else None

@@ -114,6 +114,14 @@ def test_a_variable_that_is_relative_is_so_to_the_working_directory(tmp_path, mo
     assert expand("${ROOM_DATA}/a", tmp_path / "examples") == tmp_path / "recordings" / "a"
 
 
+@pytest.mark.parametrize("kind", ["planar", "floating"])
+def test_a_machine_on_a_free_base_has_its_place_among_its_joints(folder, plain, arm_urdf, kind):
+    plain["machine"] = {"urdf": arm_urdf.name, "free_base": kind}
+    machine = Site.load(folder.write(plain)).machine()
+    assert machine is not None
+    assert machine.joint_names[0] == "base/x" and ("base/z" in machine.joint_names) == (kind == "floating")
+
+
 def test_a_machine_with_braking_distances_of_its_joints(folder, plain, arm_urdf):
     plain["machine"] = {"urdf": arm_urdf.name, "unchecked_links": ["base"], "explain_tolerance_m": 0.03}
     plain["joints"] = {

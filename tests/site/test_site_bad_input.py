@@ -188,6 +188,11 @@ def test_unknown_camera_is_answered_with_those_that_exist(folder, plain):
     ("machine", "joints", "expected"),
     [
         ({"urdf": "none.urdf"}, {}, "machine: "),
+        ({"without_body": ["tail"]}, {}, "link without body 'tail' does not exist"),
+        ({"package_dirs": ["nowhere"]}, {}, "no folder"),
+        ({"xacro_arguments": {"a": 1}}, {}, "nothing in the file is xacro"),
+        ({"largest_link_m": 0.01}, {}, "at most 0.01 m may be"),
+        ({"limit_tolerance_deg": -1}, {}, "limit_tolerance_deg: found -1, allowed: gr"),
         ({"unchecked_links": ["tail"]}, {}, "machine: machine arm: unchecked link 'tail' does not exist"),
         ({"world_from_base": np.diag([2.0, 1, 1, 1]).tolist()}, {}, "world_from_base: not rigid"),
         ({}, {"elbow": {"max_speed_deg_s": 1, "braking_time_s": 1}}, "joints.elbow: unknown joint; joints of arm are turn, slide"),
@@ -202,6 +207,11 @@ def test_machines_and_joints_that_do_not_fit(folder, plain, arm_urdf, machine, j
     plain["machine"] = {"urdf": arm_urdf.name} | machine
     plain["joints"] = joints
     assert expected in refusal(folder.write(plain), lambda site: site.motions(site.machine()))
+
+
+def test_keys_of_a_urdf_are_not_for_a_machine_of_the_package(folder, plain):
+    plain["machine"] = {"builtin": "ceiling_c_arm", "package_dirs": ["a"]}
+    assert "package_dirs only with urdf" in refusal(folder.write(plain))
 
 
 def test_simulated_rooms_take_no_settings_that_the_simulator_makes(folder, plain):

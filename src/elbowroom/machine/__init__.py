@@ -6,7 +6,9 @@ from elbowroom.machine.explain import Explained, explain_frames
 from elbowroom.machine.joint import Joint, Mimic
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Machine
+from elbowroom.machine.part import Part
 from elbowroom.machine.samples import BodySamples, body_samples
+from elbowroom.machine.stand import Stand
 
 __all__ = [
     "BodySamples",
@@ -15,6 +17,8 @@ __all__ = [
     "Link",
     "Machine",
     "Mimic",
+    "Part",
+    "Stand",
     "body_samples",
     "body_words",
     "ceiling_c_arm",

@@ -69,7 +69,7 @@ def _mark(
     """One share of the samples, on a plane of its own."""
     words, lattice = bits.empty(grid), bits.lattice(grid)
     inner = len(samples.interior)
-    reach = growth_m - ROUNDING_M / 2
+    reach = growth_m - ROUNDING_M / 2 - samples.bound_m
     mark_balls(samples.clusters, share, shares, world_from_link, reach, lattice, words)
     mark_points(
         samples.interior,

@@ -18,13 +18,15 @@ from elbowroom.machine.kernels.draw import Canvas, View, draw, to_kind
 from elbowroom.machine.kernels.explain import Tolerance, explain
 from elbowroom.machine.kernels.returns import TILE, Around, mark_tiles
 from elbowroom.machine.machine import Joints, Machine
-from elbowroom.machine.rasterise import canvas, mesh_of, view_of
+from elbowroom.machine.rasterise import canvas, drawn_mesh, view_of
 from elbowroom.machine.samples import body_samples
 
 BALL_VOXEL_M = 0.07
 """The body is covered with balls of some 0.15 m, the clusters of its samples for voxels of this size."""
 REACH_M = 0.1
 """Returns this much farther from the body are kept as well: it moves between frame and decision [m]."""
+DRAWN_SHARE = 0.2
+"""A fine machine is drawn with fewer triangles, to within this share of the tolerance, which is the less by it."""
 RETURN_SIGMAS = 3.0
 """A return may lie this many sigmas nearer or farther than measured."""
 NO_LATTICE = Lattice(nx=0, ny=0, nz=0, cubes_x=0, cubes_y=0, cubes_z=0, x0=0.0, y0=0.0, z0=0.0, edge=1.0)
@@ -65,7 +67,8 @@ def explain_frames(
 
     A valid depth d is explained if it lies between the least and the greatest depth that the model has within
     the 3 x 3 pixels about it, give or take `tolerance_m` + `tolerance_sigmas` * sigma(d). Where the model is
-    not in these pixels, nothing is explained.
+    not in these pixels, nothing is explained. A fine machine is drawn with fewer triangles, to within a fifth of
+    `tolerance_m`, and what they may lie off is taken from it.
 
     A return must have neighbours like it to count as something else than the machine: one that stands alone says
     nothing of the voxels of the body, and behind the machine's edge, in a camera with flying pixels, it is a mixed
@@ -97,9 +100,9 @@ def explain_frames(
     images = [_image(camera, depth) for camera, depth in zip(cameras, depths, strict=True)]
     placed = _camera_from_links(machine, cameras, joints_per_camera)
     near_body = _Near(machine, grid, growth_m)
-    mesh = mesh_of(machine)
+    mesh, bound_m = drawn_mesh(machine, DRAWN_SHARE * tolerance_m)
     canvases: deque[NDArray[np.float32]] = deque()
-    tolerance = Tolerance(float(tolerance_m), float(tolerance_sigmas))
+    tolerance = Tolerance(float(tolerance_m) - bound_m, float(tolerance_sigmas))
 
     def explain_one(n: int) -> NDArray[np.float32]:
         view = views[n]

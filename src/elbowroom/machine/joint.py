@@ -36,6 +36,7 @@ class Joint:
         parent_from_joint: shape (4, 4), rigid.
         lower, upper: limits [m or rad]; minus and plus infinity for a continuous joint.
         mimic: the joint that this one follows; None: it is commanded itself.
+        is_posed: whether it is a part of a floating joint: it has a position, but nobody commands it.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Joint:
     lower: float
     upper: float
     mimic: Mimic | None = None
+    is_posed: bool = False
 
     def __post_init__(self) -> None:
         for name in ("axis_in_joint", "parent_from_joint"):

@@ -1,21 +1,49 @@
 """The machine: links with a body, joints that move them, and where the links are."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowroom.errors import MachineError
+from elbowroom.choices import ExplainWith
+from elbowroom.errors import MachineError, MachineWarning
+from elbowroom.finding import Finding
 from elbowroom.geometry import nearest_rigid
+from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
-from elbowroom.machine.kernels.body import Tree, place_links
+from elbowroom.machine.kernels.body import FIXED, Tree, place_links
 from elbowroom.machine.link import Link
+from elbowroom.machine.part import Part
+from elbowroom.machine.shape import Shape
+from elbowroom.machine.stand import Stand
 
-LIMIT_TOLERANCE = 1e-6
-"""Joint positions beyond a limit by this much are rounding, not a fault [m or rad]."""
+ROUNDING = 1e-6
+"""Positions beyond a limit by this much are rounding, not a fault [m or rad]."""
+QUIET = ("package", "limits", "axes")
+"""Kinds of findings that are kept with the machine, and are no slip that a warning is due for."""
+
+
+class Tolerance(NamedTuple):
+    """How far a joint may be said to be where it cannot be: encoders and descriptions differ by little.
+
+    Args:
+        rad: for joints that turn [rad].
+        m: for joints that slide [m].
+    """
+
+    rad: float = float(np.radians(1.0))
+    m: float = 0.005
+
+    def of(self, unit: str) -> float:
+        """For joints of a unit, "rad" or "m"; never less than rounding."""
+        return max(self.m if unit == "m" else self.rad, ROUNDING)
+
 
 Joints = Mapping[str, ArrayLike]
 """Joint positions by name [m or rad]: numbers, or arrays of one length n for n configurations."""
@@ -23,7 +51,7 @@ Joints = Mapping[str, ArrayLike]
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A machine at a fixed place. Made by `Machine.from_urdf`; never changes.
+    """A machine at a place. Made by `Machine.from_urdf`; never changes. `at` says it of another place.
 
     Args:
         name: of the robot in the URDF.
@@ -33,9 +61,15 @@ class Machine:
         tree: parents, fixed transforms and axes by link, as the kernels take them.
         world_from_base: where the first link is, shape (4, 4), rigid.
         unchecked_links: links that may leave the grid by design and are not checked for collision.
+        allowed_contacts: pairs of names of links that may touch, besides neighbours; a name may hold wildcards ("*").
+        stands: what some links may touch: a table, the floor.
+        parts: names of the links that are carried (`with_part`).
+        bodiless_links: links whose geometry was left out by somebody's word: they move without a body.
+        tolerance: how far a position may lie beyond a limit, and a follower off its leader.
+        findings: what was found in its description and passed, each in one line.
 
     Raises:
-        MachineError: `world_from_base` is not rigid, or an unchecked link does not exist.
+        MachineError: `world_from_base` is not rigid, or a link that is named does not exist.
     """
 
     name: str
@@ -44,8 +78,16 @@ class Machine:
     tree: Tree = field(repr=False)
     world_from_base: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     unchecked_links: tuple[str, ...] = ()
+    allowed_contacts: tuple[tuple[str, str], ...] = ()
+    stands: tuple[Stand, ...] = ()
+    parts: tuple[str, ...] = ()
+    bodiless_links: tuple[str, ...] = ()
+    tolerance: Tolerance = field(default_factory=Tolerance)
+    findings: tuple[Finding, ...] = field(default=(), repr=False)
+    shape: Shape = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "shape", Shape.of(self.links))
         what = f"machine {self.name}"
         base = nearest_rigid(self.world_from_base, f"{what}: world_from_base", MachineError)
         base.setflags(write=False)
@@ -56,6 +98,21 @@ class Machine:
                 raise MachineError(
                     f"{what}: unchecked link {name!r} does not exist; links are {', '.join(self.link_names)}"
                 )
+        object.__setattr__(self, "allowed_contacts", tuple((a, b) for a, b in self.allowed_contacts))
+        object.__setattr__(self, "stands", tuple(self.stands))
+        for stand in self.stands:
+            self._require_links("stands_on", stand.links)
+        for pair in self.allowed_contacts:
+            self._require_links("allowed_contacts", pair)
+
+    def _require_links(self, what: str, names: Sequence[str]) -> None:
+        """Each name, which may hold wildcards, is that of a link."""
+        for name in names:
+            if not any(fnmatchcase(link, name) for link in self.link_names):
+                raise MachineError(
+                    f"machine {self.name}: {what}: link {name!r} does not exist; links are "
+                    f"{', '.join(self.link_names)}"
+                )
 
     @classmethod
     def from_urdf(
@@ -65,28 +122,94 @@ class Machine:
         world_from_base: ArrayLike | None = None,
         unchecked_links: Sequence[str] = (),
         package_dirs: Sequence[str | Path] = (),
+        without_body: Sequence[str] = (),
+        xacro_arguments: Mapping[str, str] | None = None,
+        largest_link_m: float | None = None,
+        explain_with: ExplainWith = "auto",
     ) -> "Machine":
-        """Reads a URDF with its collision geometry: meshes (STL, OBJ, GLB, PLY), boxes, cylinders, spheres.
+        """Reads a URDF with its collision geometry: meshes (STL, OBJ, PLY, GLB, glTF, Collada), boxes, round solids.
 
-        A link without collision geometry takes its visual geometry if that exists. Cylinders and spheres
-        become polyhedra that contain them.
+        A link without collision geometry takes its visual geometry. Cylinders, spheres and capsules become polyhedra
+        that contain them. Where a joint has followers (mimic), its limits end where the first of them ends. A file that
+        is xacro is expanded, where the package xacro is installed.
+
+        Collision geometry is what a motion is swept with. It may be larger than the machine, so what cameras see of
+        it may be another surface, within it.
 
         Args:
             path: the URDF file.
             world_from_base: where its first link is, shape (4, 4), rigid; None: at the world's origin.
             unchecked_links: names of links that leave the grid by design.
-            package_dirs: where to look for `package://` files, before the folders above the URDF.
+            package_dirs: where to look for `package://` files, before the folders above the URDF and where ROS keeps
+                packages (ROS_PACKAGE_PATH, AMENT_PREFIX_PATH).
+            without_body: names of links that move without a body: their geometry is not read.
+            xacro_arguments: values of the arguments of a xacro file, by name.
+            largest_link_m: a longer link is refused [m]; None: 20 m, and meshes out of all proportion.
+            explain_with: which geometry says what cameras see of a link. "auto": its visual geometry, if all of it can
+                be read and it fills the collision geometry without standing out of it; else the collision geometry.
+                "visual": visual geometry wherever a link has any. "collision": never.
 
         Raises:
             MachineError: the file, one of its meshes or its tree of links cannot be used; the message says
-                which.
+                which, and where in the file.
+
+        Warns:
+            MachineWarning: a slip that passes.
         """
         # what reads meshes is slow to load, and a bare room needs none of it
-        from elbowroom.machine.urdf import read_urdf
+        from elbowroom.machine.urdf import Reading, read_urdf
 
-        parts = read_urdf(Path(path), [Path(folder) for folder in package_dirs])
-        base = np.eye(4) if world_from_base is None else np.asarray(world_from_base, dtype=np.float64)
-        return cls(*parts, world_from_base=base, unchecked_links=tuple(unchecked_links))
+        folders = [Path(folder) for folder in package_dirs]
+        reading = Reading(folders, without_body, xacro_arguments or {}, largest_link_m, explain_with)
+        parts = read_urdf(Path(path), reading)
+        for finding in parts.findings:
+            if finding.kind not in QUIET:
+                warnings.warn(finding.text, MachineWarning, stacklevel=2)
+        return cls(
+            **parts._asdict(),
+            world_from_base=np.eye(4) if world_from_base is None else np.asarray(world_from_base, float),
+            unchecked_links=tuple(unchecked_links),
+            bodiless_links=tuple(without_body),
+        )
+
+    def at(self, world_from_base: ArrayLike) -> "Machine":
+        """The same machine with its base elsewhere. What was made of its links is shared, so it costs next to nothing.
+
+        Args:
+            world_from_base: where its first link is, shape (4, 4), rigid.
+
+        Raises:
+            MachineError: the pose is not rigid.
+        """
+        return replace(self, world_from_base=np.asarray(world_from_base, dtype=np.float64))
+
+    def with_free_base(self, kind: FreeKind, name: str = "base") -> "Machine":
+        """The machine on a base that moves: where it stands is then among its joint positions, at each frame's time.
+
+        Args:
+            kind: "planar": joints `base/x`, `base/y` [m] and `base/yaw` [rad], as a platform drives in the plane of
+                `world_from_base`; "floating": `base/x`, `base/y`, `base/z`, `base/yaw`, `base/pitch`, `base/roll`, of
+                which nobody asks a motion.
+            name: instead of `base`.
+
+        Raises:
+            MachineError: a name that is taken.
+        """
+        return replace(
+            self, **on_free_base(Skeleton(self.links, self.joints, self.tree), kind, name)._asdict()
+        )
+
+    def free_positions(self, joint: str, parent_from_child: ArrayLike) -> dict[str, float]:
+        """The positions that put the link of a planar or floating joint at a pose, by name [m or rad].
+
+        Args:
+            joint: its name, such as `base`.
+            parent_from_child: where its link is in the one before, shape (4, 4), rigid.
+
+        Raises:
+            MachineError: no such joint, a pose that is not rigid, or one out of the plane of a planar joint.
+        """
+        return free_positions(Skeleton(self.links, self.joints, self.tree), joint, parent_from_child)
 
     @cached_property
     def link_names(self) -> tuple[str, ...]:
@@ -104,6 +227,112 @@ class Machine:
         return tuple(
             link.name for link in self.links if link.has_geometry and link.name not in self.unchecked_links
         )
+
+    @cached_property
+    def as_seen(self) -> "Machine":
+        """The machine with what cameras see of its links for a body; itself, where that is its collision geometry."""
+        if all(link.seen is None for link in self.links):
+            return self
+        return replace(self, links=tuple(link.as_seen for link in self.links))
+
+    def standing_on(self, *stands: Stand) -> "Machine":
+        """The machine with boxes of the room that some of its links may touch; those that it has stay.
+
+        Raises:
+            MachineError: a link that is named does not exist.
+        """
+        return replace(self, stands=(*self.stands, *stands))
+
+    def allowing(self, *contacts: tuple[str, str]) -> "Machine":
+        """The machine with pairs of links that may touch; those that it has stay. Names may hold wildcards.
+
+        Raises:
+            MachineError: a link that is named does not exist.
+        """
+        return replace(self, allowed_contacts=(*self.allowed_contacts, *contacts))
+
+    @cached_property
+    def allowances(self) -> tuple[str, ...]:
+        """What somebody's word lets pass, a line each: every summary says it."""
+        own = [pair for pair in self.allowed_contacts if not set(pair) & set(self.parts)]
+        return (
+            *(f"Not stopped by anything there, by the site's word: {stand}" for stand in self.stands),
+            *(f"May touch each other, by the site's word: {one} and {other}" for one, other in own),
+        )
+
+    def with_part(self, link: str, part: Part, link_from_part: ArrayLike | None = None) -> "Machine":
+        """The machine with a part on one of its links, as a link of its own: explained, taken out and swept with it.
+
+        The part may touch its link, what is fixed to that, and what hangs on these, such as the fingers of a hand.
+
+        Args:
+            link: name of the link that carries it.
+            part: what it carries.
+            link_from_part: where the part is on it, shape (4, 4), rigid; None: frames are one.
+
+        Raises:
+            MachineError: no such link, a link of the part's name, or a pose that is not rigid.
+        """
+        self._require_links("part " + part.name, [link])
+        if part.name in self.link_names:
+            raise MachineError(f"machine {self.name}: part {part.name}: there is a link of that name")
+        given = np.eye(4) if link_from_part is None else link_from_part
+        pose = nearest_rigid(given, f"part {part.name}: link_from_part", MachineError)
+        row, tree = self.link_names.index(link), self.tree
+        grown = Tree(
+            parent=np.append(tree.parent, row),
+            parent_from_joint=np.concatenate([tree.parent_from_joint, pose[None]]),
+            axis=np.concatenate([tree.axis, np.zeros((1, 3))]),
+            kind=np.append(tree.kind, FIXED),
+            column=np.append(tree.column, -1),
+            multiplier=np.append(tree.multiplier, 1.0),
+            offset=np.append(tree.offset, 0.0),
+        )
+        carried = Link(part.name, part.surface.vertices, part.surface.faces)
+        touched = [(part.name, self.link_names[other]) for other in self._held_with(row)]
+        return replace(
+            self,
+            links=(*self.links, carried),
+            tree=grown,
+            allowed_contacts=(*self.allowed_contacts, *touched),
+            parts=(*self.parts, part.name),
+        )
+
+    def without_part(self, name: str) -> "Machine":
+        """The machine without a part that it was given, and without those that hang on it.
+
+        Raises:
+            MachineError: it has no part of that name.
+        """
+        if name not in self.parts:
+            has = ", ".join(self.parts) or "none"
+            raise MachineError(f"machine {self.name}: carries no part {name!r}; parts are {has}")
+        stays = np.array([link.name != name for link in self.links])
+        for row, parent in enumerate(self.tree.parent):
+            stays[row] &= parent < 0 or stays[parent]
+        keep, left = np.flatnonzero(stays), np.cumsum(stays) - 1
+        gone = {link.name for link, here in zip(self.links, stays, strict=True) if not here}
+        rows = Tree(*(array[keep] for array in self.tree))
+        return replace(
+            self,
+            links=tuple(self.links[row] for row in keep),
+            tree=rows._replace(parent=np.where(rows.parent < 0, -1, left[rows.parent])),
+            allowed_contacts=tuple(pair for pair in self.allowed_contacts if not gone & set(pair)),
+            unchecked_links=tuple(link for link in self.unchecked_links if link not in gone),
+            parts=tuple(part for part in self.parts if part not in gone),
+        )
+
+    def _held_with(self, row: int) -> list[int]:
+        """The links that are fixed to a link, itself among them, and those that hang on them, such as fingers."""
+        roots = list(range(len(self.links)))
+        for other, parent in enumerate(self.tree.parent):
+            if parent >= 0 and self.tree.kind[other] == FIXED:
+                roots[other] = roots[parent]
+        return [
+            other
+            for other, parent in enumerate(self.tree.parent)
+            if roots[other] == roots[row] or (parent >= 0 and roots[parent] == roots[row])
+        ]
 
     def joint(self, name: str) -> Joint:
         """The commanded joint of this name.
@@ -135,8 +364,23 @@ class Machine:
         joints = [self.joint(name) for name in self.joint_names]
         return {joint.name: min(max(0.0, joint.lower), joint.upper) for joint in joints}
 
+    def require_joints(self, names: Iterable[str]) -> None:
+        """Refuses names that are no joints of this machine.
+
+        Raises:
+            MachineError: one that is neither commanded nor a follower; the message lists those that exist.
+        """
+        followers = {joint.name for joint in self.joints if joint.mimic is not None}
+        for name in names:
+            if name not in followers:
+                self.joint(name)
+
     def checked(self, joints: Joints) -> dict[str, NDArray[np.float64]]:
         """The same joint positions, in the order of `joint_names`, after finding them possible.
+
+        Whole joint states are taken: followers are compared with the joints that they follow, and names that the
+        machine does not have belong to other machines, and pass. A position beyond a limit by less than `tolerance`
+        is taken as it is.
 
         Args:
             joints: positions by name, numbers or arrays [m or rad].
@@ -145,11 +389,9 @@ class Machine:
             float64 arrays of the shapes that came.
 
         Raises:
-            MachineError: an unknown or a missing joint, a value that is not finite or out of the joint's
-                limits.
+            MachineError: a missing joint, a value that is not finite or out of the joint's limits, a follower that is
+                not where its leader puts it.
         """
-        for name in joints:
-            self.joint(name)
         found = {}
         for name in self.joint_names:
             joint = self.joint(name)
@@ -157,22 +399,38 @@ class Machine:
                 raise MachineError(
                     f"machine {self.name}: joint {name!r} has no position; all joints need one"
                 )
-            try:
-                values = np.asarray(joints[name], dtype=np.float64)
-            except (TypeError, ValueError):
-                raise MachineError(f"joint {name}: {joints[name]!r} is not a number [{joint.unit}]") from None
-            if not np.isfinite(values).all():
-                raise MachineError(
-                    f"joint {name}: position is not finite, got {joints[name]!r} [{joint.unit}]"
-                )
-            beyond = (values < joint.lower - LIMIT_TOLERANCE) | (values > joint.upper + LIMIT_TOLERANCE)
+            values = _finite(joint, joints[name])
+            over = self.tolerance.of(joint.unit)
+            beyond = (values < joint.lower - over) | (values > joint.upper + over)
             if beyond.any():
                 raise MachineError(
                     f"joint {name}: {values[beyond].flat[0]:g} {joint.unit} is out of its limits, "
                     f"{joint.lower:g} to {joint.upper:g} {joint.unit}"
                 )
             found[name] = values
+        self._require_followers(joints, found)
         return found
+
+    def _require_followers(self, joints: Joints, found: Mapping[str, NDArray[np.float64]]) -> None:
+        """Refuses followers that are said to be elsewhere than the joints that they follow put them."""
+        for follower in self.joints:
+            if follower.mimic is None or follower.name not in joints:
+                continue
+            values, row = _finite(follower, joints[follower.name]), self.link_names.index(follower.child)
+            leader = self.joint_names[self.tree.column[row]]
+            expected = self.tree.multiplier[row] * found[leader] + self.tree.offset[row]
+            if values.ndim and expected.ndim and values.shape != expected.shape:
+                raise MachineError(
+                    f"machine {self.name}: joint arrays of unlike lengths: {leader} {expected.size}, "
+                    f"{follower.name} {values.size}"
+                )
+            values, expected = np.broadcast_arrays(values, expected)
+            off = np.abs(values - expected) > self.tolerance.of(follower.unit)
+            if off.any():
+                raise MachineError(
+                    f"joint {follower.name}: {values[off].flat[0]:g} {follower.unit}, but it follows {leader}, which "
+                    f"puts it at {expected[off].flat[0]:g} {follower.unit}; the machine is not as its description says"
+                )
 
     def positions(self, joints: Joints) -> NDArray[np.float64]:
         """Checked joint positions as one array, shape (n_joints,) or (n, n_joints), columns as `joint_names`.
@@ -234,3 +492,14 @@ class Machine:
         placed = np.empty((len(given), len(self.links), 4, 4))
         place_links(self.tree, self.world_from_base, given, placed)
         return placed
+
+
+def _finite(joint: Joint, given: ArrayLike) -> NDArray[np.float64]:
+    """A joint's positions as numbers [m or rad]."""
+    try:
+        values = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise MachineError(f"joint {joint.name}: {given!r} is not a number [{joint.unit}]") from None
+    if not np.isfinite(values).all():
+        raise MachineError(f"joint {joint.name}: position is not finite, got {given!r} [{joint.unit}]")
+    return values

@@ -1,109 +1,61 @@
-"""Triangles of one piece of URDF geometry: a mesh file, a box, a cylinder or a sphere."""
+"""Triangles of one piece of a link's geometry: a mesh file, a box, a cylinder, a sphere or a capsule."""
 
 import math
-from collections.abc import Sequence
-from pathlib import Path, PurePosixPath
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
-from yourdfpy import urdf as yourdf
 
-from elbowroom.errors import MachineError
+from elbowroom.machine.description.shapes import Kind, Shape
+from elbowroom.machine.mesh_file import MeshFile
 
-MESH_SUFFIXES = (".stl", ".obj", ".glb", ".ply")
-"""Mesh files that can be read."""
 CHORD_ERROR_M = 0.0005
-"""How far the flat sides of a cylinder or sphere may stand out of the solid [m]; they never lie inside."""
-SEARCH_LEVELS = 8
-"""How many folders above the URDF are searched for the files of a package."""
+"""How far the flat sides of a round solid may stand out of it [m]; they never lie inside."""
 
 Triangles = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
-def mesh_path(filename: str, urdf_path: Path, package_dirs: Sequence[Path]) -> Path | None:
-    """Where the mesh file of a URDF lies, or None if nowhere.
-
-    `package://name/rest` is looked for in `package_dirs`, then in the folders above the URDF; each is tried
-    with the whole of `name/rest`, then without its first part, and so on, as long as a folder and a file name
-    are left. So a robot that was copied out of its package is found as well.
-
-    Args:
-        filename: as the URDF gives it: `package://`, `file://`, or a path relative to the URDF.
-        urdf_path: the URDF file.
-        package_dirs: folders that hold packages, or are packages.
-    """
-    if "://" not in filename:
-        path = urdf_path.parent / filename
-        return path if path.is_file() else None
-    scheme, rest = filename.split("://", 1)
-    if scheme == "file":
-        return Path(rest) if Path(rest).is_file() else None
-    if scheme != "package":
-        return None
-    parts = PurePosixPath(rest).parts
-    if ".." in parts:
-        return None
-    folders = [*package_dirs, *list(urdf_path.resolve().parents)[:SEARCH_LEVELS]]
-    for first in range(max(1, len(parts) - 1)):
-        for folder in folders:
-            path = folder.joinpath(*parts[first:])
-            if path.is_file():
-                return path
-    return None
-
-
-def triangles_of(geometry: yourdf.Geometry, path: Path | None, what: str) -> Triangles:
+def triangles_of(shape: Shape, mesh_file: MeshFile | None) -> Triangles:
     """Vertices, shape (n, 3) [m], and faces, shape (m, 3), of one geometry in its own frame.
 
     Args:
-        geometry: as yourdfpy parsed it.
-        path: the mesh file, for a mesh.
-        what: how errors name it.
-
-    Raises:
-        MachineError: a mesh file that holds no triangles or is of an unknown kind, a primitive without size.
+        shape: as the description gives it.
+        mesh_file: what its file holds, for a mesh.
     """
-    if geometry.mesh is not None:
-        assert path is not None
-        mesh = _read(path, what)
-        scale = 1.0 if geometry.mesh.scale is None else geometry.mesh.scale
-        return np.asarray(mesh.vertices, dtype=np.float64) * scale, np.asarray(mesh.faces)
-    if geometry.box is not None:
-        size = _sizes(what, *geometry.box.size)
-        mesh = trimesh.creation.box(extents=size)
-    elif geometry.cylinder is not None:
-        mesh = _cylinder(*_sizes(what, geometry.cylinder.radius, geometry.cylinder.length))
-    elif geometry.sphere is not None:
-        mesh = _sphere(*_sizes(what, geometry.sphere.radius))
-    else:
-        raise MachineError(f"{what}: no geometry; allowed are mesh, box, cylinder, sphere")
+    if mesh_file is not None:
+        faces = mesh_file.faces[:, ::-1] if np.prod(np.sign(shape.scale)) < 0 else mesh_file.faces
+        scale = shape.scale[0] if len(set(shape.scale)) == 1 else np.array(shape.scale)
+        return mesh_file.vertices * scale, faces
+    return solid_triangles(shape.kind, shape.sizes)
+
+
+def solid_triangles(kind: Kind, sizes: Sequence[float]) -> Triangles:
+    """Vertices, shape (n, 3) [m], and faces, shape (m, 3), of a solid about the origin.
+
+    Args:
+        kind: any but a mesh.
+        sizes: as of `Shape` [m], above 0.
+    """
+    mesh = _SOLIDS[kind](*sizes)
     return np.asarray(mesh.vertices), np.asarray(mesh.faces)
 
 
-def _read(path: Path, what: str) -> trimesh.Trimesh:
-    if path.suffix.lower() not in MESH_SUFFIXES:
-        raise MachineError(f"{what}: {path} is of an unknown kind; allowed are {', '.join(MESH_SUFFIXES)}")
-    try:
-        mesh = trimesh.load(path, force="mesh")
-    except Exception as error:  # trimesh's readers raise whatever their formats' parsers raise
-        raise MachineError(f"{what}: mesh {path} cannot be read: {error}") from error
-    if not (isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and np.isfinite(mesh.vertices).all()):
-        raise MachineError(f"{what}: mesh {path} holds no triangles with finite corners")
-    return mesh
+def _box(*size: float) -> trimesh.Trimesh:
+    return trimesh.creation.box(extents=size)
 
 
-def _sizes(what: str, *sizes: float) -> tuple[float, ...]:
-    if not all(math.isfinite(size) and size > 0 for size in sizes):
-        raise MachineError(f"{what}: sizes {tuple(map(float, sizes))} must be finite and above 0 [m]")
-    return sizes
+def _outer_radius(radius: float) -> tuple[float, int]:
+    """Of a polygon that contains a circle and stands out of it by `CHORD_ERROR_M` at most: radius and sides."""
+    half_angle = math.acos(radius / (radius + CHORD_ERROR_M))
+    sides = max(12, math.ceil(math.pi / half_angle))
+    return radius / math.cos(math.pi / sides), sides
 
 
 def _cylinder(radius: float, length: float) -> trimesh.Trimesh:
     """A prism that contains the cylinder and stands out of it by `CHORD_ERROR_M` at most."""
-    half_angle = math.acos(radius / (radius + CHORD_ERROR_M))
-    sides = max(12, math.ceil(math.pi / half_angle))
-    return trimesh.creation.cylinder(radius / math.cos(math.pi / sides), height=length, sections=sides)
+    outer, sides = _outer_radius(radius)
+    return trimesh.creation.cylinder(outer, height=length, sections=sides)
 
 
 def _sphere(radius: float) -> trimesh.Trimesh:
@@ -115,3 +67,28 @@ def _sphere(radius: float) -> trimesh.Trimesh:
             break
     mesh.apply_scale(radius / inner)
     return mesh
+
+
+def _capsule(radius: float, length: float) -> trimesh.Trimesh:
+    """The hull of two spheres' polyhedra, `length` apart along z: it contains the capsule."""
+    ball = _sphere(radius)
+    if length == 0:
+        return ball
+    half = np.array([0.0, 0.0, length / 2])
+    return trimesh.convex.convex_hull(np.vstack([ball.vertices + half, ball.vertices - half]))
+
+
+def _ellipsoid(a: float, b: float, c: float) -> trimesh.Trimesh:
+    """A sphere's polyhedron, stretched: it contains the ellipsoid."""
+    mesh = _sphere(1.0)
+    mesh.vertices = mesh.vertices * (a, b, c)
+    return mesh
+
+
+_SOLIDS: dict[str, Callable[..., trimesh.Trimesh]] = {
+    "box": _box,
+    "cylinder": _cylinder,
+    "sphere": _sphere,
+    "capsule": _capsule,
+    "ellipsoid": _ellipsoid,
+}

@@ -11,6 +11,7 @@ from elbowroom.machine.buffers import zero_image
 from elbowroom.machine.kernels.draw import Canvas, Mesh, View, draw, to_kind
 from elbowroom.machine.link import Link
 from elbowroom.machine.machine import Joints, Machine
+from elbowroom.machine.shape import Shape
 
 
 def rasterise(machine: Machine, camera: DepthCamera, joints: Joints) -> NDArray[np.float32]:
@@ -79,10 +80,29 @@ def canvas(height: int, width: int, inverse: NDArray[np.float32] | None = None) 
     )
 
 
-@kept
 def mesh_of(machine: Machine) -> Mesh:
-    """All triangles of the machine as kernels take them; made once."""
-    links = machine.links
+    """All triangles that cameras see of the machine, as kernels take them; made once."""
+    return _mesh(machine.as_seen.shape, 0.0)
+
+
+def drawn_mesh(machine: Machine, bound_m: float) -> tuple[Mesh, float]:
+    """The machine as it is drawn: a fine one with as few triangles as may be, made once.
+
+    Args:
+        machine: what to draw.
+        bound_m: how far what is drawn may lie from its surface [m].
+
+    Returns:
+        The triangles, and how far they may lie from the surface at most, 0 for a machine that is drawn as it is [m].
+    """
+    shape = machine.as_seen.shape
+    bound = shape.bound(bound_m)
+    return _mesh(shape, bound), bound
+
+
+@kept
+def _mesh(shape: Shape, bound_m: float) -> Mesh:
+    links = shape.within(bound_m)
     counts = np.cumsum([0] + [len(link.vertices) for link in links])
     centre = np.zeros((len(links), 3))
     radius = np.zeros(len(links))

@@ -55,6 +55,8 @@ def room_row(room: Room) -> dict[str, Any]:
         "detail": room.terms.detail,
         "threads": thread_count(),
         "unchecked_links": room.machine.unchecked_links if room.machine else (),
+        "allowances": room.machine.allowances if room.machine else (),
+        "bodiless_links": room.machine.bodiless_links if room.machine else (),
     }
 
 
@@ -75,6 +77,8 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
         "stopped_by": result.stopped_by,
         "findings": [asdict(finding) for finding in result.findings],
     }
+    if not result.verdicts and result.space is not None:
+        cycle |= shares_pct(result.space)
     return [cycle, *({"kind": "verdict", **shared, **verdict.row()} for verdict in result.verdicts)]
 
 

@@ -12,8 +12,10 @@ from elbowroom.geometry import bits, parallel
 from elbowroom.machine import Machine
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.course import Way, way_of
+from elbowroom.motion.ground import Ground, grounds_of
+from elbowroom.motion.inside import blocks_inside
 from elbowroom.motion.kernels.mover import Skin
-from elbowroom.motion.kernels.volume import Volume
+from elbowroom.motion.meeting import Meeting
 from elbowroom.motion.motion import JointPath, Motion
 from elbowroom.motion.skin import skin_of
 from elbowroom.motion.sweep import Block, cluster_speeds, find_block, volume_of
@@ -33,7 +35,8 @@ def check_motion(
 
     The swept body is that of the checked links which the motion moves. The machine's own voxels should have
     been taken out of the space (`reconstruct` does it; `FreeSpace.without`); a body that stands in blocked
-    space has a free travel of 0. What lies outside the grid is blocked. Joint limits cap the free travel, not
+    space, or about it, has a free travel of 0. What lies outside the grid is blocked. Where a link would meet another
+    one that must not (`Machine.allowed_contacts`), that ends the travel as well. Joint limits cap the free travel, not
     the level. A voxel in the way that is unseen, because no one camera sees all of it, is looked at again in parts if
     the space still has what it was made of (`FreeSpace.is_free_in_parts`).
 
@@ -79,7 +82,7 @@ def check_motions(
 def joint_motions(
     machine: Machine, speeds: Mapping[str, float], braking_times: float | Mapping[str, float]
 ) -> list[Motion]:
-    """Every joint in both directions, + first, in the machine's order of joints.
+    """Every joint in both directions, + first, in the machine's order of joints; of a floating joint, as it has speeds.
 
     Args:
         machine: the machine.
@@ -99,13 +102,14 @@ def joint_motions(
         for name in given:
             machine.joint(name)
         for name in machine.joint_names:
-            if name not in given:
+            if name not in given and not machine.joint(name).is_posed:
                 raise MachineError(
                     f"machine {machine.name}: joint {name!r} has no {what}; all joints need one"
                 )
     return [
         Motion(name, direction, braking_distance(speeds[name], times[name]))
         for name in machine.joint_names
+        if name in speeds
         for direction in (1, -1)
     ]
 
@@ -114,26 +118,43 @@ def joint_motions(
 class _Scene:
     """What the motions of one check share."""
 
-    space: FreeSpace
+    grounds: tuple[Ground, ...]
     machine: Machine
     skin: Skin
-    volume: Volume
+    meeting: Meeting
+    inside: Mapping[int, Block]
     world_from_link: NDArray[np.float64]
     looked_at: dict[tuple[int, int, int], bool] = field(default_factory=dict)
 
     @classmethod
     def of(cls, space: FreeSpace, machine: Machine, start: NDArray[np.float64]) -> Self:
+        voxel_size_m = space.grid.voxel_size_m
+        placed = machine.world_from_link_array(start[None])[0]
+        grounds = grounds_of(space, machine)
         return cls(
-            space,
+            grounds,
             machine,
-            skin_of(machine, space.grid.voxel_size_m),
-            volume_of(space),
-            machine.world_from_link_array(start[None])[0],
+            skin_of(machine, voxel_size_m),
+            Meeting.of(machine, placed),
+            blocks_inside(machine, grounds, placed),
+            placed,
         )
 
     def verdict(self, motion: Motion | JointPath, way: Way) -> Verdict:
         speeds = cluster_speeds(self.machine, self.skin, self.world_from_link, way)
         block = self._first_block(speeds, way)
+        met = self.meeting.first(way, way.length if block is None else block.travel)
+        if met is not None:
+            return Verdict(
+                motion,
+                Level.at(met.travel, motion.braking_distance),
+                met.travel,
+                way.unit,
+                met.link,
+                tuple(met.place_in_world.tolist()),
+                Cause.MACHINE,
+                met.other,
+            )
         if block is None:
             return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE)
         return Verdict(
@@ -147,23 +168,35 @@ class _Scene:
         )
 
     def _first_block(self, speeds: NDArray[np.float64], way: Way) -> Block | None:
-        """The first block on a way that is not free in parts, or the last of those that are looked at."""
-        space, volume = self.space, self.volume
+        """The first block on a way: of what is about the links, or of what is in them."""
+        found = [self._block_on(ground, speeds, way) for ground in self.grounds]
+        if way.length > 0 and self.inside:
+            for row in np.unique(self.skin.link[speeds > 0]):
+                if row in self.inside:
+                    cluster = int(np.searchsorted(self.skin.link, row))
+                    found.append(self.inside[row]._replace(cluster=cluster))
+        blocks = [block for block in found if block is not None]
+        return min(blocks, key=lambda block: (block.travel, block.kind), default=None)
+
+    def _block_on(self, ground: Ground, speeds: NDArray[np.float64], way: Way) -> Block | None:
+        """The first block of a ground's links that is not free in parts, or the last of those that are looked at."""
+        space, volume = ground.space, ground.volume
+        own = np.where(ground.links[self.skin.link], speeds, 0.0)
         for looks in range(MOST_LOOKS + 1):
-            block = find_block(self.machine, self.skin, speeds, way, volume)
-            if block is None or looks == MOST_LOOKS or not self._is_free_in_parts(block):
+            block = find_block(self.machine, self.skin, own, way, volume)
+            if block is None or looks == MOST_LOOKS or not self._is_free_in_parts(space, block):
                 break
             space = _with_free(space, block)
             volume = volume_of(space)
         return block
 
-    def _is_free_in_parts(self, block: Block) -> bool:
+    def _is_free_in_parts(self, space: FreeSpace, block: Block) -> bool:
         """Whether a block is a voxel that nobody disputes and that is free part by part."""
         if CAUSES[block.kind] is not Cause.UNSEEN:
             return False
-        index = _index_of(block, self.space)
+        index = _index_of(block, space)
         if index not in self.looked_at:
-            self.looked_at[index] = self.space.is_free_in_parts(index)
+            self.looked_at[index] = space.is_free_in_parts(index)
         return self.looked_at[index]
 
 

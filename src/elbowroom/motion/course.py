@@ -1,13 +1,18 @@
 """A motion as straight lines in joint space, cut at the reach and at the limits of a joint."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.errors import MachineError
 from elbowroom.machine import Machine
 from elbowroom.motion.kernels.mover import Course
 from elbowroom.motion.motion import JointPath, Motion
+
+ROUNDING = 1e-6
+"""A waypoint beyond a limit by this much is rounding, not a fault [m or rad]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,6 +66,7 @@ def _of_path(machine: Machine, start: NDArray[np.float64], path: JointPath) -> W
     knots, travel = [start], [0.0]
     here = dict(zip(machine.joint_names, start.tolist(), strict=True))
     for waypoint in path.waypoints:
+        _require_inside(machine, waypoint, here)
         here |= waypoint
         knot = machine.positions(here)
         step = float(np.abs(knot - knots[-1]).max(initial=0.0))
@@ -73,3 +79,15 @@ def _of_path(machine: Machine, start: NDArray[np.float64], path: JointPath) -> W
     if len(knots) == 1:
         knots, travel = [start, start], [0.0, 1.0]
     return Way(Course(np.array(travel), np.array(knots)), length, unit)
+
+
+def _require_inside(machine: Machine, waypoint: Mapping[str, float], here: Mapping[str, float]) -> None:
+    """Refuses a waypoint that leads farther beyond a limit than its joint is now, if it is."""
+    for name, value in waypoint.items():
+        joint = machine.joint(name)
+        lower, upper = min(joint.lower, here[name]), max(joint.upper, here[name])
+        if not lower - ROUNDING <= value <= upper + ROUNDING:
+            raise MachineError(
+                f"joint {name}: {value:g} {joint.unit} is out of its limits, "
+                f"{joint.lower:g} to {joint.upper:g} {joint.unit}"
+            )

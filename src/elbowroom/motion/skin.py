@@ -1,17 +1,23 @@
 """A machine's surface as the sweep takes it: samples to look with, triangles to decide."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.geometry.kept import kept
+from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
 from elbowroom.machine.samples import ROUNDING_M, BodySamples, body_samples
+from elbowroom.machine.shape import Shape
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.triangles import list_patches
 
+_Array = NDArray[Any]
 
-@kept
+
 def skin_of(machine: Machine, voxel_size_m: float) -> Skin:
-    """The skin of a machine's checked links for voxels of a size; made once per machine and size, then kept.
+    """The skin of a machine's checked links for voxels of a size; made once per shape and size, then kept.
 
     Args:
         machine: whose links.
@@ -20,17 +26,25 @@ def skin_of(machine: Machine, voxel_size_m: float) -> Skin:
     Raises:
         MachineError: as `body_samples`.
     """
-    return _skin(machine, body_samples(machine, voxel_size_m))
+    return _skin(machine.shape, body_samples(machine, voxel_size_m))
 
 
-def _skin(machine: Machine, samples: BodySamples) -> Skin:
+@kept
+def _skin(shape: Shape, samples: BodySamples) -> Skin:
+    links = shape.within(samples.bound_m)
     counts = samples.cluster_stop - samples.cluster_start
-    triangles = np.concatenate([link.triangles for link in machine.links])
-    stops = np.cumsum([0] + [len(link.faces) for link in machine.links])
+    triangles = np.concatenate([link.triangles for link in links])
+    stops = np.cumsum([0] + [len(link.faces) for link in links])
+    rows = np.unique(samples.cluster_link).tolist()
     sizes = np.zeros(len(samples.points), dtype=np.int32)
-    _list(samples, triangles, stops, sizes, False)
-    patches = np.zeros(sizes.sum(), dtype=np.int32)
-    _list(samples, triangles, stops, patches, True)
+    spread(lambda row: _list(samples, row, (triangles, stops), sizes, False), rows)
+    starts = np.concatenate([[0], np.cumsum(sizes)])
+    patches = np.zeros(starts[-1], dtype=np.int32)
+    firsts = samples.cluster_start[np.searchsorted(samples.cluster_link, rows)]
+    spread(
+        lambda pair: _list(samples, pair[0], (triangles, stops), patches[starts[pair[1]] :], True),
+        list(zip(rows, firsts, strict=True)),
+    )
     return Skin(
         points=samples.points,
         cluster_of=np.repeat(np.arange(counts.size, dtype=np.int32), counts),
@@ -40,26 +54,24 @@ def _skin(machine: Machine, samples: BodySamples) -> Skin:
         centre=samples.cluster_centre,
         radius=samples.cluster_radius,
         cover=samples.cover_m,
+        off=samples.bound_m,
         triangles=triangles,
         patches=patches,
-        patch_start=np.concatenate([[0], np.cumsum(sizes)]),
+        patch_start=starts,
     )
 
 
-def _list(
-    samples: BodySamples, triangles: np.ndarray, stops: np.ndarray, near: np.ndarray, fill: bool
-) -> None:
-    """Lists the patches link by link; `near` gets their sizes by sample, or the triangles' numbers."""
-    written = 0
-    for link in np.unique(samples.cluster_link):
-        first, last = np.searchsorted(samples.cluster_link, [link, link + 1])
-        written += list_patches(
-            samples.clusters,
-            samples.cover_m + ROUNDING_M,
-            first,
-            last,
-            triangles,
-            stops[link : link + 2],
-            near[written:] if fill else near,
-            fill,
-        )
+def _list(samples: BodySamples, row: int, of: tuple[_Array, _Array], near: _Array, fill: bool) -> None:
+    """Lists the patches of one link: their sizes by sample, or the triangles' numbers, one patch after another.
+
+    Args:
+        samples: of all links.
+        row: of the link.
+        of: the triangles of all links, and where those of each begin.
+        near: takes what is listed.
+        fill: whether it takes numbers.
+    """
+    triangles, stops = of
+    first, last = np.searchsorted(samples.cluster_link, [row, row + 1])
+    reach = samples.cover_m + ROUNDING_M
+    list_patches(samples.clusters, reach, first, last, triangles, stops[row : row + 2], near, fill)

@@ -81,7 +81,7 @@ def find_block(
 
     Args:
         machine, skin, way: what moves, and where to.
-        speeds: of `cluster_speeds`.
+        speeds: of `cluster_speeds`; 0 for those that are not asked.
         volume: of `volume_of`.
     """
     if way.length == 0 or not (speeds > 0).any():

@@ -20,6 +20,7 @@ then the first. No verdict at all is an error, since nothing seen means stop.
 | INPUT              | no: what came in cannot be meant so                        |
 | WATCH              | no: what is known comes from a camera that is elsewhere    |
 | SURFACE            | no                                                         |
+| MACHINE            | no                                                         |
 | BLIND              | no: losing evidence never makes a block overridable        |
 | OUTSIDE_GRID       | no                                                         |
 | UNSEEN             | yes                                                        |
@@ -67,6 +68,7 @@ class Cause(Enum):
     SURFACE = "something seen there"
     BLIND = "a camera that looks there delivers nothing valid"
     OUTSIDE_GRID = "the machine would leave the watched space"
+    MACHINE = "another part of the machine"
     UNSEEN = "nobody sees that space"
     NONE = "nothing"
     FAULT = "this program failed, so nothing is known"
@@ -91,10 +93,11 @@ class Verdict:
             [free_travel_unit].
         free_travel_unit: "m", "rad", or "m or rad" for a path whose joints are of both kinds.
         link: the link that meets the block; None: none does.
-        place_in_world: centre of the blocked voxel, or the link's point that leaves the grid [m]; None: no
-            block.
+        place_in_world: centre of the blocked voxel, the link's point that leaves the grid, or where two links meet [m];
+            None: no block.
         cause: what the block is. NONE also where a joint limit, not a block, ends the travel. FAULT, STALE, INPUT
             and WATCH are no blocks: whatever the space is, nothing may move.
+        other_link: the link of the machine that `link` meets, where that ends the travel; None: it is none.
     """
 
     motion: Motion | JointPath
@@ -104,6 +107,7 @@ class Verdict:
     link: str | None
     place_in_world: tuple[float, float, float] | None
     cause: Cause
+    other_link: str | None = None
 
     @classmethod
     def stop(cls, motion: Motion | JointPath, free_travel_unit: str, cause: Cause) -> Self:
@@ -146,6 +150,7 @@ class Verdict:
             "overridable": self.overridable,
             "link": self.link,
             "place_m": self.place_in_world,
+            "other_link": self.other_link,
         }
 
 

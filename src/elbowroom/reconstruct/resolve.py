@@ -146,9 +146,16 @@ def _with_silent(evidence: Evidence, cameras: Sequence[DepthCamera], terms: Term
 def _body(
     evidence: Evidence, machine: Machine | None, joints: Mapping[str, float] | None, terms: Terms
 ) -> Words:
-    """Plane of the voxels that the machine's body covers, but for those in which something else was seen."""
+    """Plane of the voxels that the machine's body covers, but for those in which something else was seen.
+
+    Where the model is larger than what cameras see of it, nothing else may be disputed either: a hand in its excess is.
+    """
     if machine is None:
         return bits.empty(evidence.grid)
     if joints is None:
         raise InputError("resolve: a machine without joints; give its joint positions by name")
-    return body_words(machine, joints, evidence.grid, terms.body_growth_m) & ~evidence.unexplained
+    body: Words = body_words(machine, joints, evidence.grid, terms.body_growth_m) & ~evidence.unexplained
+    if machine.as_seen is not machine:
+        seen = body_words(machine.as_seen, joints, evidence.grid, terms.body_growth_m)
+        body &= seen | ~evidence.disputed
+    return body

@@ -1,6 +1,7 @@
 """A machine's joint positions over time, to be asked at each frame's time of exposure."""
 
 import csv
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
@@ -79,7 +80,8 @@ class JointRecord:
     def at(self, stamp_ns: int) -> dict[str, float]:
         """The joint positions at a time, straight between the two rows around it.
 
-        A continuous joint is not unwound: rows on both sides of a full turn are joined through zero.
+        A continuous joint is not unwound: rows on both sides of a full turn are joined through zero. But for a base
+        that moves, `<name>/yaw`, with `<name>/pitch` and `<name>/roll` or without: that turns the shortest way.
 
         Args:
             stamp_ns: time [ns].
@@ -111,10 +113,28 @@ class JointRecord:
             )
         # the differences are exact in whole nanoseconds; only their ratio is a float
         share = (clamped - int(stamps[before])) / gap
-        return {
+        found = {
             joint: float(values[before] + share * (values[after] - values[before]))
             for joint, values in self.positions.items()
         }
+        for yaw in self.positions:
+            if yaw.endswith("/yaw"):
+                found |= self._turned(yaw, before, share)
+        return found
+
+    def _turned(self, yaw: str, before: int, share: float) -> dict[str, float]:
+        """The angles of a base at a share of the way between two rows, the shortest way."""
+        angles = [yaw, *(yaw.replace("/yaw", f"/{angle}") for angle in ("pitch", "roll"))]
+        if not all(angle in self.positions for angle in angles):
+            start, end = self.positions[yaw][before : before + 2]
+            return {yaw: float(start + share * ((end - start + np.pi) % (2 * np.pi) - np.pi))}
+        from scipy.spatial.transform import Rotation, Slerp  # slow to load, and few machines need it
+
+        rows = np.stack([self.positions[angle][before : before + 2] for angle in angles], axis=1)
+        between = Slerp([0.0, 1.0], Rotation.from_euler("ZYX", rows))(share)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # nose up or down: one of the answers will do
+            return dict(zip(angles, between.as_euler("ZYX").tolist(), strict=True))
 
     @classmethod
     def from_csv(cls, path: str | Path, max_gap_ns: int | None = None) -> "JointRecord":

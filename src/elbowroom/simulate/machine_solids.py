@@ -6,6 +6,7 @@ import numpy as np
 
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
+from elbowroom.machine.shape import Shape
 from elbowroom.simulate.solid import Mesh, Solid
 
 COURSE: dict[str, tuple[float, float]] = {
@@ -18,7 +19,7 @@ COURSE: dict[str, tuple[float, float]] = {
 
 
 def link_solids(machine: Machine, joints: Mapping[str, float]) -> tuple[Solid, ...]:
-    """One solid for each link that has a body.
+    """One solid for each link that has a body: what cameras see of it.
 
     Args:
         machine: any machine.
@@ -30,7 +31,7 @@ def link_solids(machine: Machine, joints: Mapping[str, float]) -> tuple[Solid, .
     world_from_links = machine.world_from_links(joints)
     return tuple(
         Solid(name, mesh, world_from_links[name], is_machine=True)
-        for name, mesh in _meshes_of(machine).items()
+        for name, mesh in _meshes_of(machine.as_seen.shape).items()
     )
 
 
@@ -65,5 +66,5 @@ def _limits(machine: Machine, name: str) -> tuple[float, float]:
 
 
 @kept
-def _meshes_of(machine: Machine) -> dict[str, Mesh]:
-    return {link.name: Mesh(link.vertices, link.faces) for link in machine.links if link.has_geometry}
+def _meshes_of(shape: Shape) -> dict[str, Mesh]:
+    return {link.name: Mesh(link.vertices, link.faces) for link in shape.links if link.has_geometry}

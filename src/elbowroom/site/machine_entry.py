@@ -1,27 +1,39 @@
 """The machine and the speeds of its joints as a site file describes them."""
 
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
-from elbowroom.errors import SiteError
+from elbowroom.choices import ExplainWith
+from elbowroom.errors import MachineWarning, SiteError
 from elbowroom.machine import Joint, Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
+from elbowroom.machine.machine import Tolerance
 from elbowroom.motion import Motion, braking_distance
-from elbowroom.site.entry import Entry, Matrix, Positive, Text
-from elbowroom.site.paths import expand
+from elbowroom.site.contact_entry import PartEntry, StandEntry
+from elbowroom.site.entry import Entry, Flag, Matrix, NotNegative, Number, Positive, Text
+from elbowroom.site.paths import existing_folder, expand
 from elbowroom.site.ranges import MILLIMETRES, MILLISECONDS, MM_A_SECOND, up_to
+
+OF_A_URDF = ("package_dirs", "xacro_arguments", "without_body", "largest_link_m", "explain_with")
+"""Keys that say how a URDF is read."""
 
 
 class MachineEntry(Entry):
     """The machine: one that ships with the package, or a URDF; where its base stands; links not to check.
 
-    `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself.
+    `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself, and
+    `explain_with` says which geometry that model is. `allowed_contacts` are pairs of links that may touch, `stands_on`
+    boxes of the room that some links may touch, `carries` parts that it holds. `limit_tolerance_deg` and
+    `limit_tolerance_mm` are how far a joint may be said to be beyond a limit, `package_dirs` folders of packages,
+    `without_body` links whose geometry is left out.
+    On a `free_base` the machine drives or floats, and where it stands is among its joint positions.
     """
 
     builtin: Literal["ceiling_c_arm"] | None = None
@@ -29,12 +41,35 @@ class MachineEntry(Entry):
     world_from_base: Matrix | None = None
     unchecked_links: tuple[Text, ...] = ()
     explain_tolerance_m: Annotated[Positive, up_to(0.5, "m", MILLIMETRES)] | None = None
+    explain_with: ExplainWith = "auto"
+    allowed_contacts: tuple[tuple[Text, Text], ...] = ()
+    stands_on: tuple[StandEntry, ...] = ()
+    carries: tuple[PartEntry, ...] = ()
+    free_base: Literal["planar", "floating"] | None = None
+    package_dirs: tuple[Text, ...] = ()
+    xacro_arguments: dict[Text, Text | Number | Flag] = Field(default_factory=dict)
+    without_body: tuple[Text, ...] = ()
+    largest_link_m: Positive | None = None
+    limit_tolerance_deg: NotNegative | None = None
+    limit_tolerance_mm: NotNegative | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> "MachineEntry":
         if (self.builtin is None) == (self.urdf is None):
             raise ValueError("exactly one of builtin and urdf")
+        own = sorted(self.model_fields_set & set(OF_A_URDF))
+        if self.builtin is not None and own:
+            raise ValueError(f"{own[0]} only with urdf")
         return self
+
+    @property
+    def tolerance(self) -> Tolerance:
+        """How far a joint may be said to be where it cannot be."""
+        usual = Tolerance()
+        return Tolerance(
+            usual.rad if self.limit_tolerance_deg is None else math.radians(self.limit_tolerance_deg),
+            usual.m if self.limit_tolerance_mm is None else self.limit_tolerance_mm / 1e3,
+        )
 
     def build(self, beside: Path) -> Machine:
         """The machine at its place.
@@ -45,13 +80,39 @@ class MachineEntry(Entry):
         Raises:
             SiteError, MachineError: a URDF, a link or a pose that is not usable.
         """
+        machine = self._bare(beside)
+        for part in self.carries:
+            machine = part.on(machine, beside)
+        return machine.allowing(*self.allowed_contacts).standing_on(
+            *(stand.build() for stand in self.stands_on)
+        )
+
+    def _bare(self, beside: Path) -> Machine:
         base = None if self.world_from_base is None else np.array(self.world_from_base)
         if self.builtin is not None:
             machine = ceiling_c_arm(base)
             unchecked = dict.fromkeys((*machine.unchecked_links, *self.unchecked_links))
-            return replace(machine, unchecked_links=tuple(unchecked))
-        urdf = expand(str(self.urdf), beside)
-        return Machine.from_urdf(urdf, world_from_base=base, unchecked_links=self.unchecked_links)
+            return replace(machine, unchecked_links=tuple(unchecked), tolerance=self.tolerance)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", MachineWarning)  # the notes on the site say them
+            machine = Machine.from_urdf(
+                expand(str(self.urdf), beside),
+                world_from_base=base,
+                unchecked_links=self.unchecked_links,
+                package_dirs=[existing_folder(folder, beside) for folder in self.package_dirs],
+                without_body=self.without_body,
+                xacro_arguments={name: _as_xacro(value) for name, value in self.xacro_arguments.items()},
+                largest_link_m=self.largest_link_m,
+                explain_with=self.explain_with,
+            )
+        return replace(machine, tolerance=self.tolerance)
+
+
+def _as_xacro(value: str | float | bool) -> str:
+    """A value as xacro writes it: true and false in small letters, whole numbers without a point."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:g}" if isinstance(value, float) and value == round(value) else str(value)
 
 
 class JointEntry(Entry):

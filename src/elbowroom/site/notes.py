@@ -1,5 +1,6 @@
 """What a user should know of a site that is valid."""
 
+from elbowroom.site.machine_notes import notes_of_machine
 from elbowroom.site.recording_entry import SevenScenes
 from elbowroom.site.site import Site
 
@@ -27,6 +28,13 @@ def notes_of(site: Site) -> tuple[str, ...]:
     if machine is not None:
         if machine.unchecked_links:
             notes.append(f"links that are not checked: {', '.join(machine.unchecked_links)}")
+        notes += notes_of_machine(machine, site)
+        notes += machine.allowances
+        if machine.as_seen is not machine:
+            seen = ", ".join(link.name for link in machine.links if link.seen is not None)
+            notes.append(
+                f"links that cameras see by their visual geometry, which lies within what is swept: {seen}"
+            )
         without = [joint for joint in machine.joint_names if joint not in entry.joints]
         if without:
             notes.append(f"joints without a speed, whose motions are not checked: {', '.join(without)}")

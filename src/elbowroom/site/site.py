@@ -287,7 +287,13 @@ class Site:
     @cached_property
     def _machine(self) -> Machine | None:
         given = self.entry.machine
-        return None if given is None else self._blame("machine", lambda: given.build(self.path.parent))
+        if given is None:
+            return None
+        machine = self._blame("machine", lambda: given.build(self.path.parent))
+        if given.free_base is None:
+            return machine
+        kind = given.free_base
+        return self._blame("machine", lambda: machine.with_free_base(kind))
 
     def motions(self, machine: Machine) -> tuple[Motion, ...]:
         """Each joint that has a speed, in both directions, with its braking distance at full speed.
@@ -309,8 +315,28 @@ class Site:
         """
         recording = self.entry.recording
         if recording is None:
-            raise SiteError(f"{self.path}: recording: missing; this command reads one")
+            raise SiteError(
+                f"{self.path}: recording: missing; this command reads one (`elbowroom simulate` makes one of a "
+                "modelled room)"
+            )
         return self._blame("recording.folder", lambda: existing_folder(recording.folder, self.path.parent))
+
+    @property
+    def missing_recording(self) -> str | None:
+        """Why the recording that the site names cannot be read yet; None: its folder is there, or none is named.
+
+        Raises:
+            SiteError: its path is none.
+        """
+        if self.entry.recording is None:
+            return None
+        try:
+            self.recording_folder()
+        except SiteError as error:
+            if "no folder" in str(error):
+                return str(error).removeprefix(f"{self.path}: ")
+            raise
+        return None
 
     def _blame(self, key: str | None, make: Callable[[], Value]) -> Value:
         """What `make` returns; its errors name the file and the key."""

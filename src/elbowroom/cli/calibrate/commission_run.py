@@ -1,6 +1,7 @@
 """The run of `elbowroom calibrate commission`."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,11 @@ from elbowroom.cli.options import options_named
 from elbowroom.cli.screen import show
 from elbowroom.errors import CalibrationError
 from elbowroom.files.json_rows import json_rows
+from elbowroom.finding import Finding
 from elbowroom.monitor import Tolerance
 from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.drift.site_file import write_commissioned
+from elbowroom.reconstruct.model_findings import model_findings
 from elbowroom.sensing import Snapshot
 from elbowroom.site import Site
 from elbowroom.sources import Room, open_room
@@ -48,9 +51,12 @@ def run_commission(
         room = open_room(site, joints=joints)
         wanted, given = _moments(room, frames, every_s)
     commissioning = Commissioning(room.cameras, room.machine, wanted)
+    doubts: tuple[Finding, ...] | None = None
     with json_rows(json_file) as add:
         for snapshot in track(given, "looking", total=wanted, console=Console(stderr=True), transient=True):
             commissioning.add(snapshot)
+            if room.machine is not None and doubts is None:
+                doubts = model_findings(room.machine, room.cameras, snapshot)
         references = [
             commissioning.reference_of(camera)
             for camera in track(
@@ -61,7 +67,11 @@ def run_commission(
         rows = [reference.row(Tolerance()) for reference in references]
         for row in rows:
             add(row)
+        for doubt in doubts or ():
+            add({"kind": "finding", **asdict(doubt)})
     show(reference_table(rows))
+    for doubt in doubts or ():
+        print(f"note: {doubt.text}")
     print(f"{written} and {beside.name}: try `elbowroom monitor {written}`")
 
 

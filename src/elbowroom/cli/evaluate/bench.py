@@ -10,10 +10,10 @@ from elbowroom.cli.options import JsonFile
 
 def bench(
     what: Annotated[
-        Literal["cycle", "start", "calibration"],
+        Literal["cycle", "start", "machine", "calibration"],
         typer.Argument(
             help="cycle: carve and whole cycles; start: a new process to its first answer; "
-            "calibration: how well cameras are found."
+            "machine: what triangles cost; calibration: how well cameras are found."
         ),
     ] = "cycle",
     quick: Annotated[bool, typer.Option(help="Few rounds: a first impression in under a minute.")] = False,
@@ -48,7 +48,7 @@ def bench(
     ] = None,
     json: JsonFile = None,
 ) -> None:
-    """Measure carve and whole cycles in the simulated room, each in its own process; or start; or calibration."""
+    """Measure carve and whole cycles in the simulated room, each in its own process; or start, machine, calibration."""
     if what == "calibration":
         from elbowroom.cli.evaluate.bench_calibration_run import run_bench_calibration
 
@@ -57,6 +57,10 @@ def bench(
         from elbowroom.cli.evaluate.bench_run import run_bench_start
 
         run_bench_start(quick, against, json)
+    elif what == "machine":
+        from elbowroom.cli.evaluate.bench_run import run_bench_machine
+
+        run_bench_machine(quick, cameras, json)
     else:
         from elbowroom.cli.evaluate.bench_run import run_bench_cycle
 

@@ -73,3 +73,33 @@ def run_bench_start(quick: bool, against: Path | None, json: Path | None) -> Non
     )
     rows = start_rows(QUICK_ROUNDS, against) if quick else start_rows(against=against)
     measured("cases", rows, None, json, show)
+
+
+def run_bench_machine(quick: bool, cameras: int, json: Path | None) -> None:
+    """What a machine of many triangles costs, beside the same one of few.
+
+    Args:
+        quick: few rounds.
+        cameras: how many.
+        json: file for the rows.
+    """
+    from elbowroom.evaluate.speed.fine_machine import DUE as FINE_DUE
+    from elbowroom.evaluate.speed.fine_machine import fine_machine_rows
+
+    def due(row: Row) -> str:
+        return "".join(f"{due.for_row(row):.0f} ms" for due in FINE_DUE if due.of(row))
+
+    show = as_table(
+        {
+            "case": "{case}",
+            "triangles": "{triangles:,}",
+            "drawn": "{drawn_triangles:,}",
+            "median": "{median_ms:.1f} ms",
+            "worst": "{max_ms:.1f} ms",
+            "processor": "{cpu_median_ms:.1f} ms",
+            "times as long": "{times_as_long:.2f}",
+            "due": due,
+        },
+        "Both machines in turns, cameras of 160 x 120 pixels, samples for voxels of 5 cm.",
+    )
+    measured("cases", fine_machine_rows(3 if quick else 15, cameras), None, json, show)

@@ -125,10 +125,26 @@ def draw(mesh, camera_from_links, view, canvas):
             if behind == 0:
                 area = (seen[b, 0] - seen[a, 0]) * (seen[c, 1] - seen[a, 1])
                 area -= (seen[c, 0] - seen[a, 0]) * (seen[b, 1] - seen[a, 1])
-                if backs or not area > 0.0:
+                if (backs or not area > 0.0) and _meets_centres(seen, a, b, c, view):
                     _fill(_corner(seen, a), _corner(seen, b), _corner(seen, c), view, canvas)
             elif behind < 3:
                 _clip_and_fill(seen, (a, b, c), view, canvas)
+
+
+@uncounted(error_model="numpy")
+def _meets_centres(seen, a, b, c, view):
+    """Whether a pixel's centre lies in the rectangle about a triangle: of small ones few hold any."""
+    low, high = (
+        min(seen[a, 1], seen[b, 1], seen[c, 1]) - EDGE_PX,
+        max(seen[a, 1], seen[b, 1], seen[c, 1]) + EDGE_PX,
+    )
+    if not math.ceil(low) <= high:
+        return False
+    low, high = (
+        min(seen[a, 0], seen[b, 0], seen[c, 0]) - EDGE_PX,
+        max(seen[a, 0], seen[b, 0], seen[c, 0]) + EDGE_PX,
+    )
+    return math.ceil(low) <= high
 
 
 @njit(nogil=True, error_model="numpy")

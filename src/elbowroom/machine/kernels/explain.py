@@ -143,9 +143,10 @@ def _compare(view, depth, drawn, across, start, stop, tolerance, model):
 def _settle_edges(view, depth, canvas, model):
     """Pixels that the model is about without fitting, below zero on entry by the depth that the model frees.
 
-    Those that see past the machine's edge and stand alone are mixed pixels of the edge: explained, infinity. Others
-    about which all is explained or farther are specks, and explained as well: they stay below zero. The rest becomes
-    `UNSAFE`.
+    Those that see past the machine's edge and stand alone are mixed pixels of the edge: explained, infinity. Those that
+    see past it, but not at its edge, and do not stand alone are `UNSAFE`: a surface behind the model's, so the model is
+    larger than the machine, or the machine is not there. Others about which all is explained or farther are specks, and
+    explained as well: they stay below zero. The rest becomes `UNSAFE`.
     """
     for turn in range(3):
         for v in range(view.height):
@@ -159,11 +160,26 @@ def _settle_edges(view, depth, canvas, model):
                     past = is_return(view, d) and d > -model[v, u]
                     if past and not has_support(view, depth, model, u, v):
                         model[v, u] = -np.inf
+                    elif past and _is_within(canvas, u, v):
+                        model[v, u] = UNSAFE
                 elif turn == 1:
                     if model[v, u] == -np.inf:
                         model[v, u] = np.inf
                 elif not _is_speck(view, depth, model, u, v):
                     model[v, u] = UNSAFE
+
+
+@njit(nogil=True, error_model="numpy")
+def _is_within(canvas, u, v):
+    """Whether a pixel and all of its neighbours are drawn: it lies within the model, not at its edge."""
+    height, width = canvas.inverse.shape
+    if not (0 < v < height - 1 and 0 < u < width - 1):
+        return False
+    for nv in range(v - 1, v + 2):
+        for nu in range(u - 1, u + 2):
+            if not canvas.inverse[nv, nu] > 0.0:
+                return False
+    return True
 
 
 @njit(nogil=True, error_model="numpy")

@@ -6,6 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+OPEN, SURFACE, OUTSIDE = 0, 1, 2
+"""What a cell of a lattice is: nothing that is known of it, one that the surface touches, one reached from outside."""
+
 
 class Laid(NamedTuple):
     """A triangle laid on its longest edge.
@@ -234,7 +237,7 @@ def mark_surface(triangles, lower, edge, surface):
         triangles: (m, 3, 3) [m], all within the lattice.
         lower: (3,) least corner of the lattice [m].
         edge: of a cell [m].
-        surface: bool (nx, ny, nz) to fill.
+        surface: (nx, ny, nz) to fill, bool or uint8.
     """
     corners = np.empty((3, 3))
     normal = np.empty(3)
@@ -283,7 +286,7 @@ def _mark_between(corners, normal, first, last, surface):
             for k in range(low, high + 1):
                 cell[main] = k
                 if not surface[cell[0], cell[1], cell[2]] and touches_cell(corners, normal, cell):
-                    surface[cell[0], cell[1], cell[2]] = True
+                    surface[cell[0], cell[1], cell[2]] = SURFACE
 
 
 @njit(cache=True, nogil=True)
@@ -311,3 +314,45 @@ def touches_cell(corners, normal, cell):
             if low > 0.5 * (abs(x) + abs(y)) + 1e-9 or high < -0.5 * (abs(x) + abs(y)) - 1e-9:
                 return False
     return True
+
+
+@njit(cache=True, nogil=True)
+def flood(cells):
+    """Marks the open cells of a lattice, (nx, ny, nz) uint8, that its first one reaches from face to face.
+
+    Run by run along the last axis: from each run those beside it are looked at, and where one begins is kept for later.
+    """
+    later, waiting = np.zeros((1024, 3), dtype=np.int32), 1
+    while waiting > 0:
+        waiting -= 1
+        i, j, k = later[waiting, 0], later[waiting, 1], later[waiting, 2]
+        if cells[i, j, k] != OPEN:
+            continue
+        start, stop = k, k + 1
+        while start > 0 and cells[i, j, start - 1] == OPEN:
+            start -= 1
+        while stop < cells.shape[2] and cells[i, j, stop] == OPEN:
+            stop += 1
+        for n in range(start, stop):
+            cells[i, j, n] = OUTSIDE
+        # room for all runs beside this one
+        if waiting + 2 * (stop - start) + 4 > later.shape[0]:
+            more = np.zeros((2 * later.shape[0] + 2 * cells.shape[2], 3), dtype=np.int32)
+            more[:waiting] = later[:waiting]
+            later = more
+        for side in range(4):
+            a, b = i + (side == 0) - (side == 1), j + (side == 2) - (side == 3)
+            if 0 <= a < cells.shape[0] and 0 <= b < cells.shape[1]:
+                waiting = _note_runs(cells[a, b], a, b, (start, stop), later, waiting)
+
+
+@njit(nogil=True)
+def _note_runs(row, a, b, between, later, waiting):
+    """Notes where open runs of a row begin between two places; returns how many wait."""
+    opened = False
+    for n in range(between[0], between[1]):
+        if row[n] == OPEN and not opened:
+            later[waiting, 0], later[waiting, 1], later[waiting, 2] = a, b, n
+            waiting += 1
+        opened = row[n] == OPEN
+    return waiting

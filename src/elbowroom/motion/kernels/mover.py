@@ -24,7 +24,7 @@ class Skin(NamedTuple):
     """A machine's surface in its links' frames: samples, sorted by cluster, and triangles.
 
     A cluster lies on one link. The patch of a sample is the triangles that come within `cover` of it;
-    together its patches are the surface.
+    together its patches are the surface, or lie off it by `off` at most.
     """
 
     points: np.ndarray
@@ -35,6 +35,7 @@ class Skin(NamedTuple):
     centre: np.ndarray
     radius: np.ndarray
     cover: float
+    off: float
     triangles: np.ndarray
     patches: np.ndarray
     patch_start: np.ndarray

@@ -49,7 +49,7 @@ def _meets_patch(patch, x, y, z, half_edge, triangle):
 
 
 @njit(inline="always")
-def _kind(volume, word, bit):
+def kind_of(volume, word, bit):
     """What a blocked voxel is."""
     if volume.surface[word] & bit:
         return SURFACE
@@ -73,7 +73,7 @@ def touched_block(placed, mover, half, volume, samples, place, triangle):
         cluster = skin.cluster_of[sample]
         world_from_link = placed[skin.link[cluster]]
         x, y, z = carried(world_from_link, skin.points[sample])
-        grown = mover.speeds[cluster] * half + ROUNDING_M
+        grown = mover.speeds[cluster] * half + (ROUNDING_M + skin.off)
         patch = Patch(world_from_link, grown, skin, sample)
         r = skin.cover + grown
         if leaves(x, y, z, r, lattice) and _leaves_patch(patch, lattice):
@@ -109,7 +109,7 @@ def _touched_by(patch, ball, volume, found, place, triangle):
                 word, bit = word_of(i, j, k, lattice.cubes_y, lattice.cubes_z), bit_of(i, j, k)
                 if not volume.words[word] & bit or du * du + dv * dv + dw * dw > s * s:
                     continue
-                kind = _kind(volume, word, bit)
+                kind = kind_of(volume, word, bit)
                 if kind >= found:
                     continue
                 x, y, z = (

@@ -54,7 +54,8 @@ def contradictions(
         margin: of cameras without one of their own.
         found: about these cameras; those of which something found stops are not compared.
     """
-    wrong = {name for finding in found if finding.stops for name in finding.about}
+    everybody = [camera.name for camera in cameras]
+    wrong = {name for finding in found if finding.stops for name in finding.about or everybody}
     cameras = [camera for camera in cameras if camera.name not in wrong]
     frames = [frame for frame in frames if frame.camera not in wrong]
     return (*masked_returns(cameras, frames), *found_in(Views.of(cameras, frames, margin)))

@@ -18,6 +18,8 @@ class Watched:
         rule, detail: as of `reconstruct`.
         source: in words, where frames come from: its time is shown apart.
         unchecked_links: links of the machine that are not checked.
+        bodiless_links: links of the machine that move without a body.
+        allowances: what else the site lets pass, a line each.
     """
 
     title: str
@@ -27,6 +29,8 @@ class Watched:
     detail: str
     source: str
     unchecked_links: Sequence[str] = ()
+    bodiless_links: Sequence[str] = ()
+    allowances: Sequence[str] = ()
 
     @property
     def room(self) -> str:
@@ -40,7 +44,14 @@ def watched_of(room: Room) -> Watched:
     """What the head of the screen says of a room."""
     sizes = sorted({f"{camera.width}x{camera.height}" for camera in room.cameras})
     cameras = f"{len(room.cameras)} camera{'s' * (len(room.cameras) > 1)} {', '.join(sizes)}"
-    unchecked = room.machine.unchecked_links if room.machine else ()
     return Watched(
-        room.site.name, room.grid, cameras, room.terms.rule, room.terms.detail, room.source.name, unchecked
+        title=room.site.name,
+        grid=room.grid,
+        cameras=cameras,
+        rule=room.terms.rule,
+        detail=room.terms.detail,
+        source=room.source.name,
+        unchecked_links=room.machine.unchecked_links if room.machine else (),
+        bodiless_links=room.machine.bodiless_links if room.machine else (),
+        allowances=room.machine.allowances if room.machine else (),
     )

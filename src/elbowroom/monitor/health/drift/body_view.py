@@ -9,7 +9,7 @@ from elbowroom.geometry import DepthCamera, Intrinsics, invert_rigid
 from elbowroom.geometry.lens import distorted, usable_radius
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.draw import View
-from elbowroom.machine.rasterise import canvas, mesh_of, view_of
+from elbowroom.machine.rasterise import canvas, drawn_mesh, view_of
 from elbowroom.monitor.health.drift.kernels.body import Found, Raw, Shown, draw_links, surface_spots
 from elbowroom.monitor.health.drift.kernels.watch import LEAST_SIGMA_M
 
@@ -17,6 +17,8 @@ WIDTH_PX = 160
 """The image is looked at in steps, so that about so many columns are left."""
 MOST_SPOTS = 1000
 GATE_M = 0.12
+DRAWN_M = 0.001
+"""A fine machine is drawn with fewer triangles, to within so much; a link is off by 15 mm before it is named [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +85,8 @@ class BodyView:
             world_from_link: where the joints say that the links are, shape (links, 4, 4).
         """
         camera_from_link = self.camera.camera_from_world @ world_from_link
-        draw_links(mesh_of(self.machine), camera_from_link, self._view, self._canvas, self._shown)
+        mesh, _ = drawn_mesh(self.machine, DRAWN_M)
+        draw_links(mesh, camera_from_link, self._view, self._canvas, self._shown)
         n = surface_spots(self._view, self._shown, depth_m.ravel(), self._raw, GATE_M, self._found)
         link, numbers = self._found.link[:n].copy(), self._found.numbers[:n]
         link_from_camera = invert_rigid(camera_from_link)[link]

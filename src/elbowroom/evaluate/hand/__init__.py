@@ -1,0 +1,1 @@
+"""A hand at arms whose collision geometry is larger than they are."""

@@ -1,0 +1,139 @@
+"""A description's file as a tree of elements: small slips of XML pass and are said, xacro is expanded or named."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from lxml import etree
+
+from elbowroom.errors import MachineError
+from elbowroom.machine.description import xacro
+from elbowroom.machine.description.packages import Packages
+from elbowroom.machine.description.report import Report, tag_of
+
+MAX_URDF_BYTES = 16_000_000
+"""A larger file is refused."""
+OTHER_LANGUAGES = {
+    "sdf": "this is SDF, Gazebo's format; give the URDF that it was made of",
+    "mujoco": "this is MJCF, MuJoCo's format; give the URDF that it was made of",
+    "COLLADA": "this is a mesh; give the URDF that names it",
+    "package": "this is a package's manifest; give a URDF of that package",
+}
+"""What the outermost element says of a file that is no URDF."""
+_HARMLESS = {
+    etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE: "a prefix is not declared",
+    etree.ErrorTypes.ERR_HYPHEN_IN_COMMENT: "a comment holds two hyphens",
+}
+_DECLARATION = re.compile(rb"<\?xml\b[^>]*\?>")
+_VERSION = re.compile(rb"(<\?xml\s+version\s*=\s*[\"'])(?!1\.)([^\"']*)")
+_BEFORE_DECLARATION = re.compile(rb"(\s|<!--.*?-->)*(?=<\?xml\b)", re.DOTALL)
+
+
+class Document(NamedTuple):
+    """The outermost element, and the report that names places in it."""
+
+    root: etree._Element
+    report: Report
+
+
+def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, str]) -> Document:
+    """The tree of elements of a URDF, or of a xacro file that is expanded for it.
+
+    Args:
+        path: the file.
+        packages: where `$(find ...)` of a xacro file looks.
+        xacro_arguments: values of its arguments.
+
+    Raises:
+        MachineError: no such file, not XML, not a URDF, or xacro that cannot be expanded.
+    """
+    if not path.is_file():
+        what = "a folder" if path.is_dir() else "no such file"
+        raise MachineError(f"{path}: {what}; expected a URDF")
+    size = path.stat().st_size
+    if size > MAX_URDF_BYTES:
+        raise MachineError(f"{path}: {size:,} bytes, a URDF may have {MAX_URDF_BYTES:,}")
+    report = Report(path)
+    root = _parsed(path.read_bytes(), report)
+    sign = xacro.first_sign(root)
+    if sign is not None:
+        text = xacro.expanded(path, report.said(sign.element, sign.text), packages, xacro_arguments)
+        report.expanded, report.lines_before = True, 0
+        root = _parsed(text, report)
+        left = xacro.first_sign(root)
+        if left is not None:
+            raise report.error(left.element, f"{left.text}, also after xacro expanded the file")
+    elif xacro_arguments:
+        raise MachineError(f"{path}: arguments of xacro are given, and nothing in the file is xacro")
+    if tag_of(root) != "robot":
+        hint = OTHER_LANGUAGES.get(tag_of(root))
+        raise MachineError(
+            f"{path}: the outermost element is <{tag_of(root)}>, a URDF has <robot>"
+            + (f"; {hint}" if hint else "")
+        )
+    return Document(root, report)
+
+
+def _parsed(content: bytes, report: Report) -> etree._Element:
+    """The outermost element; what other readers pass over passes with a warning."""
+    content = _without_what_stands_first(content, report)
+    version = _VERSION.match(content)
+    if version is not None:
+        report.warn(
+            "xml", None, f"line 1: there is no XML of version {version[2].decode('latin-1')!r}; read as 1.0"
+        )
+        content = _VERSION.sub(rb"\g<1>1.0", content, count=1)
+    try:
+        return _tree(content, recover=False)
+    except etree.XMLSyntaxError as strict:
+        try:
+            content.decode("utf-8")
+        except UnicodeDecodeError:
+            content = _as_utf8(content, report)
+        root = _tree(content, recover=True)
+        faults = [] if root is None else [e for e in strict_errors(content) if e.type not in _HARMLESS]
+        if root is None or faults:
+            line = (faults[0].line if faults else strict.lineno or 1) + report.lines_before
+            text = faults[0].message if faults else strict.msg
+            raise MachineError(f"{report.path}: line {line}: not XML: {text}") from None
+        for entry in strict_errors(content):
+            line = entry.line + report.lines_before
+            report.warn("xml", None, f"line {line}: {_HARMLESS[entry.type]} ({entry.message}); passed over")
+        return root
+
+
+def strict_errors(content: bytes) -> list[etree._LogEntry]:
+    """All that a strict parser finds wrong, also where it could go on."""
+    parser = _parser(recover=True)
+    etree.fromstring(content, parser)
+    return list(parser.error_log)
+
+
+def _tree(content: bytes, recover: bool) -> etree._Element:
+    return etree.fromstring(content, _parser(recover))
+
+
+def _parser(recover: bool) -> etree.XMLParser:
+    return etree.XMLParser(resolve_entities=False, no_network=True, recover=recover)
+
+
+def _without_what_stands_first(content: bytes, report: Report) -> bytes:
+    """Without blank lines or comments before the declaration, where XML allows none."""
+    mark = b"\xef\xbb\xbf" if content.startswith(b"\xef\xbb\xbf") else b""
+    content = content.removeprefix(mark)
+    before = _BEFORE_DECLARATION.match(content)
+    if before is None or before.end() == 0:
+        return mark + content
+    report.lines_before = content[: before.end()].count(b"\n")
+    report.warn(
+        "xml", None, "line 1: blank lines or comments stand before the declaration <?xml; passed over"
+    )
+    return content[before.end() :]
+
+
+def _as_utf8(content: bytes, report: Report) -> bytes:
+    """Latin-1 read as such, where a file is neither what it declares nor UTF-8."""
+    report.warn("xml", None, "not in UTF-8 as it should be; read as Latin-1")
+    declared = _DECLARATION.match(content)
+    return content[declared.end() if declared else 0 :].decode("latin-1").encode("utf-8")

@@ -1,0 +1,231 @@
+"""The triangles of each link: read, put where they belong, and refused where they cannot be meant."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from elbowroom.choices import ExplainWith
+from elbowroom.errors import MachineError
+from elbowroom.geometry import nearest_rigid
+from elbowroom.machine.description.packages import Packages
+from elbowroom.machine.description.report import Report
+from elbowroom.machine.description.robot import RawLink, Robot
+from elbowroom.machine.description.shapes import Shape
+from elbowroom.machine.link import Link, Surface
+from elbowroom.machine.mesh_file import MeshFile, read_mesh
+from elbowroom.machine.meshes import triangles_of
+from elbowroom.machine.seen import are_the_same, seen_surface, together
+
+LARGEST_LINK_M = 20.0
+"""A longer link is refused, unless the site says otherwise [m]."""
+SUSPECT_LINK_M = 2.0
+"""From this length on, a mesh is compared with the rest of the machine [m]."""
+SMALLEST_MESH_M = 0.001
+"""A smaller mesh is said: it may have been scaled twice [m]."""
+WITHOUT_BODY = "or name links that may move without a body in machine.without_body (without_body= in Python)"
+
+
+class Proportions(NamedTuple):
+    """What a mesh's size is compared with.
+
+    Args:
+        reach_m: the farthest that a link can be from the first, by its joints alone [m].
+        moving: names of links that some joint moves.
+    """
+
+    reach_m: float
+    moving: frozenset[str]
+
+
+class Bodies:
+    """Reads the bodies of a robot's links.
+
+    Args:
+        robot: whose links they are.
+        packages: where mesh files are looked for.
+        without_body: names of links whose geometry is left out.
+        largest_link_m: a longer link is refused [m]; None: `LARGEST_LINK_M`, and a mesh that is out of proportion.
+        explain_with: which geometry says what cameras see of a link (`seen_surface`).
+
+    Raises:
+        MachineError: a link without a body that does not exist.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        packages: Packages,
+        without_body: Sequence[str],
+        largest_link_m: float | None,
+        explain_with: ExplainWith = "auto",
+    ) -> None:
+        self.robot, self.packages, self.report = robot, packages, robot.report
+        self.without_body, self.largest_link_m = frozenset(without_body), largest_link_m
+        self.explain_with = explain_with
+        self._files: dict[Path, MeshFile] = {}
+        self._lost: list[tuple[str, str]] = []
+        self._taken: set[str] = set()
+        self._axes: list[tuple[Shape, str]] = []
+        names = [link.name for link in robot.links]
+        for name in without_body:
+            if name not in names:
+                raise MachineError(
+                    f"{robot.path}: link without body {name!r} does not exist; links are {', '.join(names)}"
+                )
+
+    def links(self, order: Sequence[str], machine: Proportions) -> tuple[Link, ...]:
+        """All links with their triangles.
+
+        Args:
+            order: their names.
+            machine: what their sizes are compared with.
+
+        Raises:
+            MachineError: a mesh that is missing or cannot be read, with all links that lost one; a link of a size that
+                cannot be meant.
+        """
+        by_name = {link.name: link for link in self.robot.links}
+        read = {name: by_name[name].body(self.report) for name in order if name not in self.without_body}
+        self.packages.expect(shape.filename for shapes in read.values() for shape in shapes)
+        bodies = {name: self._surface(by_name[name], read.get(name, [])) for name in order}
+        # pictures after that, so that what they name changes nothing about where bodies are found
+        seen = {name: self._seen(by_name[name], read[name], bodies[name]) for name in order if read.get(name)}
+        links = tuple(Link(name, body.vertices, body.faces, seen.get(name)) for name, body in bodies.items())
+        if self._lost:
+            first, text = self._lost[0]
+            others = [name for name in dict.fromkeys(name for name, _ in self._lost) if name != first]
+            also = f"; links {', '.join(others)} lost theirs too" if others else ""
+            raise MachineError(f"{text}{also}; {WITHOUT_BODY}")
+        if self._axes:
+            shape, note = self._axes[0]
+            more = f" and {len(self._axes) - 1} files more say so too" if len(self._axes) > 1 else ""
+            self.report.warn(
+                "axes",
+                shape.element,
+                f"{note}{more}; axes are taken as they stand, as RViz and Gazebo take them",
+            )
+        _check_sizes(self.report, links, read, self.largest_link_m, machine)
+        return links
+
+    def _surface(self, link: RawLink, shapes: Sequence[Shape]) -> Surface:
+        """All of some shapes of a link in its frame; those that are lost are left out, which is noted."""
+        return together([surface for shape in shapes for surface in self._piece(link, shape)])
+
+    def _piece(self, link: RawLink, shape: Shape) -> list[Surface]:
+        """One shape; none if it is lost."""
+        mesh_file = None
+        if shape.kind == "mesh":
+            mesh_file = self._mesh(link, shape)
+            if mesh_file is None:
+                return []
+        points, triangles = triangles_of(shape, mesh_file)
+        what = f"{self.report.path}: link {link.name}: origin"
+        link_from_shape = nearest_rigid(shape.link_from_shape, what, MachineError)
+        return [Surface(points @ link_from_shape[:3, :3].T + link_from_shape[:3, 3], triangles)]
+
+    def _seen(self, link: RawLink, shapes: Sequence[Shape], body: Surface) -> Link | None:
+        """The link with what cameras see of it for a body, where that is another surface."""
+        if self.explain_with == "collision" or not link.visuals:
+            return None
+        lost, told, axes = len(self._lost), len(self.report.findings), len(self._axes)
+        visual = None
+        try:
+            picture = link.picture(self.report)
+            if not are_the_same(picture, shapes):
+                self.packages.expect(shape.filename for shape in picture)
+                visual = self._surface(link, picture)
+        except MachineError:
+            if self.explain_with == "visual":
+                raise
+        is_whole = len(self._lost) == lost
+        if self.explain_with == "auto":
+            # a picture that is lost, or that slipped, is no picture; the body explains
+            del self._lost[lost:], self.report.findings[told:], self._axes[axes:]
+        if visual is None or not is_whole:
+            return None
+        # each has been read
+        pieces = [piece for shape in shapes for piece in self._piece(link, shape)]
+        seen = seen_surface(visual, body, [piece.vertices for piece in pieces], self.explain_with)
+        return None if seen is None else Link(link.name, seen.vertices, seen.faces)
+
+    def _mesh(self, link: RawLink, shape: Shape) -> MeshFile | None:
+        """What a mesh file holds; None: it is lost, which is noted."""
+        found = self.packages.find(shape.filename)
+        if found.path is None:
+            self._lost.append(
+                (link.name, self.report.said(shape.element, f"mesh {shape.filename!r} {found.text}"))
+            )
+            return None
+        try:
+            if found.path not in self._files:
+                self._files[found.path] = read_mesh(found.path)
+                self._say(shape, found.text, self._files[found.path])
+        except MachineError as error:
+            self._lost.append((link.name, self.report.said(shape.element, str(error))))
+            return None
+        return self._files[found.path]
+
+    def _say(self, shape: Shape, taken: str, read: MeshFile) -> None:
+        """What a user should know of a mesh file: where it was found, and how it was read."""
+        if taken and taken not in self._taken:
+            self.report.warn("package", shape.element, taken)
+            self._taken.add(taken)
+        if read.note:
+            self._axes.append((shape, read.note))
+
+
+def _check_sizes(
+    report: Report,
+    links: Sequence[Link],
+    shapes: dict[str, list[Shape]],
+    largest_link_m: float | None,
+    machine: Proportions,
+) -> None:
+    """Refuses links that are too long, before anything is made of them.
+
+    Args:
+        report: names the place.
+        links: with their triangles.
+        shapes: of each link.
+        largest_link_m: as of `Bodies`.
+        machine: as of `Bodies.links`.
+    """
+    reach_m = machine.reach_m
+    by_name = {link.name: link for link in links}
+    lengths = {link.name: float(np.ptp(link.vertices, axis=0).max()) for link in links if link.has_geometry}
+    limit = LARGEST_LINK_M if largest_link_m is None else largest_link_m
+    for name, length in lengths.items():
+        of = next((shape for shape in shapes[name] if shape.kind == "mesh"), shapes[name][0]).element
+        unscaled = any(shape.kind == "mesh" and max(map(abs, shape.scale)) >= 1 for shape in shapes[name])
+        rest = max((other for at, other in lengths.items() if at != name), default=np.inf)
+        if length > limit:
+            raise report.error(
+                of, f"the link is {length:.4g} m long, at most {limit:g} m may be; {_meant(length, unscaled)}"
+            )
+        away = float(np.abs(by_name[name].vertices).max()) - length
+        if away > limit:
+            raise report.error(
+                of, f"lies {away:.4g} m from its link's own frame; is its origin in millimetres?"
+            )
+        odd = length > SUSPECT_LINK_M and 0.05 < reach_m < length / 3 and rest < length / 10
+        if odd and unscaled and largest_link_m is None and name in machine.moving:
+            raise report.error(
+                of,
+                f"the link is {length:.4g} m long, the next one {rest:.2g} m, and all joints reach {reach_m:.2g} m; "
+                f"{_meant(length, unscaled)}",
+            )
+        if length < SMALLEST_MESH_M and any(shape.kind == "mesh" for shape in shapes[name]):
+            report.warn("unit", of, f"the link is {1e3 * length:.2g} mm long; is its mesh scaled twice?")
+
+
+def _meant(length: float, unscaled: bool) -> str:
+    """What a length most likely is, and what to do."""
+    if unscaled:
+        factor = "0.001" if length / 1000 > 0.002 else "0.01"
+        return (
+            f'is its mesh in millimetres? scale="{factor} {factor} {factor}" makes it {length * float(factor):.3g} m; '
+            "if it is so long, say largest_link_m"
+        )
+    return "sizes are in metres; if it is so long, say largest_link_m"

@@ -1,0 +1,99 @@
+"""Triangles of a mesh file: STL, OBJ, PLY, GLB, glTF and Collada, in metres and axes of the file."""
+
+import json
+import struct
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from elbowroom.errors import MachineError
+from elbowroom.machine.collada import read_collada
+
+MESH_SUFFIXES = (".stl", ".obj", ".glb", ".gltf", ".ply", ".dae")
+"""Mesh files that can be read."""
+MAX_MESH_BYTES = 500_000_000
+"""A larger file is refused."""
+_GLTF_MAY_REQUIRE = {
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "KHR_texture_basisu",
+    "EXT_texture_webp",
+}
+"""Extensions of glTF that say nothing of where triangles lie, or that are read."""
+
+
+class MeshFile(NamedTuple):
+    """What a mesh file holds.
+
+    Args:
+        vertices: shape (n, 3) [m].
+        faces: shape (m, 3).
+        note: what a user should know of how it was read; "": nothing.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int64]
+    note: str = ""
+
+
+def read_mesh(path: Path) -> MeshFile:
+    """All triangles of a file, where its own scene puts them.
+
+    Raises:
+        MachineError: a file of an unknown kind, one that cannot be read, that holds no triangles, or of which a part
+            would be lost.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in MESH_SUFFIXES:
+        raise MachineError(f"mesh {path} is of an unknown kind; allowed are {', '.join(MESH_SUFFIXES)}")
+    size = path.stat().st_size
+    if size > MAX_MESH_BYTES:
+        raise MachineError(f"mesh {path} has {size:,} bytes; at most {MAX_MESH_BYTES:,} are read")
+    with path.open("rb") as file:
+        is_pointer = file.read(24).startswith(b"version https://git-lfs")
+    if is_pointer:
+        raise MachineError(
+            f"mesh {path} is a pointer of Git LFS, not the file; run git lfs pull where it comes from"
+        )
+    if suffix == ".dae":
+        scene = read_collada(path)
+        mesh = trimesh.Trimesh(scene.vertices, scene.faces)
+        note = f"{path.name} says {scene.up_axis}" if scene.up_axis != "Z_UP" else ""
+        return _checked(mesh, path, note)
+    if suffix in (".glb", ".gltf"):
+        _require_readable_gltf(path)
+    try:
+        loaded: object = trimesh.load(path, force="mesh")
+    except Exception as error:  # trimesh's readers raise whatever their formats' parsers raise
+        raise MachineError(f"mesh {path} cannot be read: {error}") from error
+    return _checked(loaded, path)
+
+
+def _checked(mesh: object, path: Path, note: str = "") -> MeshFile:
+    if not (isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and np.isfinite(mesh.vertices).all()):
+        raise MachineError(f"mesh {path} holds no triangles with finite corners")
+    return MeshFile(np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces), note)
+
+
+def _require_readable_gltf(path: Path) -> None:
+    """Refuses what would move or pack triangles in ways that are not read here."""
+    content = path.read_bytes()
+    try:
+        if content[:4] == b"glTF":
+            (length,) = struct.unpack("<I", content[12:16])
+            content = content[20 : 20 + length]
+        document = json.loads(content)
+        asked = set(document.get("extensionsRequired", ())) - _GLTF_MAY_REQUIRE
+        skins = bool(document.get("skins"))
+    except (struct.error, ValueError, AttributeError, TypeError) as error:
+        raise MachineError(f"mesh {path} cannot be read: no glTF: {error}") from error
+    if asked:
+        raise MachineError(
+            f"mesh {path} needs {', '.join(sorted(map(str, asked)))}, which is not read; export it without compression"
+        )
+    if skins:
+        raise MachineError(f"mesh {path} bends by a skin, which is not read; export it as it stands")

@@ -1,0 +1,166 @@
+"""Which links of a machine must not meet, and which touch as they are meant to."""
+
+from fnmatch import fnmatchcase
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.geometry.kept import kept
+from elbowroom.machine import Machine
+from elbowroom.machine.kernels.samples import cluster
+from elbowroom.machine.samples import COVER_IN_VOXELS, ROUNDING_M, BodySamples, body_samples
+from elbowroom.motion.field import fields_of
+from elbowroom.motion.kernels.field import Fields, slack_of
+from elbowroom.motion.kernels.meeting import RUN, Pairs, gaps_now
+from elbowroom.motion.kernels.mover import Skin
+
+SAMPLES = 16_000
+"""A machine's surface has about so many samples here; a robot of 1 m2 is covered to within 6 mm."""
+FINEST = 1 / 8
+"""A field's cells are no smaller than this share of the voxels that the samples would do for."""
+POSES, ALWAYS = 40, 0.95
+"""Links that lie in each other in this share of so many poses, drawn from the joints' limits, are meant to."""
+
+
+@kept
+def pairs_of(machine: Machine) -> Pairs:
+    """The pairs of a machine's links that must not meet; made once per machine, then kept.
+
+    Left out are links and the next one up the tree that has a body, those that the machine's `allowed_contacts` name,
+    those that lie in each other in all poses, and pairs of unchecked links.
+
+    Args:
+        machine: whose links.
+
+    Raises:
+        MachineError: as `body_samples`.
+    """
+    rows = [pair for pair in _may_not_touch(machine) if _can_move_apart(machine, *pair)]
+    edge = _voxel_for(machine)
+    skin, width = _skin(body_samples(machine, edge, unchecked=True))
+    fields = fields_of(machine.links, {row for pair in rows for row in pair}, FINEST * edge)
+    always = _always_touch(machine, _pairs(skin, width, fields, rows))
+    apart = [pair for pair, touch in zip(rows, always, strict=True) if not touch]
+    return _pairs(skin, width, fields, apart)
+
+
+def _voxel_for(machine: Machine) -> float:
+    """The edge of voxels for which a machine's surface takes about `SAMPLES` [m]."""
+    corners = np.concatenate([link.triangles for link in machine.links])
+    area = (
+        np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+        / 2
+    )
+    # flat parts take a sample for each square that fits into the circle which it covers
+    return float(np.sqrt(area / SAMPLES / 2) / COVER_IN_VOXELS)
+
+
+def _may_not_touch(machine: Machine) -> list[tuple[int, int]]:
+    bodies = [row for row, link in enumerate(machine.links) if link.has_geometry]
+    names = machine.link_names
+    return [
+        (a, b)
+        for a, b in combinations(bodies, 2)
+        if not (names[a] in machine.unchecked_links and names[b] in machine.unchecked_links)
+        and a not in (_next_body(machine, b),)
+        and not is_allowed(machine, names[a], names[b])
+    ]
+
+
+def is_allowed(machine: Machine, one: str, other: str) -> bool:
+    """Whether a machine's `allowed_contacts` let two links touch; names there may hold wildcards."""
+    return any(
+        (fnmatchcase(one, a) and fnmatchcase(other, b)) or (fnmatchcase(one, b) and fnmatchcase(other, a))
+        for a, b in machine.allowed_contacts
+    )
+
+
+def _next_body(machine: Machine, row: int) -> int:
+    """The next link up the tree that has a body; -1: none."""
+    parent = int(machine.tree.parent[row])
+    while parent >= 0 and not machine.links[parent].has_geometry:
+        parent = int(machine.tree.parent[parent])
+    return parent
+
+
+def _can_move_apart(machine: Machine, a: int, b: int) -> bool:
+    """Whether a joint lies between two links."""
+    return _stiff_with(machine, a) != _stiff_with(machine, b)
+
+
+def _stiff_with(machine: Machine, row: int) -> int:
+    """The first link up the tree that a link is fixed to."""
+    while machine.tree.column[row] < 0 and machine.tree.parent[row] >= 0:
+        row = int(machine.tree.parent[row])
+    return row
+
+
+def _pairs(skin: Skin, width: NDArray[np.float64], fields: Fields, rows: list[tuple[int, int]]) -> Pairs:
+    """The kernels' pairs: the link that is measured more finely gets the other's samples.
+
+    Args:
+        skin, width, fields: as of `Pairs`.
+        rows: of the links of each pair.
+    """
+    clusters = {row: np.flatnonzero(skin.link == row) for pair in rows for row in pair}
+    fine_last = [(a, b) if fields.edge[b] <= fields.edge[a] else (b, a) for a, b in rows]
+    members = [clusters[sampled] for sampled, _ in fine_last]
+    return Pairs(
+        skin=skin,
+        width=width,
+        fields=fields,
+        sampled=np.array([a for a, _ in fine_last], dtype=np.int64),
+        other=np.array([b for _, b in fine_last], dtype=np.int64),
+        pair=np.repeat(np.arange(len(rows)), [len(own) for own in members]),
+        cluster=np.concatenate([np.zeros(0, dtype=np.int64), *members]),
+    )
+
+
+def _skin(samples: BodySamples) -> tuple[Skin, NDArray[np.float64]]:
+    """The samples, sorted within their clusters into runs, without triangles; and how wide each run is."""
+    order = np.arange(len(samples.points))
+    for start, stop in zip(samples.cluster_start, samples.cluster_stop, strict=True):
+        within = np.empty(stop - start, dtype=np.int64)
+        cluster(samples.points[start:stop], RUN, within, np.empty(stop - start + 1, dtype=np.int64))
+        order[start:stop] = start + within
+    points = samples.points[order]
+    sizes = samples.cluster_stop - samples.cluster_start
+    place = np.arange(len(points)) - np.repeat(samples.cluster_start, sizes)
+    first = np.arange(len(points)) - place % RUN
+    width = np.zeros(len(points))
+    np.maximum.at(width, first, np.linalg.norm(points - points[first], axis=1) + ROUNDING_M)
+    none = np.zeros(0, dtype=np.int32)
+    skin = Skin(
+        points=points,
+        cluster_of=none,
+        start=samples.cluster_start,
+        stop=samples.cluster_stop,
+        link=samples.cluster_link,
+        centre=samples.cluster_centre,
+        radius=samples.cluster_radius,
+        cover=samples.cover_m,
+        off=samples.bound_m,
+        triangles=np.zeros((0, 3, 3)),
+        patches=none,
+        patch_start=np.zeros(0, dtype=np.int64),
+    )
+    return skin, width
+
+
+def _always_touch(machine: Machine, pairs: Pairs) -> NDArray[np.bool_]:
+    """Of each pair, whether its links lie in each other in all but a few poses."""
+    rng = np.random.default_rng(0)
+    joints = [machine.joint(name) for name in machine.joint_names]
+    lower = np.array([max(joint.lower, -np.pi) for joint in joints])
+    upper = np.array([min(joint.upper, np.pi) for joint in joints])
+    placed = machine.world_from_link_array(rng.uniform(lower, upper, (POSES, len(joints))))
+    touch = np.zeros(len(pairs.sampled))
+    gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
+    # what is told of a gap is less than the gap by this
+    told_less = pairs.skin.cover + slack_of(pairs.fields.edge[pairs.other])
+    for pose in placed:
+        gaps_now(pairs, pose, 0.0, gaps, least)
+        touch += least + told_less <= 0.0
+    always: NDArray[np.bool_] = touch >= ALWAYS * POSES
+    return always

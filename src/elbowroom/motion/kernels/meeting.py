@@ -1,0 +1,172 @@
+"""When a part of a machine first meets another: steps as long as their distance allows (conservative advancement)."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from elbowroom.motion.kernels.field import Fields, at_least
+from elbowroom.motion.kernels.mover import Mover, Skin, carried, place_at
+
+
+class Pairs(NamedTuple):
+    """Links that must not meet: the samples of one against the field of the other.
+
+    Fields:
+        skin: samples of all links in clusters, in these in runs that lie side by side; no triangles.
+        width: of the run that begins with each sample, how far its others are from it at most, (samples,) [m].
+        fields: of all links.
+        sampled, other: rows of the links, (pairs,).
+        pair, cluster: of each cluster of a sampled link, once for each pair, (members,), sorted by pair.
+    """
+
+    skin: Skin
+    width: np.ndarray
+    fields: Fields
+    sampled: np.ndarray
+    other: np.ndarray
+    pair: np.ndarray
+    cluster: np.ndarray
+
+
+RUN = 8
+"""So many samples of a cluster that lie side by side are passed over together."""
+
+
+class Nearness(NamedTuple):
+    """What counts as met, and how closely it is looked for.
+
+    Fields:
+        least: gaps below it [m];
+        more: by this less than now, where a gap is less already [m].
+        step: links are looked at again after having moved by this, or by their gap if that is more [m].
+        together: how far apart in travel two looks must be to be worth two placings, as a share of what is looked at.
+    """
+
+    least: float
+    more: float
+    step: float
+    together: float
+
+
+@njit
+def _relate(placed, one, other, other_from_one):
+    """Fills a transform (3, 4) from a link's frame to another's."""
+    a, b = placed[one], placed[other]
+    for i in range(3):
+        for j in range(3):
+            other_from_one[i, j] = b[0, i] * a[0, j] + b[1, i] * a[1, j] + b[2, i] * a[2, j]
+        x, y, z = a[0, 3] - b[0, 3], a[1, 3] - b[1, 3], a[2, 3] - b[2, 3]
+        other_from_one[i, 3] = b[0, i] * x + b[1, i] * y + b[2, i] * z
+
+
+@njit
+def _gap(pairs, member, other_from_one, fine_below, nearest):
+    """No more than the distance of a cluster's surface from the other link, and the sample that comes nearest.
+
+    Args:
+        member: of `pairs`.
+        other_from_one: (3, 4).
+        fine_below: where the cluster's ball is no nearer than this, it stands for its samples [m].
+        nearest: (1,), takes the sample, where samples were looked at.
+    """
+    skin, cluster, other = pairs.skin, pairs.cluster[member], pairs.other[pairs.pair[member]]
+    x, y, z = carried(other_from_one, skin.centre[cluster])
+    around = at_least(pairs.fields, other, x, y, z) - skin.radius[cluster] - skin.cover
+    if around > fine_below:
+        return around
+    least = math.inf
+    for first in range(skin.start[cluster], skin.stop[cluster], RUN):
+        stop = min(first + RUN, skin.stop[cluster])
+        for sample in range(first, stop):
+            x, y, z = carried(other_from_one, skin.points[sample])
+            away = at_least(pairs.fields, other, x, y, z)
+            if away < least:
+                least = away
+                nearest[0] = sample
+            # the others of a run are no nearer than its first less its width
+            if sample == first and away - pairs.width[first] > least:
+                break
+    return least - skin.cover
+
+
+@njit(cache=True, nogil=True)
+def gaps_now(pairs, placed, fine_below, gaps, least):
+    """Fills, for each member of the pairs, its gap, and for each pair the least of them [m].
+
+    Args:
+        pairs: what must not meet.
+        placed: where links are, (links, 4, 4).
+        fine_below: as of `_gap`; also gaps below it are exact as far as samples and fields are.
+        gaps: (members,).
+        least: (pairs,).
+    """
+    other_from_one, nearest, last = np.empty((3, 4)), np.zeros(1, dtype=np.int64), -1
+    least[:] = math.inf
+    for member in range(gaps.size):
+        pair = pairs.pair[member]
+        if pair != last:
+            _relate(placed, pairs.sampled[pair], pairs.other[pair], other_from_one)
+            last = pair
+        gaps[member] = _gap(pairs, member, other_from_one, fine_below, nearest)
+        least[pair] = min(least[pair], gaps[member])
+
+
+@njit(cache=True, nogil=True)
+def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, least, nearness):
+    """The travel up to which no pair meets, the member that meets after it, and the place of its nearest sample.
+
+    Links may meet in passing, between two looks, as far as they move between them.
+
+    Args:
+        tree, world_from_base, course: what moves, and how (`Mover`).
+        pairs: what must not meet.
+        length: travel that is looked at, at most the course's.
+        speeds: the most by which the distance of each member's surface from the other link changes per unit of travel,
+            (members,) [m]; 0: they move as one.
+        gaps, least: now, of `gaps_now`.
+        nearness: what counts as met.
+
+    Returns:
+        Travel at which the member that meets was last looked at before, the member or -1, place (3,) [m].
+    """
+    mover = Mover(tree, world_from_base, pairs.skin, course, speeds)
+    place, nearest = np.zeros(3), np.zeros(1, dtype=np.int64)
+    placed, other_from_one = np.empty((1, tree.parent.size, 4, 4)), np.empty((3, 4))
+    floors = np.where(least > nearness.least, 0.0, least - nearness.least - nearness.more)
+    # of the members that can meet: which, when to look again, and when they were looked at and had not met
+    active, until, before = np.empty(gaps.size, dtype=np.int64), np.empty(gaps.size), np.zeros(gaps.size)
+    count = 0
+    for member in range(gaps.size):
+        reach = gaps[member] - floors[pairs.pair[member]]
+        if speeds[member] > 0.0 and reach < speeds[member] * length:
+            active[count], until[count] = member, max(reach, nearness.step) / speeds[member]
+            count += 1
+    while count > 0:
+        travel = until[:count].min()
+        if travel >= length:
+            break
+        place_at(mover, travel, placed)
+        last, left = -1, 0
+        for n in range(count):
+            member, safe, known = active[n], until[n], before[n]
+            if safe <= travel + nearness.together * length:
+                pair = pairs.pair[member]
+                if pair != last:
+                    _relate(placed[0], pairs.sampled[pair], pairs.other[pair], other_from_one)
+                    last = pair
+                away = (
+                    _gap(pairs, member, other_from_one, floors[pair] + nearness.least, nearest) - floors[pair]
+                )
+                if away <= nearness.least:
+                    row = pairs.sampled[pair]
+                    place[0], place[1], place[2] = carried(placed[0, row], pairs.skin.points[nearest[0]])
+                    return known, member, place
+                safe, known = travel + max(away, nearness.step) / speeds[member], travel
+            # what stays apart on all of the way is not asked again
+            if safe < length:
+                active[left], until[left], before[left] = member, safe, known
+                left += 1
+        count = left
+    return length, -1, place

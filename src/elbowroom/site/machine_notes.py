@@ -1,0 +1,64 @@
+"""What a user should know of a site's machine: links without a body, slips that pass, wheels on the floor."""
+
+import numpy as np
+
+from elbowroom.machine import Machine
+from elbowroom.site.site import Site
+
+ON_THE_FLOOR_VOXELS = 1.0
+"""A wheel whose lowest point lies within so many voxels of the floor stands on it."""
+LEVEL = 0.1
+"""An axis that rises by less than this per metre is level."""
+MOST_NOTES = 8
+"""So many slips of a description are told one by one."""
+
+
+def notes_of_machine(machine: Machine, site: Site) -> tuple[str, ...]:
+    """A line for each.
+
+    Args:
+        machine: of the site.
+        site: the file.
+    """
+    notes = []
+    if machine.bodiless_links:
+        notes.append(
+            f"links that move without a body, by the site's word: {', '.join(machine.bodiless_links)}; "
+            "what they would hit is not noticed"
+        )
+    notes += [finding.text for finding in machine.findings[:MOST_NOTES]]
+    if len(machine.findings) > MOST_NOTES:
+        notes.append(f"and {len(machine.findings) - MOST_NOTES} slips more in the description of the machine")
+    standing = _wheels_on_the_floor(machine, site)
+    if standing:
+        notes.append(
+            f"wheels that touch the floor at rest: {', '.join(standing)}; the floor is a surface, so all "
+            "motions that move them stop; say that they stand on it (machine: stands_on)"
+        )
+    return tuple(notes)
+
+
+def _wheels_on_the_floor(machine: Machine, site: Site) -> list[str]:
+    """Checked links that move and turn without end about a level axis, and reach down to the floor at rest.
+
+    The floor is at height 0, or at the bottom of the grid.
+    """
+    grid = site.grid()
+    near = ON_THE_FLOOR_VOXELS * grid.voxel_size_m
+    floors = [height for height in (0.0, float(grid.lower_m[2])) if height >= grid.lower_m[2]]
+    asked = [joint for joint in machine.joint_names if joint in site.entry.joints]
+    moving = {name for joint in asked for name in machine.moved_links(joint)}
+    turning = {
+        joint.child: joint for joint in machine.joints if joint.unit == "rad" and np.isinf(joint.upper)
+    }
+    placed = machine.world_from_links(machine.nearest_to_zero())
+    standing = []
+    for link in machine.links:
+        if link.name not in moving & set(machine.checked_links) & set(turning):
+            continue
+        up = placed[link.name][2]
+        lowest = float((link.vertices @ up[:3] + up[3]).min())
+        is_level = abs(up[:3] @ turning[link.name].axis_in_joint) < LEVEL
+        if is_level and any(abs(lowest - floor) <= near for floor in floors):
+            standing.append(link.name)
+    return standing
