@@ -46,11 +46,8 @@ def found_at(
     setting = look_at_setting(grid, cameras)
     if any(finding.stops for finding in setting):
         return setting
-    images = look_at_images(grid, cameras, frames, units_m)
-    if any(finding.stops for finding in images):
-        # images that cannot be right contradict each other as well: that says nothing new
-        return (*setting, *images)
-    return (*setting, *images, *contradictions(cameras, frames, margin or Margin()))
+    found = (*setting, *look_at_images(grid, cameras, frames, units_m))
+    return (*found, *contradictions(cameras, frames, margin or Margin(), found))
 
 
 def require_plausible(

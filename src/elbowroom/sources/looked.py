@@ -30,12 +30,9 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
     if is_there and not any(finding.stops for finding in found):
         for group in _some(layout_of(site).moments()):
             frames = [image.read() for image in group]
-            found += look_at_images(
-                grid, cameras, frames, {image.camera.name: image.unit_m for image in group}
-            )
-            # images that cannot be right contradict each other as well: that says nothing new
-            if not any(finding.stops for finding in found):
-                found += contradictions(cameras, frames, site.margin())
+            units_m = {image.camera.name: image.unit_m for image in group}
+            of_values = look_at_images(grid, cameras, frames, units_m)
+            found += [*of_values, *contradictions(cameras, frames, site.margin(), of_values)]
     return once(found)
 
 
