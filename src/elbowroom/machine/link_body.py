@@ -126,7 +126,9 @@ class Bodies:
         points, triangles = triangles_of(shape, mesh_file)
         what = f"{self.report.path}: link {link.name}: origin"
         link_from_shape = nearest_rigid(shape.link_from_shape, what, MachineError)
-        return [Surface(points @ link_from_shape[:3, :3].T + link_from_shape[:3, 3], triangles)]
+        return [
+            Surface(points @ link_from_shape[:3, :3].T + link_from_shape[:3, 3], triangles.astype(np.int32))
+        ]
 
     def _seen(self, link: RawLink, shapes: Sequence[Shape], body: Surface) -> Link | None:
         """The link with what cameras see of it for a body, where that is another surface."""
