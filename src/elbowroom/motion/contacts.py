@@ -71,7 +71,12 @@ def _may_not_touch(machine: Machine) -> list[tuple[int, int]]:
 
 
 def is_allowed(machine: Machine, one: str, other: str) -> bool:
-    """Whether a machine's `allowed_contacts` let two links touch; names there may hold wildcards."""
+    """Whether a machine's `allowed_contacts` let two links touch; names there may hold wildcards.
+
+    Args:
+        machine: whose links.
+        one, other: their names, in either order.
+    """
     return any(
         (fnmatchcase(one, a) and fnmatchcase(other, b)) or (fnmatchcase(one, b) and fnmatchcase(other, a))
         for a, b in machine.allowed_contacts

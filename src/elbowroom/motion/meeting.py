@@ -11,6 +11,7 @@ from elbowroom.machine.kernels.body import FIXED
 from elbowroom.motion.contacts import pairs_of
 from elbowroom.motion.course import Way
 from elbowroom.motion.kernels.meeting import Pairs, Steps, first_meeting, gaps_now
+from elbowroom.motion.kernels.mover import Mover
 from elbowroom.motion.sweep import cluster_speeds
 
 STEP_IN_COVERS = 2.0
@@ -69,17 +70,15 @@ class Meeting:
         speeds = cluster_speeds(self.machine, self.pairs.skin, self.world_from_link, way)
         by_link = np.zeros(len(self.machine.links))
         np.maximum.at(by_link, self.pairs.skin.link, speeds)
-        travel, member, place = first_meeting(
+        mover = Mover(
             self.machine.tree,
             self.machine.world_from_base,
-            self.pairs,
+            self.pairs.skin,
             way.course,
-            length,
             self._closing(speeds, by_link, way),
-            self.gaps,
-            self.least,
-            Steps(STEP_IN_COVERS * self.pairs.skin.cover, TOGETHER),
         )
+        steps = Steps(STEP_IN_COVERS * self.pairs.skin.cover, TOGETHER)
+        travel, member, place = first_meeting(mover, self.pairs, length, self.gaps, self.least, steps)
         if member < 0:
             return None
         pair = self.pairs.pair[member]
