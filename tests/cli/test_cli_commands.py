@@ -133,10 +133,34 @@ def test_ctrl_c_ends_the_monitor_with_its_summary(room, tmp_path, capsys, monkey
     assert rows_of(out)[-1]["cycles"] == 1
 
 
-def test_a_room_without_a_machine_has_nothing_to_monitor(room, capsys):
-    room.write_text(SMALL_ROOM[: SMALL_ROOM.index("machine:")])
-    assert run(["monitor", str(room)]) == 2
-    assert "without a machine there is no motion to check" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("end", "words"), [("machine:", "no machine: no motion is judged"), ("joints:", "no joint of")]
+)
+def test_where_no_motion_can_be_asked_monitor_says_what_is_free(room, tmp_path, capsys, end, words):
+    room.write_text(SMALL_ROOM[: SMALL_ROOM.index(end)])
+    out = tmp_path / "out.json"
+    assert run(["monitor", str(room), "--seconds", "0.2", "--json", str(out), "--out", str(tmp_path)]) == 0
+    text = capsys.readouterr().out
+    assert words in text and "% of the watched box" in text and "movement" not in text
+    rows = rows_of(out)
+    assert not [row for row in rows if row["kind"] == "verdict"]
+    for row in (row for row in rows if row["kind"] == "cycle"):
+        assert row["level"] == "stop" and row["fault"] is None
+        assert row["free_pct"] + row["surface_pct"] + row["unseen_pct"] == pytest.approx(100)
+    assert list(tmp_path.glob("*.png"))
+
+
+def test_the_noise_and_size_of_a_simulated_rooms_cameras_are_the_runs(room, capsys):
+    argv = ["monitor", str(room), "--noise", "tof", "--resolution", "40x30", "--seconds", "0"]
+    assert run(argv) == 0
+    assert "5 cameras 40x30" in capsys.readouterr().out
+    assert run([*argv[:3], "sonar", "--seconds", "0"]) == 2
+    assert "--noise: 'sonar' is unknown, allowed are exact," in capsys.readouterr().err
+
+
+def test_noise_of_real_cameras_is_the_sites_to_say(recording, capsys):
+    assert run(["monitor", str(recording), "--noise", "tof"]) == 2
+    assert "--noise: for simulated rooms" in capsys.readouterr().err
 
 
 def test_reconstruct_writes_arrays_points_and_pictures(recording, tmp_path, capsys):

@@ -79,6 +79,27 @@ def test_a_joint_limit_caps_the_travel_and_not_the_level(arm):
     assert (verdict.free_travel, verdict.level) == (0.0, Level.CLEAR)
 
 
+@pytest.mark.parametrize("over", [1e-7, 1e-5, 1e-3, 4.9e-3])
+def test_beyond_a_limit_by_little_nothing_leads_farther_out_and_all_of_it_back_in(arm, over):
+    beyond = HOME | {"slide": 0.5 + over}
+    space = space_with(arm, joints=beyond)
+    out = check_motion(space, arm, beyond, Motion("slide", 1, 0.1))
+    assert (out.free_travel, out.level) == (0.0, Level.CLEAR)
+    back = check_motion(space, arm, beyond, Motion("slide", -1, 0.1))
+    assert back.free_travel == pytest.approx(Motion("slide", -1, 0.1).looked_at)
+    inside = check_motion(space_with(arm), arm, HOME, Motion("slide", -1, 0.1))
+    assert back.level is inside.level
+    assert check_motion(space, arm, beyond, JointPath([{"slide": 0.4}], 0.05)).level is Level.CLEAR
+    with pytest.raises(MachineError, match=r"slide.*out of its limits"):
+        check_motion(space, arm, beyond, JointPath([{"slide": 0.5 + 2 * over + 1e-5}], 0.05))
+
+
+def test_whole_joint_states_are_taken_and_names_of_other_machines_change_nothing(arm):
+    alone = check_motion(space_with(arm), arm, HOME, Motion("turn", 1, 0.1))
+    with_others = check_motion(space_with(arm), arm, HOME | {"elbow_of_another": 1.0}, Motion("turn", 1, 0.1))
+    assert alone.row() == with_others.row()
+
+
 def test_only_the_links_that_a_joint_carries_count(arm):
     below_the_cart = touched_by_box(GRID, (0.21, -0.1, 0.25), (0.4, 0.1, 0.35))
     space = space_with(arm, below_the_cart)

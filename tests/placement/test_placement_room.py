@@ -294,3 +294,21 @@ def test_meshes_that_cannot_be_read_are_one_line(load, tmp_path):
 def test_the_thesis_room_is_a_valid_site_without_cameras():
     site = Site.load(THESIS_ROOM)
     assert site.grid().size == 320_000 and not site.lists_cameras
+
+
+def test_a_mesh_beside_the_grid_and_one_that_is_not_closed_are_said(load, tmp_path):
+    box = trimesh.creation.box(bounds=[[10, 10, 0], [11, 11, 1]])
+    box.submesh([np.arange(11)], append=True).export(tmp_path / "room.ply")
+    room = FixedRoom.of_site(load(SITE[: SITE.index("room:")] + "room: {mesh: room.ply}\nplacement: {}\n"))
+    open_, beside = room.notes
+    assert "'room' not closed" in open_ and "lies beside the grid, from [10.0, 10.0, 0.0]" in beside
+
+
+def test_a_mesh_in_millimetres_is_refused_and_read_by_its_unit(load, tmp_path):
+    trimesh.creation.box(bounds=[[-500, -500, 0], [500, 500, 1000]]).export(tmp_path / "room.stl")
+    text = SITE[: SITE.index("room:")] + "room: {mesh: room.stl}\nplacement: {}\n"
+    with pytest.raises(SiteError, match=r"room\.mesh: .*'room' is 1,000 m long; .* mesh_unit_m: 0\.001"):
+        FixedRoom.of_site(load(text))
+    room = FixedRoom.of_site(load(text.replace("room.stl", "room.stl, mesh_unit_m: 0.001")))
+    np.testing.assert_allclose(room.walls_m, [(-0.5, -0.5, 0), (0.5, 0.5, 1)], atol=1e-6)
+    assert [solid.name for solid in room.solids] == ["room"] and not room.notes

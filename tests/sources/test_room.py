@@ -3,8 +3,10 @@
 import pytest
 
 from elbowroom.errors import InputError
+from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.site import Site
 from elbowroom.sources import Recorded, open_room
+from elbowroom.sources.cameras import with_noise
 from elbowroom.sources.simulated import Simulated
 
 
@@ -55,3 +57,21 @@ def test_what_does_not_go_with_the_room_is_refused_by_the_name_of_its_argument(r
 def test_a_room_without_a_machine_has_no_motions(recorded):
     with pytest.raises(InputError, match="without a machine there is no motion to check"):
         open_room(recorded).machine_and_motions()
+    assert "no machine" in open_room(recorded).unasked
+
+
+def test_cameras_that_a_simulated_room_lists_take_another_size_and_noise(folder, plain):
+    plain["simulated"] = {"seed": 1}
+    site = with_noise(Site.load(folder.write(plain)), "tof")
+    room = open_room(site, resolution=(16, 12))
+    listed = site.cameras()
+    for camera, before in zip(room.cameras, listed, strict=True):
+        assert camera.noise == NOISE_PRESETS["tof"] and camera.flying_pixels
+        assert (camera.width, camera.height) == (2 * before.width, 2 * before.height)
+        # the same corner of the image sees the same direction
+        for a, b in ((camera, before),):
+            x, y = a.intrinsics.normalised(a.width, a.height)
+            u, v = b.intrinsics.normalised(b.width, b.height)
+            assert x[:2].mean() == pytest.approx(u[0]) and y[-2:].mean() == pytest.approx(v[-1])
+    with pytest.raises(InputError, match="lists its cameras"):
+        open_room(site, cameras=3)

@@ -31,6 +31,7 @@ app.command(
     epilog=_example(
         "elbowroom monitor",
         "elbowroom monitor --voxel-size 0.02 --seconds 20 --json run.json --out pictures",
+        "elbowroom monitor --noise tof --resolution 640x480",
         "elbowroom monitor --knock cam03:1deg@5",
         "elbowroom monitor my_room.yaml",
     )
@@ -41,9 +42,11 @@ app.command(
         "elbowroom reconstruct my_room.yaml --out result --voxel-size 0.02 --joints long=0.1,larm=12deg",
     )
 )(reconstruct)
-app.command(epilog=_example("elbowroom check my_room.yaml --joint larm --direction +"))(check)
+app.command(epilog=_example("elbowroom check my_room.yaml --joint larm --direction + --out seen"))(check)
 app.command(
     epilog=_example(
+        "elbowroom simulate my_cell.yaml --moving person",
+        "elbowroom simulate my_cell.yaml --room my.glb --moments 50 --rate 10 --out recorded",
         "elbowroom simulate --room setup1 --out room1",
         "elbowroom simulate --room my.glb --out my_room --noise tof --joints long=0.1",
     )

@@ -1,5 +1,6 @@
 """`elbowroom check`: one motion, one verdict, in words."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -26,9 +27,20 @@ def check(
     detail: Detail = None,
     voxel_size: VoxelSize = None,
     joints: JointsText = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Write, for each camera, the part of its image about the voxel that ends the way, drawn in.",
+        ),
+    ] = None,
     json: JsonFile = None,
 ) -> None:
-    """Say how far one joint may move, what ends its way, and what each camera saw there."""
+    """Say how far one joint may move, what ends its way, and what each camera saw there.
+
+    Of each camera that does not see through: what it measured, where the voxel
+    lies, how far its depth is not trusted there; and what would change it.
+    """
     way, positions = parse_direction(direction), parse_joints(joints)
 
     from elbowroom.cli.check_run import ask
@@ -37,4 +49,4 @@ def check(
 
     with options_named(joints="--joints", moment="--moment"):
         room = open_room(Site.load(site), voxel_size_m=voxel_size, rule=rule, detail=detail, joints=positions)
-        ask(room, joint, way, moment, json)
+        ask(room, (joint, way), moment, json, out)

@@ -1,5 +1,6 @@
 """The run of `elbowroom check`: a moment, a motion, a verdict and its reasons."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from rich.console import Console
@@ -7,28 +8,36 @@ from rich.console import Console
 from elbowroom.cli.progress import Steps
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
+from elbowroom.machine import Machine
 from elbowroom.monitor.start.compiling import compile_kernels
+from elbowroom.monitor.why.why import Why, why
 from elbowroom.motion import Cause, Motion, Verdict, check_motion
 from elbowroom.reconstruct import FreeSpace, warm_up
+from elbowroom.reconstruct.point_report import Sight
+from elbowroom.reconstruct.source import ImageSource
 from elbowroom.sources import Room
+from elbowroom.view.draw.voxel_crop import save_voxel_crops
 from elbowroom.view.screen.words import NOT_CERTIFIED, travel_text
 
 
-def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | None) -> None:
+def ask(
+    room: Room, asked: tuple[str, int], moment: int, json_file: Path | None, out: Path | None = None
+) -> None:
     """Checks one motion and prints the verdict.
 
     Args:
         room: with a machine.
-        joint, direction: of the motion; +1 or -1.
+        asked: joint and direction of the motion; +1 or -1.
         moment: number of the moment, from 0.
         json_file: where the row goes; None: nowhere.
+        out: where pictures of the voxel that ends the way go; None: nowhere.
 
     Raises:
         InputError: no machine, no such joint, no speed for it, or no such moment.
     """
     machine, motions = room.machine_and_motions()
-    machine.joint(joint)
-    motion = next((m for m in motions if (m.joint, m.direction) == (joint, direction)), None)
+    joint = machine.joint(asked[0]).name
+    motion = next((m for m in motions if (m.joint, m.direction) == asked), None)
     if motion is None:
         known = ", ".join(dict.fromkeys(m.joint for m in motions))
         raise InputError(f"{room.site.path}: joints.{joint}: no speed; joints with a speed are {known}")
@@ -36,7 +45,7 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
         console = Console(stderr=True)
         compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
         with Steps(console, 4) as steps:
-            steps.begin("compiling kernels")
+            steps.begin("loading kernels")
             warm_up(machine, [room.terms.detail])
             steps.begin("reading images")
             snapshot = room.snapshot(moment)
@@ -44,7 +53,9 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
             space = room.space_of(snapshot)
             steps.begin("checking the motion")
             verdict = check_motion(space, machine, snapshot.joints or {}, motion)
-        reasons = _reasons(space, verdict)
+        found = why(space, machine, snapshot.joints or {}, verdict)
+        reasons = _reasons(found, verdict)
+        pictures = _pictures(space, found, out)
         add(
             {
                 "site": room.site.name,
@@ -55,6 +66,10 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
                 "joints": snapshot.joints,
                 **verdict.row(),
                 "explanation": reasons,
+                "seen": [] if found.report is None else [seen.row() for seen in found.report.cameras],
+                "outside_m": found.outside_m,
+                "advice": list(found.advice),
+                "pictures": [str(path) for path in pictures],
                 "unchecked_links": machine.unchecked_links,
                 "bodiless_links": machine.bodiless_links,
                 "allowances": machine.allowances,
@@ -68,15 +83,22 @@ def ask(room: Room, joint: str, direction: int, moment: int, json_file: Path | N
         print(f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
     if verdict.overridable:
         print("An operator who holds on may drive on at low speed, since nobody sees that space.")
-    for line in reasons:
+    for line in [*reasons, *_numbers(found), *map(_sentence, found.advice)]:
         print(line)
-    if machine.unchecked_links:
-        print(f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}.")
-    if machine.bodiless_links:
-        print(f"Without a body, by the site's word: {', '.join(machine.bodiless_links)}.")
-    for line in machine.allowances:
-        print(f"{line}.")
+    if pictures:
+        print(f"{len(pictures)} pictures, one of each camera that has the voxel in its image, in {out}")
+    for line in _by_the_sites_word(machine):
+        print(line)
     print(NOT_CERTIFIED)
+
+
+def _by_the_sites_word(machine: Machine) -> Iterator[str]:
+    """What is not looked at, as every summary says it."""
+    if machine.unchecked_links:
+        yield f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}."
+    if machine.bodiless_links:
+        yield f"Without a body, by the site's word: {', '.join(machine.bodiless_links)}."
+    yield from (f"{line}." for line in machine.allowances)
 
 
 def _travel(motion: Motion, verdict: Verdict) -> str:
@@ -87,7 +109,17 @@ def _travel(motion: Motion, verdict: Verdict) -> str:
     return f"Free travel: {free} of {looked_at} looked at; it brakes within {brakes}."
 
 
-def _reasons(space: FreeSpace, verdict: Verdict) -> list[str]:
+def _numbers(found: Why) -> list[str]:
+    """A line for each camera that has the voxel in its image and does not see through it."""
+    seen = () if found.report is None else found.report.cameras
+    return [f"  {one}" for one in seen if one.reach_m is not None and one.sight is not Sight.THROUGH]
+
+
+def _sentence(words: str) -> str:
+    return f"{words[0].upper()}{words[1:]}."
+
+
+def _reasons(found: Why, verdict: Verdict) -> list[str]:
     """What each camera saw at the place that ends the travel, a line each; nothing if that lies nowhere.
 
     Of the machine itself: what to do if its links are meant to touch.
@@ -97,6 +129,11 @@ def _reasons(space: FreeSpace, verdict: Verdict) -> list[str]:
             f"{verdict.link} and {verdict.other_link} may be meant to touch: then name both in the site's machine: "
             "allowed_contacts."
         ]
-    if verdict.place_in_world is None or not space.grid.contains(verdict.place_in_world):
+    return [] if found.report is None else str(found.report).splitlines()
+
+
+def _pictures(space: FreeSpace, found: Why, out: Path | None) -> list[Path]:
+    """What each camera saw about the voxel; none where nothing is asked for, or where the travel ends nowhere."""
+    if out is None or found.report is None or not isinstance(space.source, ImageSource):
         return []
-    return str(space.explain(verdict.place_in_world)).splitlines()
+    return save_voxel_crops(out, space.source, space.grid, found.report)

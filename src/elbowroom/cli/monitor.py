@@ -17,8 +17,10 @@ from elbowroom.cli.options import (
     parse_resolution,
     use_threads,
 )
+from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
+    from elbowroom.site import Site
     from elbowroom.sources import Room
 
 
@@ -36,6 +38,12 @@ def monitor(
     ] = None,
     resolution: Annotated[
         str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
+    ] = None,
+    noise: Annotated[
+        str | None,
+        typer.Option(
+            help="Of a simulated room's cameras: exact, or a sensor such as tof, realsense_d435. Default: the site's."
+        ),
     ] = None,
     rule: Rule = None,
     detail: Detail = None,
@@ -57,7 +65,9 @@ def monitor(
     """Watch a room and say, per joint and direction, how far the machine may go.
 
     Without SITE: a simulated intervention room, where people walk and a C-arm
-    moves. A site with a recording plays it once. Ctrl-C ends with a summary.
+    moves, before perfect cameras; --noise tof --resolution 640x480 shows it with
+    real ones. A site with a recording plays it once. Without a machine, or without
+    speeds of its joints, it says what is free. Ctrl-C ends with a summary.
 
     Cameras that were commissioned (`elbowroom calibrate commission`) are watched:
     one that moved, or a machine that is not where its joints say, stops every
@@ -73,9 +83,12 @@ def monitor(
     from elbowroom.site import Site
     from elbowroom.sources import open_room
 
-    with options_named(joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock"):
+    with options_named(
+        joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock", noise="--noise"
+    ):
+        given = Site.simulated_room() if site is None else Site.load(site)
         room = open_room(
-            Site.simulated_room() if site is None else Site.load(site),
+            given if noise is None else _noisy(given, noise),
             voxel_size_m=voxel_size,
             rule=rule,
             detail=detail,
@@ -85,6 +98,21 @@ def monitor(
             knocks=knock or (),
         )
         _watch(room, seconds, json, out)
+
+
+def _noisy(site: "Site", noise: str) -> "Site":
+    """A simulated room with other cameras' noise.
+
+    Raises:
+        InputError: the room is not simulated, or there is no such noise.
+    """
+    from elbowroom.sources.cameras import with_noise
+
+    if site.simulated is None:
+        raise InputError(
+            f"noise: for simulated rooms, and {site.path} is none: it says what noise its cameras have"
+        )
+    return with_noise(site, noise)
 
 
 def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None) -> None:
@@ -102,13 +130,20 @@ def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir:
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
-    room.machine_and_motions()  # said before anything is compiled
+    unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
     with json_rows(json_file) as add, TerminalView(console) as view:
         for note in (*notes_of(room.site), *(finding.text for finding in time_findings(room.site))):
             view.note(note)
-        compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
+        if unasked is not None:
+            view.note(unasked)
+        compile_kernels(
+            console,
+            machine=room.machine is not None,
+            motion=unasked is None,
+            simulator=room.site.simulated is not None,
+        )
         with Steps(console, 4) as steps:
             loop = started(room, steps.begin)
         if loop.checks.unwatched is not None:

@@ -6,6 +6,9 @@ from types import TracebackType
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+MANY = 40
+"""So many pieces of a step are counted where there is no terminal."""
+
 
 class Steps:
     """Shows which step of how many is being done. Use it as a context.
@@ -51,6 +54,16 @@ class Steps:
         if what not in self._begun:
             self._begun.add(what)
             self.begin(what)
+
+    def counted(self, done: int, of: int) -> None:
+        """Says how much of the step is done: beside it on a terminal, elsewhere a line for every quarter of much."""
+        if self._current is None:
+            return
+        words = f"{self._current[0]}: {done} of {of}"
+        if self._bar and self._task is not None:
+            self._bar.update(self._task, description=words)
+        elif of >= MANY and done * 4 // of > (done - 1) * 4 // of:
+            self.console.print(words, highlight=False)
 
     def _end_step(self) -> None:
         if self._current is not None:

@@ -1,60 +1,97 @@
 """`elbowroom simulate`: depth images of a modelled room, as a recording that the other commands read."""
 
-from pathlib import Path
-from typing import Annotated
-
-import typer
-
+from elbowroom.cli import simulate_options as options
 from elbowroom.cli.options import JointsText, JsonFile, parse_joints
-from elbowroom.cli.simulate_options import ImageSize, Noise
+from elbowroom.errors import InputError
+
+ONLY_WITHOUT_SITE = "with SITE, it is the site's"
+USUAL_MOMENTS = 20
+"""With SITE."""
 
 
 def simulate(
-    room: Annotated[
-        str,
-        typer.Option("--room", metavar="GLB", help="A room of closed solids as GLB, or setup1 to setup6."),
-    ],
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for images and site.yaml.")],
-    cameras: Annotated[int, typer.Option(min=1, max=200, help="How many, along the walls of the box.")] = 21,
-    size: ImageSize = "vga",
-    height: Annotated[
-        list[float] | None,
-        typer.Option(metavar="METRES", help="Of the cameras; several: in turn. Default: 2.4 and 0.4."),
-    ] = None,
-    noise: Noise = "exact",
-    box: Annotated[
-        str,
-        typer.Option(
-            metavar="X,Y,Z,X,Y,Z", help="The watched box: its least and greatest corner, in metres."
-        ),
-    ] = "-2,-2,0,2,2,2.5",
-    voxel_size: Annotated[
-        float, typer.Option("--voxel-size", metavar="METRES", help="Edge of a voxel in the site file.")
-    ] = 0.05,
-    machine: Annotated[bool, typer.Option(help="With the ceiling C-arm in the room.")] = True,
+    site: options.OptionalSite = None,
+    room: options.RoomFile = None,
+    out: options.OutFolder = None,
+    up: options.MeshUp = None,
+    unit: options.MeshUnit = None,
+    moments: options.Moments = None,
+    rate: options.Rate = 10.0,
+    moving: options.Moving = None,
+    still: options.Still = False,
     joints: JointsText = None,
+    noise: options.OptionalNoise = None,
+    seed: options.Seed = 0,
+    truth: options.Truth = False,
+    cameras: options.WallCameras = None,
+    size: options.WallSize = None,
+    height: options.WallHeights = None,
+    box: options.WallBox = None,
+    voxel_size: options.WallVoxel = None,
+    machine: options.WallMachine = None,
     json: JsonFile = None,
 ) -> None:
     """Look at a modelled room with simulated depth cameras.
 
-    Objects of the GLB are solids, in metres. Writes a recording and a site file:
-    go on with elbowroom reconstruct DIR/site.yaml, check, or monitor. Writes
-    colour.png and depth.png, too: the room from above, and one camera's image.
+    With SITE, the room is its key room, or --room: what its own cameras would see
+    of it and of its own machine, as a recording in its own units. Go on with
+    elbowroom site check SITE, reconstruct, check, or monitor.
+
+    Without SITE, objects of the file (.glb, .gltf, .dae, .obj, .ply, .stl) are
+    closed solids. Writes a recording and a site file: go on with elbowroom
+    reconstruct DIR/site.yaml, check, or monitor.
+    With --out, writes colour.png and depth.png, too: the room from above, and one
+    camera's image.
+
+    Ctrl-C ends with the moments that are there.
     """
+    from elbowroom.cli.simulate_mesh import RoomFile
+    from elbowroom.cli.simulate_run import Asked, WallOptions, simulate_site, simulate_walls
+
     positions = parse_joints(joints)
-
-    from elbowroom.cli.simulate_run import RoomOptions, simulate_room
-
-    options = RoomOptions(
-        room=room,
+    walls = {
+        "--cameras": cameras,
+        "--size": size,
+        "--height": height,
+        "--box": box,
+        "--voxel-size": voxel_size,
+    }
+    asked = Asked(
+        room=None if room is None else RoomFile(room, up, unit),
         out=out,
-        cameras=cameras,
-        size=size,
-        heights_m=tuple(height or (2.4, 0.4)),
-        noise=noise,
-        box=box,
-        voxel_size_m=voxel_size,
-        machine=machine,
+        moments=moments or (1 if site is None else USUAL_MOMENTS),
+        rate_hz=rate,
+        people=_people(moving or []),
+        still=still,
         joints=positions,
+        noise=noise,
+        seed=seed,
+        truth=truth,
     )
-    simulate_room(options, json)
+    if site is not None:
+        given = [name for name, value in (walls | {"--machine": machine}).items() if value is not None]
+        if given:
+            raise InputError(f"{given[0]}: {ONLY_WITHOUT_SITE}; leave it out")
+        simulate_site(site, asked, json)
+        return
+    if room is None or out is None:
+        missing = "--room" if room is None else "--out"
+        raise InputError(f"{missing}: missing; name it, or a SITE that says it")
+    walled = WallOptions(
+        cameras=cameras or 21,
+        size=size or "vga",
+        heights_m=tuple(height or (2.4, 0.4)),
+        box=box or "-2,-2,0,2,2,2.5",
+        voxel_size_m=voxel_size or 0.05,
+        machine=machine is not False,
+    )
+    simulate_walls(asked, walled, json)
+
+
+def _people(moving: list[str]) -> int:
+    for who in moving:
+        if who != "person":
+            raise InputError(
+                f"--moving: {who!r} does not move here; allowed is person, once for each of them"
+            )
+    return len(moving)

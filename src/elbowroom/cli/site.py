@@ -8,6 +8,7 @@ import typer
 
 from elbowroom.cli.options import JsonFile, SitePath
 from elbowroom.cli.site_mask import mask
+from elbowroom.cli.site_moment import pose_to_draw, tight_notes
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
@@ -51,7 +52,7 @@ def check(
         typer.Option(
             "--out",
             metavar="PNG",
-            help="Draw cameras, grid and the machine, its joints at zero, into this picture.",
+            help="Draw cameras, grid and the machine into this picture: at its first recorded pose, else at zero.",
         ),
     ] = None,
     json_file: JsonFile = None,
@@ -61,6 +62,10 @@ def check(
     Images of a few moments are looked at: units, numbers that stand for no return,
     lenses and poses that cannot be meant so. Exits with 1 where such a finding
     would stop every motion.
+
+    A recording that is not there yet is a note. Where there is one, or a key room,
+    the motions are tried at its first moment: a link beside which a surface lies
+    within the cameras' own margins is named, since it would be stopped for ever.
     """
     from elbowroom.site import Site
 
@@ -77,7 +82,7 @@ def check(
 
 
 def _findings(site: "Site") -> dict[str, Any]:
-    """All that can be said of a site without carving; raises on whatever is wrong with it."""
+    """All that can be said of a site; raises on whatever is wrong with it."""
     from elbowroom.site import memory_of
     from elbowroom.site.notes import notes_of
     from elbowroom.sources import (
@@ -94,7 +99,10 @@ def _findings(site: "Site") -> dict[str, Any]:
     motions = site.motions(machine) if machine is not None else ()
     moments = images = times = None
     notes = list(notes_of(site))
-    if site.entry.recording is not None:
+    absent = site.missing_recording
+    if absent is not None:
+        notes.append(f"{absent}, or have one made of a modelled room: elbowroom simulate {site.path}")
+    elif site.entry.recording is not None:
         moments, images = check_images(site)
         notes += [
             f"camera {name} has no image: it disputes all that it looks at" for name in silent_cameras(site)
@@ -102,6 +110,7 @@ def _findings(site: "Site") -> dict[str, Any]:
         notes += [finding.text for finding in time_findings(site)]
         meeting = times_of(site)
         times = None if meeting is None else times_row(meeting)
+    notes += tight_notes(site)
     return {
         "site": str(site.path),
         "name": site.name,
@@ -174,6 +183,6 @@ def _draw(site: "Site", out: Path) -> None:
     from elbowroom.view.draw.site import draw_site
 
     machine = site.machine()
-    triangles = None if machine is None else triangles_of(machine, machine.nearest_to_zero())
+    triangles = None if machine is None else triangles_of(machine, pose_to_draw(site, machine))
     with whole_file(out) as unfinished:
         draw_site(site.name, site.grid(), cameras_of(site), triangles).save(unfinished, format="PNG")

@@ -99,19 +99,7 @@ class Cycle:
 
     def _late(self, snapshot: Snapshot, begun_ns: int) -> str | None:
         """What is said where a frame that was used has come of age since its pass began."""
-        limit_ns = self.terms.max_age_ns
-        if limit_ns is None:
-            return None
-        age_ms = snapshot.fresh(limit_ns).oldest_age_ms
-        if age_ms is None:
-            return None
-        took_ms = (self.clock_ns() - begun_ns) / 1e6
-        if age_ms + took_ms <= limit_ns / 1e6:
-            return None
-        return (
-            f"the oldest image is {age_ms + took_ms:.0f} ms old when the verdicts are out, at most "
-            f"{limit_ns / 1e6:g} ms are allowed (max_frame_age_ms); the pass took {took_ms:.0f} ms"
-        )
+        return lateness(snapshot, self.terms.max_age_ns, (self.clock_ns() - begun_ns) / 1e6)
 
     def _space_of(self, snapshot: Snapshot, stage_ms: dict[str, float]) -> FreeSpace:
         reach = None
@@ -134,6 +122,25 @@ class Cycle:
     def _stop(self, motion: Motion, cause: Cause = Cause.FAULT) -> Verdict:
         units = {joint.name: joint.unit for joint in self.machine.joints}
         return Verdict.stop(motion, units.get(motion.joint, "m or rad"), cause)
+
+
+def lateness(snapshot: Snapshot, limit_ns: int | None, took_ms: float) -> str | None:
+    """What is said where a frame that was used has come of age since its pass began; None: none has.
+
+    Args:
+        snapshot: of the pass.
+        limit_ns: from which age on a frame counts no more [ns]; None: there is no limit.
+        took_ms: how long the pass took [ms].
+    """
+    if limit_ns is None:
+        return None
+    age_ms = snapshot.fresh(limit_ns).oldest_age_ms
+    if age_ms is None or age_ms + took_ms <= limit_ns / 1e6:
+        return None
+    return (
+        f"the oldest image is {age_ms + took_ms:.0f} ms old when the verdicts are out, at most "
+        f"{limit_ns / 1e6:g} ms are allowed (max_frame_age_ms); the pass took {took_ms:.0f} ms"
+    )
 
 
 def _usable(verdicts: Sequence[Verdict]) -> dict[Motion, Verdict]:

@@ -9,6 +9,7 @@ from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.face import Face, Pass
 from elbowroom.monitor.health.checks import Checks
 from elbowroom.monitor.result import CycleResult
+from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.sensing import Snapshot
 from elbowroom.sources import Room, Source
 from elbowroom.sources.pace import SLACK_S
@@ -21,14 +22,14 @@ class Loop:
     Args:
         room: whose source gives the snapshots.
         checks: look after cameras and machine.
-        cycle: judges.
+        cycle: judges; or, where no motion is asked, sees what is free.
         pace: called with each snapshot before it is judged; says for how long it is early [s], and so long the loop
             waits, unless the run ends before; None: nobody waits.
     """
 
     room: Room
     checks: Checks
-    cycle: Cycle
+    cycle: Cycle | SpaceCycle
     pace: Callable[[Snapshot], float | None] | None = None
 
     def run(self, faces: Sequence[Face], seconds: float | None = None) -> None:

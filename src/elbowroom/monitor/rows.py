@@ -77,6 +77,8 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
         "stopped_by": result.stopped_by,
         "findings": [asdict(finding) for finding in result.findings],
     }
+    if not result.verdicts and result.space is not None:
+        cycle |= shares_pct(result.space)
     return [cycle, *({"kind": "verdict", **shared, **verdict.row()} for verdict in result.verdicts)]
 
 

@@ -75,7 +75,7 @@ def is_allowed(machine: Machine, one: str, other: str) -> bool:
 
     Args:
         machine: whose links.
-        one, other: their names.
+        one, other: their names, in either order.
     """
     return any(
         (fnmatchcase(one, a) and fnmatchcase(other, b)) or (fnmatchcase(one, b) and fnmatchcase(other, a))

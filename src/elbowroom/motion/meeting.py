@@ -10,7 +10,8 @@ from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED
 from elbowroom.motion.contacts import pairs_of
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels.meeting import Now, Pairs, Steps, first_meeting, gaps_now
+from elbowroom.motion.kernels.meeting import Pairs, Steps, first_meeting, gaps_now
+from elbowroom.motion.kernels.mover import Mover
 from elbowroom.motion.sweep import cluster_speeds
 
 STEP_IN_COVERS = 2.0
@@ -37,21 +38,22 @@ class Meeting:
         machine: the machine.
         pairs: of its links.
         world_from_link: where they are, shape (n_links, 4, 4).
-        now: how far apart they are.
+        gaps, least: of `gaps_now`.
     """
 
     machine: Machine
     pairs: Pairs
     world_from_link: NDArray[np.float64]
-    now: Now
+    gaps: NDArray[np.float64]
+    least: NDArray[np.float64]
 
     @classmethod
     def of(cls, machine: Machine, world_from_link: NDArray[np.float64]) -> Self:
         """At one place of the machine, whose links are there: shape (n_links, 4, 4)."""
-        pairs = pairs_of(machine)
+        pairs = pairs_of(machine.anywhere)
         gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
         gaps_now(pairs, world_from_link, gaps, least)
-        return cls(machine, pairs, world_from_link, Now(gaps, least))
+        return cls(machine, pairs, world_from_link, gaps, least)
 
     def first(self, way: Way, length: float) -> Met | None:
         """Where two links first come so near that they may touch; None: nowhere.
@@ -68,16 +70,15 @@ class Meeting:
         speeds = cluster_speeds(self.machine, self.pairs.skin, self.world_from_link, way)
         by_link = np.zeros(len(self.machine.links))
         np.maximum.at(by_link, self.pairs.skin.link, speeds)
-        travel, member, place = first_meeting(
+        mover = Mover(
             self.machine.tree,
             self.machine.world_from_base,
-            self.pairs,
+            self.pairs.skin,
             way.course,
-            length,
             self._closing(speeds, by_link, way),
-            self.now,
-            Steps(STEP_IN_COVERS * self.pairs.skin.cover, TOGETHER),
         )
+        steps = Steps(STEP_IN_COVERS * self.pairs.skin.cover, TOGETHER)
+        travel, member, place = first_meeting(mover, self.pairs, length, self.gaps, self.least, steps)
         if member < 0:
             return None
         pair = self.pairs.pair[member]

@@ -5,15 +5,14 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
-from elbowroom.errors import CameraError, SiteError
+from elbowroom.errors import CameraError, InputError, SiteError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.ray_scene import RayScene
 from elbowroom.simulate import InterventionRoom, Moment, Solid, true_occupancy
-from elbowroom.simulate.glb import merged_mesh, open_edge_count
 from elbowroom.simulate.kernels.touch import touch_surface
+from elbowroom.simulate.room_mesh import RoomMesh, listed, read_room_mesh
 from elbowroom.simulate.setups import SETUPS, setup
 from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Mesh
@@ -29,7 +28,6 @@ INNER_WALLS_M = np.array([[-2.05, -2.05, 0.0], [2.05, 2.05, 2.9]])
 """Inner faces of the walls of the simulated room and of the setups, least and greatest corner [m]."""
 SETUP_NAMES = tuple(shipped.name for shipped in SETUPS)
 """What a site file may write as `room.mesh` for a room of the package."""
-Z_FROM_Y_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +38,13 @@ class FixedRoom:
         solids: closed ones: floor, walls, ceiling, furniture.
         surfaces: meshes that are not closed, or closed about the room itself: they block sight and have no inside.
         walls_m: inner faces, least and greatest corner, shape (2, 3), world frame [m]; None: not known.
+        notes: what a person should know of how the room's mesh was read, a line each.
     """
 
     solids: tuple[Solid, ...] = ()
     surfaces: tuple[Solid, ...] = ()
     walls_m: NDArray[np.float64] | None = None
+    notes: tuple[str, ...] = ()
 
     @classmethod
     def of_site(cls, site: Site) -> "FixedRoom | None":
@@ -57,15 +57,21 @@ class FixedRoom:
             solids = tuple(s for s in InterventionRoom(people=False).at(0.0).static_solids)
             return cls(solids, (), INNER_WALLS_M)
         given = site.entry.room
-        return None if given is None else cls.of_entry(given, site.path.parent)
+        if given is None:
+            return None
+        grid = site.grid()
+        return cls.of_entry(given, site.path.parent, np.array([grid.lower_m, grid.upper_m]))
 
     @classmethod
-    def of_entry(cls, entry: RoomEntry, beside: Path) -> "FixedRoom":
+    def of_entry(
+        cls, entry: RoomEntry, beside: Path, box_m: NDArray[np.float64] | None = None
+    ) -> "FixedRoom":
         """The room that an entry of a site file describes.
 
         Args:
             entry: the key `room`.
             beside: the site file's folder.
+            box_m: the watched box, shape (2, 3), world frame [m]: what the mesh's size is compared with; None: nothing.
 
         Raises:
             SiteError: a mesh that cannot be read.
@@ -77,15 +83,16 @@ class FixedRoom:
             walls = np.array([entry.walls.lower_m, entry.walls.upper_m])
             solids += _shell(walls)
         solids += [_static(item.name, join([box(item.lower_m, item.upper_m)])) for item in entry.furniture]
-        objects = _objects(entry, beside)
-        for name, mesh, is_closed in objects:
-            (solids if is_closed else surfaces).append(_static(name, mesh))
         if entry.mesh in SETUP_NAMES:
-            walls = INNER_WALLS_M
-        elif walls is None and objects:
-            corners = np.concatenate([mesh.vertices for _, mesh, _ in objects])
+            solids += [_static(solid.name, solid.mesh) for solid in setup(entry.mesh).solids()]
+            return cls(tuple(solids), (), INNER_WALLS_M)
+        room = _read(entry, beside, box_m)
+        for one in room.objects:
+            (solids if one.is_solid else surfaces).append(_static(one.name, one.mesh))
+        if walls is None and room.objects:
+            corners = np.concatenate([one.mesh.vertices for one in room.objects])
             walls = np.array([corners.min(axis=0), corners.max(axis=0)])
-        return cls(tuple(solids), tuple(surfaces), walls)
+        return cls(tuple(solids), tuple(surfaces), walls, room.notes + _open_note(room, entry, box_m))
 
     @property
     def moment(self) -> Moment:
@@ -183,37 +190,30 @@ def _shell(walls: NDArray[np.float64]) -> list[Solid]:
     return solids
 
 
-def _objects(entry: RoomEntry, beside: Path) -> list[tuple[str, Mesh, bool]]:
-    """Names and meshes of the room's file, z up, and whether each is closed with its faces outwards; none: no mesh."""
-    if entry.mesh in SETUP_NAMES:
-        return [(solid.name, solid.mesh, True) for solid in setup(entry.mesh).solids()]
+def _read(entry: RoomEntry, beside: Path, box_m: NDArray[np.float64] | None) -> RoomMesh:
+    """The room's mesh; without objects if there is none."""
     path = entry.mesh_path(beside)
     if path is None:
-        return []
+        return RoomMesh((), ())
     try:
-        scene = trimesh.load_scene(path)
-        parts = [(name, *scene.graph[name]) for name in sorted(scene.graph.nodes_geometry)]
-    except Exception as error:
-        raise SiteError(f"{path}: cannot be read as a mesh ({' '.join(str(error).split())})") from None
-    shapes = [(name, scene.geometry[shape], pose) for name, pose, shape in parts]
-    read = [
-        _turned(path, name if len(shapes) > 1 else path.stem, shape, pose, entry.is_y_up)
-        for name, shape, pose in shapes
-        if isinstance(shape, trimesh.Trimesh) and len(shape.faces)
-    ]
-    if not read:
-        raise SiteError(f"{path}: holds no triangles; expected the room's surfaces as a mesh")
-    return read
+        return read_room_mesh(path, up=entry.mesh_up, unit_m=entry.mesh_unit_m, box_m=box_m)
+    except InputError as error:
+        raise SiteError(f"room.mesh: {error}") from None
 
 
-def _turned(
-    path: Path, name: str, shape: trimesh.Trimesh, pose: NDArray[np.float64], is_y_up: bool
-) -> tuple[str, Mesh, bool]:
-    """One object of a file in its place."""
-    vertices = np.asarray(shape.vertices, dtype=np.float64) @ pose[:3, :3].T + pose[:3, 3]
-    if not np.isfinite(vertices).all():
-        raise SiteError(f"{path}: {name}: a vertex is not finite")
-    mesh = merged_mesh(vertices @ Z_FROM_Y_UP.T if is_y_up else vertices, np.asarray(shape.faces))
-    a, b, c = np.moveaxis(mesh.vertices[mesh.faces], 1, 0)
-    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum()
-    return name, mesh, open_edge_count(mesh) == 0 and bool(volume > 0)
+def _open_note(room: RoomMesh, entry: RoomEntry, box_m: NDArray[np.float64] | None) -> tuple[str, ...]:
+    """What is said of objects that block sight and have no inside, and of a mesh that lies somewhere else."""
+    notes = []
+    through = [one.name for one in room.objects if not one.is_closed]
+    if through:
+        notes.append(
+            f"{entry.mesh}: {listed(through)} not closed: blocks sight, but its inside is asked for as free space is"
+        )
+    if box_m is not None and room.objects:
+        corners = np.concatenate([one.mesh.vertices for one in room.objects])
+        if ((corners.max(axis=0) <= box_m[0]) | (corners.min(axis=0) >= box_m[1])).any():
+            low, high = (np.round(end, 2).tolist() for end in (corners.min(axis=0), corners.max(axis=0)))
+            notes.append(
+                f"{entry.mesh}: lies beside the grid, from {low} to {high} m: it hides nothing of it; check its origin"
+            )
+    return tuple(notes)

@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid
-from elbowroom.machine import Machine
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.simulate import InterventionRoom, Moment, Solid
-from elbowroom.simulate.machine_solids import link_solids, random_joints
+from elbowroom.simulate.machine_solids import link_solids
 from elbowroom.simulate.person import Person, Stance, Walk
+from elbowroom.simulate.postures import Postures
 from elbowroom.simulate.shapes import box, join
+from elbowroom.simulate.taken import Taken, fine_grid
 from elbowroom.simulate.truth import touched_by
 from elbowroom.site import Site
 
@@ -55,20 +56,22 @@ def random_scenes(
         raise InputError(
             f"placement: {count} scenes of {people} people, at least 1 scene and 0 people are needed"
         )
-    machine = site.machine()
+    machine, postures = site.machine(), None
+    if site.simulated is None:
+        postures = _postures(site, grid, room)
     for number in range(count):
         rng = np.random.default_rng([seed, number])
         if site.simulated is not None:
             yield InterventionRoom(machine=machine).random_moment(rng, grid=grid)
         else:
-            yield _scene(number, grid, room, machine, people, table, rng)
+            yield _scene(number, grid, room, postures, people, table, rng)
 
 
 def _scene(
     number: int,
     grid: VoxelGrid,
     room: FixedRoom | None,
-    machine: Machine | None,
+    machine: Postures | None,
     people: int,
     table: bool,
     rng: np.random.Generator,
@@ -79,7 +82,9 @@ def _scene(
     joints: dict[str, float] = {}
     solids: list[Solid] = []
     if machine is not None:
-        joints, links = _machine_pose(coarse, machine, taken, rng)
+        joints = machine.drawn(rng)
+        links = link_solids(machine.machine, joints)
+        _take(coarse, taken, links)
         solids += links
     if table:
         solids += _placed(coarse, taken, lambda: (_table(grid, rng),), "table: no place for the table")
@@ -91,19 +96,14 @@ def _scene(
     return Moment(float(number), (*fixed, *solids), joints)
 
 
-def _machine_pose(
-    coarse: VoxelGrid, machine: Machine, taken: NDArray[np.bool_], rng: np.random.Generator
-) -> tuple[dict[str, float], tuple[Solid, ...]]:
-    for _ in range(TRIES):
-        joints = random_joints(machine, rng)
-        links = link_solids(machine, joints)
-        checked = tuple(link for link in links if link.name in machine.checked_links)
-        if _fits(coarse, taken, checked):
-            _take(coarse, taken, links)
-            return joints, links
-    raise InputError(
-        f"placement: no pose of {machine.name} that touches nothing in {TRIES} tries; correct the room"
-    )
+def _postures(site: Site, grid: VoxelGrid, room: FixedRoom | None) -> Postures | None:
+    """What the site's machine can do in its fixed room; None: there is no machine."""
+    machine = site.machine()
+    if machine is None:
+        return None
+    fine = fine_grid(grid.lower_m, grid.upper_m)
+    fixed = Taken.of(fine, ()) if room is None else Taken.of(fine, room.solids, room.surfaces)
+    return Postures(machine, fixed)
 
 
 def _placed(coarse: VoxelGrid, taken: NDArray[np.bool_], make, trouble: str) -> tuple[Solid, ...]:  # type: ignore[no-untyped-def]

@@ -11,7 +11,7 @@ from elbowroom.geometry.bits import Words
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Explained
-from elbowroom.reconstruct.evidence import Counts, Evidence
+from elbowroom.reconstruct.evidence import Counts, Evidence, merge
 from elbowroom.reconstruct.images import RoomImages, room_images
 from elbowroom.reconstruct.kernels.carve import carve_cubes
 from elbowroom.reconstruct.kernels.planes import PLANES, Answers
@@ -19,6 +19,7 @@ from elbowroom.reconstruct.kernels.points import carve_points
 from elbowroom.reconstruct.layout import layout_of
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.reconstruct.views import fill
+from elbowroom.reconstruct.witnesses import as_one, witnesses
 from elbowroom.sensing import DepthFrame
 
 SHARES = 16
@@ -36,6 +37,8 @@ def carve(
     unexplained: Words | None = None,
 ) -> Evidence:
     """What cameras know of each voxel by one frame each. A camera without a frame disputes all that it looks at.
+
+    Cameras nearer to each other than `terms.WITNESS_ANGLE_DEG` are one witness (`witnesses`).
 
     Args:
         grid: the watched box.
@@ -82,6 +85,26 @@ def carve_images(
     Raises:
         CameraError: more than 255 cameras.
     """
+    groups = witnesses(grid, images.cameras, terms.witness_angle_deg)
+    names = [camera.name for camera in images.cameras]
+    near = [[names[number] for number in group] for group in groups]
+    alone = [name for name in names if not any(name in group for group in near)]
+    own = _carve_all(grid, images.of(*alone) if near else images, explained, terms, complete, focus)
+    rest = Explained(explained.model_depth, None)
+    # of one witness every camera is asked, also where several see through: who disputes counts
+    shared = (_carve_all(grid, images.of(*group), rest, terms, True, focus) for group in near)
+    return merge([own, *(as_one(one, complete) for one in shared)])
+
+
+def _carve_all(
+    grid: VoxelGrid,
+    images: RoomImages,
+    explained: Explained,
+    terms: Terms,
+    complete: bool,
+    focus: NDArray[np.bool_] | None,
+) -> Evidence:
+    """As `carve_images`, each camera a witness of its own."""
     layout = layout_of(grid, images.cameras, terms.margin)
     asked = layout.inside.copy() if focus is None else np.where(focus, layout.inside, np.uint64(0))
     answers = _no_answers(asked, terms.detail, complete)
@@ -101,6 +124,7 @@ def carve_images(
         answers.planes,
         bits.empty(grid) if explained.unexplained_words is None else explained.unexplained_words,
         Counts(answers.through_count, answers.dispute_count) if complete else None,
+        witness_angle_deg=terms.witness_angle_deg,
     )
 
 

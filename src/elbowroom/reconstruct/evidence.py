@@ -34,6 +34,8 @@ class Evidence:
         planes: (6, words) uint64: seen through by at least one, two, three; disputed; surface; blind.
         unexplained: voxels in which a return lies that the machine's model does not explain, though its body does.
         counts: numbers of cameras, or None.
+        as_one: groups of cameras that were counted as one witness each, those of more than one.
+        witness_angle_deg: below which cameras were one witness, as far as they were carved together [deg].
 
     Raises:
         EvidenceError: a camera is named twice.
@@ -44,6 +46,8 @@ class Evidence:
     planes: NDArray[np.uint64]
     unexplained: Words
     counts: Counts | None = None
+    as_one: frozenset[frozenset[str]] = frozenset()
+    witness_angle_deg: float = 0.0
 
     def __post_init__(self) -> None:
         names = tuple(sorted(self.cameras))
@@ -140,4 +144,7 @@ def _merge_two(a: Evidence, b: Evidence) -> Evidence:
         if len(a.cameras) + len(b.cameras) > 255:
             raise EvidenceError("merge: more than 255 cameras cannot be counted")
         counts = Counts(a.counts.through + b.counts.through, a.counts.disputes + b.counts.disputes)
-    return Evidence(a.grid, a.cameras + b.cameras, planes, a.unexplained | b.unexplained, counts)
+    groups, angle_deg = a.as_one | b.as_one, max(a.witness_angle_deg, b.witness_angle_deg)
+    return Evidence(
+        a.grid, a.cameras + b.cameras, planes, a.unexplained | b.unexplained, counts, groups, angle_deg
+    )

@@ -29,12 +29,12 @@ class RoomImages:
     least_m: Mapping[str, Image]
     greatest_m: Mapping[str, Image]
 
-    def of(self, name: str) -> Self:
-        """Those of one camera alone."""
+    def of(self, *names: str) -> Self:
+        """Those of some cameras alone."""
         return type(self)(
-            tuple(camera for camera in self.cameras if camera.name == name),
-            {camera: image for camera, image in self.least_m.items() if camera == name},
-            {camera: image for camera, image in self.greatest_m.items() if camera == name},
+            tuple(camera for camera in self.cameras if camera.name in names),
+            {camera: image for camera, image in self.least_m.items() if camera in names},
+            {camera: image for camera, image in self.greatest_m.items() if camera in names},
         )
 
 

@@ -84,7 +84,7 @@ class Layout:
             self._spare.insert(0, buffers)
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=16)
 def layout_of(grid: VoxelGrid, cameras: tuple[DepthCamera, ...], margin: Margin) -> Layout:
     """Lays cameras out over a grid. Distorted cameras must have been made pinhole before.
 

@@ -33,7 +33,9 @@ def found_at(
     units_m: Mapping[str, float | None] | None = None,
     margin: Margin | None = None,
 ) -> tuple[Finding, ...]:
-    """All that is found at one moment; images are not looked at where lenses or places already stop.
+    """All that is found at one moment: lenses and places, then images, then what cameras contradict each other in.
+
+    Where one of these stops, the next are not asked: what they would say follows from it.
 
     Args:
         grid: the watched box.
@@ -44,11 +46,8 @@ def found_at(
     setting = look_at_setting(grid, cameras)
     if any(finding.stops for finding in setting):
         return setting
-    return (
-        *setting,
-        *look_at_images(grid, cameras, frames, units_m),
-        *contradictions(cameras, frames, margin or Margin()),
-    )
+    found = (*setting, *look_at_images(grid, cameras, frames, units_m))
+    return (*found, *contradictions(cameras, frames, margin or Margin(), found))
 
 
 def require_plausible(

@@ -20,7 +20,7 @@ from elbowroom.reconstruct.images import frames_by_camera, room_images
 from elbowroom.reconstruct.looking import found_in_space, require_plausible
 from elbowroom.reconstruct.resolve import decide
 from elbowroom.reconstruct.source import ImageSource
-from elbowroom.reconstruct.terms import Terms
+from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG, Terms
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 
 Timer = Callable[[str], AbstractContextManager[None]]
@@ -42,6 +42,7 @@ def reconstruct(
     explain_tolerance_m: float = 0.01,
     body_growth_m: float | None = None,
     focus: NDArray[np.bool_] | None = None,
+    witness_angle_deg: float = WITNESS_ANGLE_DEG,
     threads: int | None = None,
     timer: Timer | None = None,
     looks: bool = True,
@@ -65,6 +66,8 @@ def reconstruct(
         body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: half a
             voxel.
         focus: blocks of 4 voxels that are looked at, of `motion.blocks_in_reach`; all others stay unseen. None: all.
+        witness_angle_deg: by rule `three`, cameras nearer to each other than this, as seen from the grid, are one
+            witness [deg]; 0: each is one.
         threads: None: all cores. The result does not depend on it.
         timer: called with the name of each stage, returns a context manager around it; None: nobody measures.
         looks: whether values are looked at, at the first moments of these cameras: units, numbers that stand for no
@@ -82,7 +85,15 @@ def reconstruct(
     Warns:
         ValueWarning: values that are most likely not meant so.
     """
-    terms = Terms(rule, detail, margin or Margin(), max_age_ns, explain_tolerance_m, body_growth_m)
+    terms = Terms(
+        rule,
+        detail,
+        margin or Margin(),
+        max_age_ns,
+        explain_tolerance_m,
+        body_growth_m,
+        witness_angle_deg=witness_angle_deg,
+    )
     snapshot = Snapshot.taken(frames, None if machine is None else joints, now_ns, max_age_ns)
     is_first = False
     if looks:

@@ -16,6 +16,7 @@ from elbowroom.reconstruct.explained import NOTHING
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.images import room_images
 from elbowroom.reconstruct.terms import Terms
+from elbowroom.reconstruct.witnesses import witnesses
 
 
 def _three(evidence: Evidence) -> Words:
@@ -78,7 +79,8 @@ def resolve(
     Raises:
         InputError: an unknown rule, or a machine without joints.
         MachineError: impossible joints, or a growth below a quarter voxel.
-        EvidenceError: the rule needs counts and the evidence has none.
+        EvidenceError: the rule needs counts and the evidence has none, or cameras that are one witness were carved
+            apart.
     """
     terms = Terms(rule, detail, margin or Margin(), body_growth_m=body_growth_m)
     return decide(evidence, cameras, machine, joints, terms)
@@ -103,6 +105,8 @@ def decide(
     grid = evidence.grid
     if terms.needs_counts and evidence.counts is None:
         raise EvidenceError(f"resolve: rule {terms.rule} needs evidence carved with complete=True")
+    if terms.rule == "three":
+        _require_one_witness(evidence, cameras)
     evidence = _with_silent(evidence, cameras, terms)
     free = _DECIDE[terms.rule](evidence) & bits.inside(grid)
     body = _body(evidence, machine, joints, terms)
@@ -117,6 +121,17 @@ def decide(
         (evidence.disputed | evidence.unexplained) & blocked,
         body,
     )
+
+
+def _require_one_witness(evidence: Evidence, cameras: Sequence[DepthCamera]) -> None:
+    """Cameras that are one witness must have been carved together: evidence of each alone counts as one of its own."""
+    for group in witnesses(evidence.grid, tuple(cameras), evidence.witness_angle_deg):
+        near = {cameras[number].name for number in group} & set(evidence.cameras)
+        if len(near) > 1 and not any(near <= together for together in evidence.as_one):
+            raise EvidenceError(
+                f"resolve: cameras {', '.join(sorted(near))} stand within {evidence.witness_angle_deg:g} degrees of "
+                "each other, as seen from the grid, and are one witness: carve them in one group"
+            )
 
 
 def _with_silent(evidence: Evidence, cameras: Sequence[DepthCamera], terms: Terms) -> Evidence:

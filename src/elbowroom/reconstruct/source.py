@@ -12,7 +12,7 @@ from elbowroom.reconstruct.free_space import FreeSpace, Index
 from elbowroom.reconstruct.images import Image, RoomImages
 from elbowroom.reconstruct.parts import is_seen_in_parts
 from elbowroom.reconstruct.point_report import PointReport, Sight
-from elbowroom.reconstruct.sight import sight_of
+from elbowroom.reconstruct.sight import sight_of, surface_about
 from elbowroom.reconstruct.terms import Terms
 
 WILLING = (Sight.HIDDEN, Sight.BLIND, Sight.EDGE)
@@ -40,9 +40,7 @@ class ImageSource:
 
     def report(self, space: FreeSpace, index: Index) -> PointReport:
         """What each camera saw at a voxel, and which camera could settle it."""
-        corner = space.grid.lower_m + np.array(index) * space.grid.voxel_size_m
-        voxel = VoxelGrid((corner[0], corner[1], corner[2]), (1, 1, 1), space.grid.voxel_size_m)
-        centre = space.grid.centre_of(np.array(index))
+        voxel, centre = _alone(space.grid, index)
         seen = sorted(
             (
                 sight_of(voxel, centre, self.images.of(camera.name), self.model_depth, self.terms)
@@ -57,6 +55,19 @@ class ImageSource:
             tuple(seen),
             tuple(one.camera for one in seen if one.sight in WILLING),
         )
+
+    def surface_about(self, grid: VoxelGrid, index: Index) -> dict[str, NDArray[np.float64]]:
+        """By camera, what it measured about a voxel, the machine's own apart, shape (n, 3), world frame [m].
+
+        Args:
+            grid: of the space.
+            index: of the voxel.
+        """
+        voxel, centre = _alone(grid, index)
+        return {
+            camera.name: surface_about(voxel, centre, self.images.of(camera.name), self.model_depth)
+            for camera in self.images.cameras
+        }
 
     def is_free_in_parts(self, space: FreeSpace, index: Index) -> bool:
         """Whether each of 64 parts of a voxel is seen through by some camera, where nobody disputes the voxel.
@@ -86,3 +97,10 @@ class ImageSource:
     def _more_is_blocked(self, space: FreeSpace) -> bool:
         """Whether somebody blocked what the images say is free, such as a zone to keep out of."""
         return bool((self.free_words & ~space.free_words).any())
+
+
+def _alone(grid: VoxelGrid, index: Index) -> tuple[VoxelGrid, NDArray[np.float64]]:
+    """A voxel as a grid of its own, and its centre."""
+    corner = grid.lower_m + np.array(index) * grid.voxel_size_m
+    alone = VoxelGrid((corner[0], corner[1], corner[2]), (1, 1, 1), grid.voxel_size_m)
+    return alone, grid.centre_of(np.array(index))

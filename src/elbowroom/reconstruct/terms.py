@@ -8,6 +8,10 @@ from elbowroom.choices import DETAILS, RULES, Detail, Rule
 from elbowroom.errors import InputError, MachineError
 from elbowroom.geometry.margin import Margin
 
+WITNESS_ANGLE_DEG = 2.0
+"""Two cameras side by side, 10 cm apart, at 3 m; of hand-held views it takes a twenty-fifth of what they find free."""
+MOST_ANGLE_DEG = 45.0
+
 
 @dataclass(frozen=True, slots=True)
 class Terms:
@@ -21,6 +25,8 @@ class Terms:
         explain_tolerance_m: how near to the machine's model a return counts as the machine, besides its noise [m].
         body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: half a
             voxel.
+        witness_angle_deg: by rule `three`, cameras nearer to each other than this, as seen from the grid, are one
+            witness (`witnesses`) [deg]; 0: each is one.
         look_again: voxels in the way that no one camera sees all of are looked at again in parts. False: what the
             volume says holds, so that who has images and who has only the volume say the same.
 
@@ -36,6 +42,7 @@ class Terms:
     explain_tolerance_m: float = 0.01
     body_growth_m: float | None = None
     look_again: bool = True
+    witness_angle_deg: float = WITNESS_ANGLE_DEG
 
     def __post_init__(self) -> None:
         if self.rule not in RULES:
@@ -44,6 +51,10 @@ class Terms:
             raise InputError(f"detail: {self.detail!r} is unknown, allowed are {', '.join(DETAILS)}")
         if self.max_age_ns is not None and self.max_age_ns < 0:
             raise InputError(f"max_age_ns: is {self.max_age_ns}, must be at least 0")
+        if not 0 <= self.witness_angle_deg <= MOST_ANGLE_DEG:
+            raise InputError(
+                f"witness_angle_deg is {self.witness_angle_deg}, must be from 0 to {MOST_ANGLE_DEG:g} degrees"
+            )
         if not self.explain_tolerance_m >= 0:
             raise MachineError(f"explain_tolerance_m is {self.explain_tolerance_m}, must be at least 0 [m]")
         growth = self.body_growth_m

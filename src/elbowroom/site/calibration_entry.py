@@ -10,6 +10,12 @@ from elbowroom.site.entry import Count, Entry, Flag, Matrix, NotNegative, Number
 from elbowroom.site.ranges import MILLIMETRES, up_to
 
 Corners = Annotated[Whole, Field(ge=3, le=60)]
+LARGEST_SQUARE_M = 1.0
+"""No board that a person carries has larger squares, nor a wider border [m]."""
+FARTHEST_M = 1000.0
+"""Nothing of a room is farther from the world's origin [m]."""
+COARSEST_M = 0.2
+"""No place that fixes the world is measured worse [m]."""
 Pixel = tuple[Number, Number]
 
 
@@ -29,6 +35,12 @@ class BoardEntry(Entry):
     thickness_m: Annotated[NotNegative, up_to(0.2, "m", MILLIMETRES)] = 0.0
 
     @model_validator(mode="after")
+    def _in_metres(self) -> "BoardEntry":
+        for key in ("square_m", "border_m", "thickness_m"):
+            _require_metres(key, getattr(self, key), LARGEST_SQUARE_M)
+        return self
+
+    @model_validator(mode="after")
     def _has_two_ends(self) -> "BoardEntry":
         if (self.columns + self.rows) % 2 == 0:
             raise ValueError("one of columns and rows odd and the other even, so that its two ends differ")
@@ -38,6 +50,13 @@ class BoardEntry(Entry):
     def is_marked(self) -> bool:
         """Whether the first square has the mark."""
         return self.kind == "cut_out" if self.marked is None else self.marked
+
+
+def _require_metres(key: str, value: float, most: float) -> None:
+    if abs(value) > most:
+        raise ValueError(
+            f"{key} of at most {most:g}: it is in metres, {value:g} looks like millimetres ({value / 1e3:g} m)"
+        )
 
 
 class ColourLens(Entry):
@@ -95,6 +114,12 @@ class WorldFromBoard(Entry):
     first_corner_m: Point = (0.0, 0.0, 0.0)
     x_axis_deg: Number = 0.0
 
+    @model_validator(mode="after")
+    def _in_metres(self) -> "WorldFromBoard":
+        for value in self.first_corner_m:
+            _require_metres("first_corner_m", value, FARTHEST_M)
+        return self
+
     @property
     def world_from_board(self) -> NDArray[np.float64]:
         """Pose of the board then, shape (4, 4): its z axis points down, away from the eye above it."""
@@ -124,6 +149,12 @@ class NamedPoint(Entry):
     corner: CornerEntry | None = None
 
     @model_validator(mode="after")
+    def _in_metres(self) -> "NamedPoint":
+        for value in self.world_m:
+            _require_metres("world_m", value, FARTHEST_M)
+        return self
+
+    @model_validator(mode="after")
     def _is_seen(self) -> "NamedPoint":
         if bool(self.seen_px) == (self.corner is not None):
             raise ValueError("either seen_px, with pixels by camera, or corner, of the board in a pose")
@@ -136,6 +167,11 @@ class WorldFromPoints(Entry):
     by: Literal["points"]
     points: Annotated[tuple[NamedPoint, ...], Field(min_length=3)]
     sigma_m: Positive = 0.002
+
+    @model_validator(mode="after")
+    def _in_metres(self) -> "WorldFromPoints":
+        _require_metres("sigma_m", self.sigma_m, COARSEST_M)
+        return self
 
     @model_validator(mode="after")
     def _are_told_apart(self) -> "WorldFromPoints":

@@ -6,11 +6,8 @@ from typing import Literal
 from pydantic import model_validator
 
 from elbowroom.errors import SiteError
-from elbowroom.site.entry import Entry, Point, Text
+from elbowroom.site.entry import Entry, Point, Positive, Text
 from elbowroom.site.paths import expand
-
-Y_UP = (".glb", ".gltf")
-"""Formats whose standard has y up; a mesh of another format is taken as it is."""
 
 
 class BoxEntry(Entry):
@@ -28,23 +25,26 @@ class BoxEntry(Entry):
 
 
 class RoomEntry(Entry):
-    """Inner faces of floor, walls and ceiling; fixed furniture as boxes; a mesh of the room, in metres.
+    """Inner faces of floor, walls and ceiling; fixed furniture as boxes; a mesh of the room.
 
     `mesh` is a file, or `setup1` to `setup6`: a room of the package, walls and all.
-    `mesh_up` is the mesh's axis that points up; left out, y for .glb and .gltf, as glTF has it, else z.
+    `mesh_up` is the mesh's axis that points up; left out, as the file says (.dae), y for .glb and .gltf, as glTF has
+    it, else z. `mesh_unit_m` is how many metres one unit of the file is; left out, as the file says, else 1.
     """
 
     walls: BoxEntry | None = None
     furniture: tuple[BoxEntry, ...] = ()
     mesh: Text | None = None
-    mesh_up: Literal["y", "z"] | None = None
+    mesh_up: Literal["x", "y", "z"] | None = None
+    mesh_unit_m: Positive | None = None
 
     @model_validator(mode="after")
     def _says_something(self) -> "RoomEntry":
         if self.walls is None and self.mesh is None and not self.furniture:
             raise ValueError("at least one of walls, furniture and mesh")
-        if self.mesh_up is not None and self.mesh is None:
-            raise ValueError("mesh_up only with a mesh")
+        for key in ("mesh_up", "mesh_unit_m"):
+            if getattr(self, key) is not None and self.mesh is None:
+                raise ValueError(f"{key} only with a mesh")
         return self
 
     def mesh_path(self, beside: Path) -> Path | None:
@@ -62,10 +62,3 @@ class RoomEntry(Entry):
         if not path.is_file():
             raise SiteError(f"no file {path} (written {self.mesh}); correct the path of the room's mesh")
         return path
-
-    @property
-    def is_y_up(self) -> bool:
-        """Whether the mesh has to be turned so that z is up."""
-        if self.mesh_up is not None:
-            return self.mesh_up == "y"
-        return self.mesh is not None and self.mesh.lower().endswith(Y_UP)

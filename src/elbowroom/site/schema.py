@@ -7,6 +7,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from elbowroom.choices import Detail, Rule
 from elbowroom.geometry import VoxelGrid
+from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, WITNESS_ANGLE_DEG
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Number, Point, Positive, Text, Whole
@@ -120,6 +121,7 @@ class SiteEntry(Entry):
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
     rule: Rule = "three"
     detail: Detail = "pixel"
+    witness_angle_deg: Annotated[Number, Field(ge=0, le=MOST_ANGLE_DEG)] = WITNESS_ANGLE_DEG
     margin: MarginEntry = MarginEntry()
     max_frame_age_ms: Annotated[Positive, between(1, 3.6e6, "ms", SECONDS)] | None = None
     recording: RecordingEntry | None = None

@@ -125,6 +125,7 @@ class Site:
             self.margin(),
             self.max_age_ns,
             self.explain_tolerance_m,
+            witness_angle_deg=self.entry.witness_angle_deg,
         )
 
     def margin(self) -> Margin:
@@ -314,8 +315,28 @@ class Site:
         """
         recording = self.entry.recording
         if recording is None:
-            raise SiteError(f"{self.path}: recording: missing; this command reads one")
+            raise SiteError(
+                f"{self.path}: recording: missing; this command reads one (`elbowroom simulate` makes one of a "
+                "modelled room)"
+            )
         return self._blame("recording.folder", lambda: existing_folder(recording.folder, self.path.parent))
+
+    @property
+    def missing_recording(self) -> str | None:
+        """Why the recording that the site names cannot be read yet; None: its folder is there, or none is named.
+
+        Raises:
+            SiteError: its path is none.
+        """
+        if self.entry.recording is None:
+            return None
+        try:
+            self.recording_folder()
+        except SiteError as error:
+            if "no folder" in str(error):
+                return str(error).removeprefix(f"{self.path}: ")
+            raise
+        return None
 
     def _blame(self, key: str | None, make: Callable[[], Value]) -> Value:
         """What `make` returns; its errors name the file and the key."""

@@ -20,6 +20,8 @@ from elbowroom.site.schema import EVEN_SETTINGS
 
 PATH_KEYS = ("intrinsics_file", "pose_file", "urdf", "mesh", "folder", "mask")
 """Keys whose values are paths beside the site file."""
+SHIPPED_ROOM = re.compile("setup[1-6]")
+"""A mesh of this name is no file but a room of the package."""
 DIGITS = 9
 
 
@@ -201,7 +203,9 @@ def moved(value: Any, old: Path, new: Path) -> Any:
     if isinstance(value, dict):
         return {
             key: led_from(item, old, new)
-            if key in PATH_KEYS and isinstance(item, str)
+            if key in PATH_KEYS
+            and isinstance(item, str)
+            and not (key == "mesh" and SHIPPED_ROOM.fullmatch(item))
             else moved(item, old, new)
             for key, item in value.items()
         }

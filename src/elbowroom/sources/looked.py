@@ -19,20 +19,20 @@ MOMENTS = 3
 def looked_at(site: Site) -> tuple[Finding, ...]:
     """What is found in a site and its recording; nothing is carved.
 
-    Images are read that `moments` would read, of a few moments.
+    Images are read that `moments` would read, of a few moments; none of a recording that is not there yet.
 
     Raises:
         SiteError, FrameError: as `moments`.
     """
     grid, cameras = site.grid(), cameras_of(site)
     found = [*look_at_setting(grid, cameras), *look_at_site(site)]
-    if site.entry.recording is not None and not any(finding.stops for finding in found):
+    is_there = site.entry.recording is not None and site.missing_recording is None
+    if is_there and not any(finding.stops for finding in found):
         for group in _some(layout_of(site).moments()):
             frames = [image.read() for image in group]
-            found += look_at_images(
-                grid, cameras, frames, {image.camera.name: image.unit_m for image in group}
-            )
-            found += contradictions(cameras, frames, site.margin())
+            units_m = {image.camera.name: image.unit_m for image in group}
+            of_values = look_at_images(grid, cameras, frames, units_m)
+            found += [*of_values, *contradictions(cameras, frames, site.margin(), of_values)]
     return once(found)
 
 

@@ -1,6 +1,5 @@
-"""A moment of a simulated room written as a recording: images, joints, and a site file that reads them."""
+"""Moments of a simulated room written as a recording: images, joints, and a site file that reads them."""
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,17 +7,16 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
-from elbowroom.files.atomic import folder, whole_file
+from elbowroom.files.atomic import folder
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.sensing import DepthFrame
 from elbowroom.site import Site
 from elbowroom.site.written import written
+from elbowroom.sources.recording_folder import LARGEST, RecordingFolder, Units
 
 UNIT_M = 0.0002
 """Metres per unit of the images: 65534 of them reach 13 m."""
-LARGEST = 65534
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,22 +55,29 @@ def write_recording(
     Raises:
         InputError: the folder cannot be made or written to.
     """
-    images = folder(out / "images")
-    for camera, frame in zip(cameras, frames, strict=True):
-        with whole_file(folder(images / camera.name) / f"{frame.stamp_ns}.png") as unfinished:
-            Image.fromarray(as_units(frame.depth_m)).save(unfinished, format="PNG", compress_level=3)
-    if what.joints is not None:
-        with whole_file(images / "joints.csv") as unfinished, unfinished.open("w", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(["stamp_ns", *what.joints])
-            writer.writerow([frames[0].stamp_ns, *(repr(float(value)) for value in what.joints.values())])
+    units = {camera.name: Units(UNIT_M) for camera in cameras}
+    with RecordingFolder(folder(out) / "images", units) as recording:
+        recording.add(frames, what.joints)
+    return write_site_of(out, what, cameras)
+
+
+def write_site_of(out: Path, what: Recording, cameras: Sequence[DepthCamera]) -> Path:
+    """Writes `site.yaml`, which reads the images beside it.
+
+    Args:
+        out: the folder that holds `images`.
+        what: the rest of the site file.
+        cameras: of the images.
+
+    Returns:
+        The site file.
+    """
     return written(_site(what, cameras), out / "site.yaml", "written by elbowroom simulate")
 
 
 def as_units(depth_m: NDArray[np.floating]) -> NDArray[np.uint16]:
     """Depth in whole units, rounded down, shape (height, width); 0 where there is no return or it is too far."""
-    units = np.floor(np.where(np.isfinite(depth_m), depth_m, 0.0) / UNIT_M + 1e-6)
-    return np.where(units <= LARGEST, units, 0).astype(np.uint16)
+    return Units(UNIT_M).of(depth_m)
 
 
 def recorded_site(name: str, grid: VoxelGrid, cameras: Sequence[DepthCamera], noise: str) -> dict[str, Any]:

@@ -52,6 +52,19 @@ class Room:
             )
         return self.machine, motions
 
+    @property
+    def unasked(self) -> str | None:
+        """Why no motion can be asked here: no machine, or no joint with a speed; None: motions can."""
+        if self.machine is None:
+            return "no machine: no motion is judged, this is free space alone"
+        if not self.site.motions(self.machine):
+            known = ", ".join(self.machine.joint_names)
+            return (
+                f"no joint of {self.machine.name} has a speed (joints: {known}): no motion is judged, "
+                "this is free space alone"
+            )
+        return None
+
     def snapshot(self, number: int) -> Snapshot:
         """A moment of the room by its number, from 0.
 

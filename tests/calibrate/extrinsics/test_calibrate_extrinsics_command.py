@@ -1,20 +1,29 @@
 """`elbowroom calibrate extrinsics` from a capture on disk to a site file; and on a real recording."""
 
 import json
+import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import yaml
+from PIL import Image
 from typer.testing import CliRunner
 
+from elbowroom.calibrate.boards.capture import board_of, images_of, instead_of
+from elbowroom.calibrate.boards.closer_look import _other_counts
+from elbowroom.calibrate.boards.same_images import require_own_images
 from elbowroom.calibrate.refinement.agreement import agreement
 from elbowroom.calibrate.result.change import pose_difference
 from elbowroom.cli.app import app
+from elbowroom.cli.calibrate.result import refuse
 from elbowroom.errors import CalibrationError, InputError
 from elbowroom.site import Site
 from elbowroom.sources import moments
 
 RUNNER = CliRunner()
+HALVED = (("fx", 320, 160), ("fy", 320, 160), ("cx", 319, 159), ("cy", 239, 119))
+"""Words of the site file whose lens is that of half the image."""
 
 
 @pytest.fixture(scope="module")
@@ -67,6 +76,85 @@ def test_nothing_is_written_where_something_is_wrong(capture, tmp_path):
         run(path, "--out", path)
     with pytest.raises(InputError, match=r"has no site\.yaml"):
         run(capture / "images", "--out", tmp_path / "new.yaml")
+
+
+def changed(capture, path, *changes):
+    """A site file beside the capture with words replaced; its images stay where they are."""
+    text = (capture / "site.yaml").read_text().replace("folder: images}", f"folder: {capture}/images}}")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    return path
+
+
+def test_exchanged_folders_are_no_result_and_are_written_aside_by_force(capture, tmp_path):
+    swap = (("name: cam00", "name: camXX"), ("name: cam02", "name: cam00"), ("camXX", "cam02"))
+    path, new = changed(capture, tmp_path / "site.yaml", *swap), tmp_path / "new.yaml"
+    with pytest.raises(
+        CalibrationError, match=r"no result: .*cam00 at the place of cam02.*new\.yaml was not written"
+    ):
+        run(path, "--out", new, "--force-file")
+    assert [file.name for file in tmp_path.glob("new*")] == ["new.doubted.yaml"]
+
+
+def test_doubts_leave_no_file(tmp_path):
+    def written(path):
+        raise AssertionError(path)
+
+    with pytest.raises(
+        CalibrationError, match=r"no result: this; or that; .*--force-file .* new\.doubted\.yaml"
+    ):
+        refuse(["this", "or that"], tmp_path / "new.yaml", written, force_file=False)
+
+
+def test_a_square_in_millimetres_is_refused_before_anything_is_looked_at(capture, tmp_path):
+    path = changed(capture, tmp_path / "site.yaml", ("square_m: 0.1,", "square_m: 100,"))
+    with pytest.raises(InputError, match=r"it is in metres, 100 looks like millimetres \(0.1 m\)"):
+        run(path, "--out", tmp_path / "new.yaml")
+
+
+@pytest.mark.parametrize(
+    ("changes", "others", "words"),
+    [
+        ([("depth_scale_m: 0.0002", "depth_scale_m: 0.001")], True, "depth_scale_m of 0.0002 instead of 0.001"),
+        ([("columns: 8, rows: 5", "columns: 5, rows: 8")], False, "show 8 x 5 inner .*, or all images are mirrored"),
+        ([(f"{key}: {full}", f"{key}: {half}") for key, full, half in HALVED], True, "2 times as large"),
+    ],
+)  # fmt: skip
+def test_images_say_how_the_board_should_have_been_described(capture, tmp_path, changes, others, words):
+    site = Site.load(changed(capture, tmp_path / "site.yaml", *changes))
+    said = instead_of(site, board_of(site), images_of(site, ["cam00"])[:5], others_see_it=others)
+    assert said is not None and re.search(words, said)
+
+
+def test_squares_that_were_counted_are_among_the_counts_that_are_tried():
+    assert (8, 5) in _other_counts(9, 6) and (8, 5) in _other_counts(6, 9) and (8, 5) in _other_counts(8, 7)
+
+
+def test_images_that_are_mirrored_are_said_to_be(capture, tmp_path):
+    site = Site.load(changed(capture, tmp_path / "site.yaml"))
+    work = []
+    for image, pose in images_of(site, ["cam01"])[:5]:
+        path = tmp_path / image.path.name
+        Image.fromarray(np.asarray(Image.open(image.path))[:, ::-1].copy()).save(path)
+        work.append((image._replace(path=path), pose))
+    assert "mirrored left to right" in instead_of(site, board_of(site), work, others_see_it=True)
+
+
+def test_streams_that_were_frozen_and_folders_that_were_copied_are_named(capture):
+    work = images_of(Site.load(capture / "site.yaml"), ["cam01", "cam02"])
+    require_own_images(work, ())
+    first = next(image for image, _ in work if image.camera.name == "cam02")
+    frozen = [(image._replace(path=first.path), pose) for image, pose in work if image.camera.name == "cam02"]
+    with pytest.raises(
+        CalibrationError, match=f"camera cam02: {len(frozen)} of its images are the same to the bit"
+    ):
+        require_own_images(frozen, ())
+    seen = SimpleNamespace(camera="cam01", pose=work[0][1])
+    copied = [*work, (work[0][0]._replace(camera=first.camera), work[0][1])]
+    with pytest.raises(CalibrationError, match="cameras cam01 and cam02: 1 of their images"):
+        require_own_images(copied, [seen])
 
 
 def test_two_real_cameras_agree_after_calibration(data_folder, tmp_path, request):

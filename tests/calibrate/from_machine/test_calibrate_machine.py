@@ -246,3 +246,35 @@ def test_a_flat_plate_leaves_three_directions_free_and_it_is_said_what_to_move(t
     assert "camera north" in words
     assert "do not fix it" in words
     assert "sees only plate: move turn in its view" in words
+
+
+def shifted(moments, name, by):
+    """The images of one camera under the joints of other poses."""
+    images = [{frame.camera: frame for frame in moment.frames} for moment in moments]
+    given = [
+        {**own, name: images[number + by][name]} if 0 <= number + by < len(moments) else
+        {key: frame for key, frame in own.items() if key != name}
+        for number, own in enumerate(images)
+    ]  # fmt: skip
+    return [replace(moment, frames=tuple(own.values())) for moment, own in zip(moments, given, strict=True)]
+
+
+def test_a_camera_that_is_a_pose_late_is_told(busy):
+    machine, true, moments = busy
+    name = true[1].name
+    with pytest.raises(
+        CalibrationError, match=f"camera {name}: its images fit the joints of one pose before"
+    ):
+        calibrate_from_machine(machine, roughly(true, 1), shifted(moments, name, -1))
+
+
+def test_two_folders_that_were_exchanged_are_told(busy):
+    machine, true, moments = busy
+    one, other = true[0].name, true[1].name
+    names = {one: other, other: one}
+    swapped = [
+        replace(m, frames=tuple(replace(f, camera=names.get(f.camera, f.camera)) for f in m.frames))
+        for m in moments
+    ]
+    with pytest.raises(CalibrationError, match=r"fit at the place of camera .* exchange the two folders"):
+        calibrate_from_machine(machine, roughly(true, 1), swapped)

@@ -9,10 +9,10 @@ from elbowroom.errors import ImplausibleError
 from elbowroom.evaluate.contradictions.wrongs import KINDS
 from elbowroom.geometry import DepthCamera, Intrinsics
 from elbowroom.geometry.twist import exp
-from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.contradiction.findings import beyond_limit, contradictions
 from elbowroom.reconstruct.contradiction.pairs import Pairs
 from elbowroom.reconstruct.contradiction.views import Views
+from elbowroom.reconstruct.looking import require_plausible
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame
 from reference.contradiction_room import GRID, MARGIN, room_cameras, room_scene, room_site
 from reference.reconstruct_scenes import frame_of
@@ -151,13 +151,27 @@ def test_masked_pixels_are_not_compared():
     spoilt = frames[0].depth_m.copy()
     spoilt[:, :80] *= np.float32(0.4)
     frames[0] = DepthFrame("ne", 0, spoilt)
-    assert found(RIGHT.cameras, frames)
+    assert any(finding.kind == "contradiction" for finding in found(RIGHT.cameras, frames))
     mask = np.zeros((120, 160), dtype=bool)
     mask[:, :80] = True
-    assert found([replace(RIGHT.cameras[0], mask=mask), *RIGHT.cameras[1:]], frames) == ()
+    findings = found([replace(RIGHT.cameras[0], mask=mask), *RIGHT.cameras[1:]], frames)
+    assert [finding.kind for finding in findings] == ["mask"]
+
+
+def test_a_mask_of_other_images_is_told_of_and_the_right_one_is_not():
+    frames = list(RIGHT.snapshot.frames)
+    dark = frames[0].depth_m.copy()
+    dark[:30] = 0
+    frames[0] = DepthFrame("ne", 0, dark)
+    for rows, told in ((slice(0, 30), False), (slice(90, 120), True)):
+        mask = np.zeros((120, 160), dtype=bool)
+        mask[rows] = True
+        findings = found([replace(RIGHT.cameras[0], mask=mask), *RIGHT.cameras[1:]], frames)
+        assert [finding.kind for finding in findings] == (["mask"] if told else [])
+        assert not any(finding.stops for finding in findings)
 
 
 def test_reconstruct_refuses_what_contradicts():
     wrong = KINDS["two exchanged"](np.random.default_rng(1), RIGHT)
     with pytest.raises(ImplausibleError, match="each other's pose"):
-        reconstruct(GRID, wrong.cameras, RIGHT.snapshot.frames, margin=MARGIN)
+        require_plausible(GRID, wrong.cameras, RIGHT.snapshot.frames, MARGIN)

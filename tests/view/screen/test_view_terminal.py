@@ -142,7 +142,7 @@ def test_a_clear_motion_needs_no_distance_in_a_plain_line():
 
 
 def test_log_counts_levels_faults_and_times():
-    log = RunLog("simulator", ("rail",))
+    log = RunLog("simulator", ("rail",), ("logo",))
     for fault in (None, "late", "late"):
         log.add(a_result(fault), 20.0)
     assert log.cycles == 3
@@ -152,7 +152,15 @@ def test_log_counts_levels_faults_and_times():
     assert log.recent(log.age_ms) == 47.0
     console = Console(file=io.StringIO(), width=100)
     console.print(log.summary())
-    for words in ("3 cycles", "100%", "late", "rail", "simulator", "Not a certified"):
+    for words in (
+        "3 cycles",
+        "100%",
+        "late",
+        "rail",
+        "simulator",
+        "Without a body, by the site's word: logo",
+        "Not a certified",
+    ):
         assert words in console.file.getvalue(), words
 
 

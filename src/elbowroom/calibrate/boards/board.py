@@ -11,6 +11,8 @@ from elbowroom.errors import CalibrationError
 BoardKind = Literal["printed", "cut_out"]
 MOST_CORNERS = 60
 """Along one side."""
+LARGEST_SQUARE_M = 1.0
+"""No board that a person carries has larger squares [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +60,16 @@ class Board:
             )
         if not (np.isfinite(self.square_m) and self.square_m > 0):
             raise CalibrationError(f"board: square_m is {self.square_m}, must be above 0")
+        if self.square_m > LARGEST_SQUARE_M:
+            raise CalibrationError(
+                f"board: square_m is {self.square_m:g}, at most {LARGEST_SQUARE_M:g} is allowed: it is in metres, this "
+                f"looks like millimetres ({self.square_m / 1e3:g} m)"
+            )
+        if self.border_m > LARGEST_SQUARE_M:
+            raise CalibrationError(
+                f"board: border_m is {self.border_m:g}: it is in metres, this looks like millimetres "
+                f"({self.border_m / 1e3:g} m)"
+            )
         if not (np.isfinite(self.border_m) and self.border_m >= 0):
             raise CalibrationError(f"board: border_m is {self.border_m}, must be at least 0")
         if not (np.isfinite(self.thickness_m) and 0 <= self.thickness_m < self.square_m / 4):

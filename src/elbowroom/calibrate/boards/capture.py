@@ -1,6 +1,6 @@
 """A capture of a board on disk: the images of each pose, and what is seen of the board in them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,10 +11,12 @@ from PIL import Image as Pictures
 
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
+from elbowroom.calibrate.boards.closer_look import Looks, closer_look
 from elbowroom.calibrate.boards.colour import carried_to_depth
 from elbowroom.calibrate.boards.cut_out import cut_out_view
 from elbowroom.calibrate.boards.printed import printed_view
-from elbowroom.calibrate.boards.trouble import Fault, Trouble
+from elbowroom.calibrate.boards.same_images import require_own_images
+from elbowroom.calibrate.boards.trouble import Trouble
 from elbowroom.errors import CalibrationError, FrameError
 from elbowroom.geometry import DepthCamera, Intrinsics, nearest_rigid
 from elbowroom.geometry.parallel import spread
@@ -25,8 +27,8 @@ from elbowroom.site.recording_entry import StampedFolder
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
 
-LOOKED_AT_AGAIN = 24
-"""Images in which a board of another size is looked for where none shows the right one."""
+GOOD_SHARE = 0.4
+"""Of the images of a camera that show the board, where the board is as described and the camera in order."""
 Seen = BoardView | Trouble
 
 
@@ -45,6 +47,15 @@ class Sightings:
     views: tuple[BoardView, ...]
     troubles: tuple[Trouble, ...]
     poses: int
+
+    def is_seen_by(self, cameras: Sequence[str]) -> bool:
+        """Whether most of some cameras see the board in a good share of their images, as they do if it is right."""
+        good = 0
+        for name in cameras:
+            views = sum(view.camera == name for view in self.views)
+            images = views + sum(trouble.camera == name for trouble in self.troubles)
+            good += views >= max(2, GOOD_SHARE * images)
+        return good > len(cameras) / 2
 
     def row(self) -> dict[str, Any]:
         """How much was seen, and what was wrong with the rest."""
@@ -130,14 +141,61 @@ def sightings(site: Site, on_image: Callable[[int, int], None] = lambda done, of
     views = tuple(seen for seen in found if isinstance(seen, BoardView))
     troubles = tuple(seen for seen in found if isinstance(seen, Trouble))
     if not views:
-        few = [work[n] for n in np.linspace(0, len(work) - 1, min(len(work), LOOKED_AT_AGAIN)).astype(int)]
-        closer = spread(lambda item: seen_in(site, board, *item, other_sizes=True), few)
-        sizes = [seen for seen in closer if isinstance(seen, Trouble) and seen.fault is Fault.WRONG_SIZE]
-        troubles = tuple(sizes) or troubles
-        raise CalibrationError(
-            f"{site.path}: {len(work)} images and none shows the board; {_commonest(troubles)}"
-        )
+        what = instead_of(site, board, work) or _commonest(troubles)
+        raise CalibrationError(f"{site.path}: {len(work)} images and none shows the board; {what}")
+    require_own_images(_pictures(site, work), views)
     return Sightings(board, views, troubles, len(poses))
+
+
+def _pictures(site: Site, work: Sequence[tuple[Image, int]]) -> list[tuple[Image, int]]:
+    """The files in which the board was looked for, instead of depth images, where these are others."""
+    entry = site.entry.calibration
+    if entry is None or entry.images.folder is None:
+        return list(work)
+    return [
+        (image._replace(path=picture_path(site, entry.images, image, pose)), pose) for image, pose in work
+    ]
+
+
+def images_of(site: Site, cameras: Sequence[str]) -> list[tuple[Image, int]]:
+    """The depth images of some cameras, each with the number of its pose.
+
+    Args:
+        site: with a recording.
+        cameras: their names.
+    """
+    return [
+        (image, number)
+        for number, images in enumerate(images_by_pose(site))
+        for image in images
+        if image.camera.name in cameras
+    ]
+
+
+def instead_of(
+    site: Site, board: Board, work: Sequence[tuple[Image, int]], *, others_see_it: bool = False
+) -> str | None:
+    """What images show where they do not show the board, a sentence; None: nothing that can be told.
+
+    Args:
+        site: whose images they are.
+        board: as the site describes it.
+        work: images, and the number of their pose.
+        others_see_it: whether other cameras see the board as it is described.
+    """
+    if not work:
+        return None
+
+    def plain(other: Board, image: Image, pose: int) -> Seen:
+        return seen_in(site, other, image, pose)
+
+    def mirrored(other: Board, image: Image, pose: int) -> Seen:
+        return seen_in(site, other, image, pose, mirrored=True)
+
+    def other_sizes(other: Board, image: Image, pose: int) -> Seen:
+        return seen_in(site, other, image, pose, other_sizes=True)
+
+    return closer_look(board, work, Looks(plain, mirrored, other_sizes), others_see_it=others_see_it)
 
 
 def _commonest(troubles: tuple[Trouble, ...]) -> str:
@@ -148,7 +206,9 @@ def _commonest(troubles: tuple[Trouble, ...]) -> str:
     return f"most often: {fault.value}, such as {example}"
 
 
-def seen_in(site: Site, board: Board, image: Image, pose: int, *, other_sizes: bool = False) -> Seen:
+def seen_in(
+    site: Site, board: Board, image: Image, pose: int, *, other_sizes: bool = False, mirrored: bool = False
+) -> Seen:
     """What one image shows of the board.
 
     Args:
@@ -157,20 +217,24 @@ def seen_in(site: Site, board: Board, image: Image, pose: int, *, other_sizes: b
         image: the depth image, unread; infrared and colour images are named like it.
         pose: number of the board's pose.
         other_sizes: as of `cut_out_view`.
+        mirrored: whether the image is turned left to right first, to see whether it was mirrored.
     """
     entry = site.entry.calibration
     frame = image.read()
+    turn = slice(None, None, -1 if mirrored else 1)
     if entry is None or entry.images.folder is None:
-        return cut_out_view(image.camera, board, frame.depth_m, pose, image.stamp_ns, other_sizes=other_sizes)
+        depth = frame.depth_m[:, turn]
+        return cut_out_view(image.camera, board, depth, pose, image.stamp_ns, other_sizes=other_sizes)
     path = picture_path(site, entry.images, image, pose)
     lens = entry.images.lenses.get(image.camera.name)
     if lens is None:
-        grey = read_grey(path, image.camera)
-        depth = frame.depth_m if entry.images.kind == "infrared" else None
-        return printed_view(image.camera, board, grey, depth, pose, image.stamp_ns)
+        grey = np.ascontiguousarray(read_grey(path, image.camera)[:, turn])
+        infrared = frame.depth_m[:, turn] if entry.images.kind == "infrared" else None
+        return printed_view(image.camera, board, grey, infrared, pose, image.stamp_ns)
     k = Intrinsics(lens.fx, lens.fy, lens.cx, lens.cy, lens.distortion)
     colour = DepthCamera(image.camera.name, lens.width, lens.height, np.eye(4), k)
-    seen = printed_view(colour, board, read_grey(path, colour), None, pose, image.stamp_ns)
+    grey = np.ascontiguousarray(read_grey(path, colour)[:, turn])
+    seen = printed_view(colour, board, grey, None, pose, image.stamp_ns)
     if isinstance(seen, Trouble):
         return seen
     where = nearest_rigid(

@@ -97,7 +97,8 @@ def beside_holes(view: View, square_m: float) -> NDArray[np.bool_]:
             step = np.maximum(STEP_M, STEP_SIGMAS * view.sigma(z[part]))
             uneven = 2 * nearness[part] - farthest - nearest
             here[:half] = here[-half:] = here[:, :half] = here[:, -half:] = False
-            found[part] |= here[part] & (uneven * z[part] ** 2 > step)
+            with np.errstate(invalid="ignore"):  # where nothing at all returned
+                found[part] |= here[part] & (uneven * z[part] ** 2 > step)
         middle = bound
     return found
 

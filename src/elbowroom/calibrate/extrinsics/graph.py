@@ -8,6 +8,7 @@ agree.
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,28 @@ from elbowroom.geometry import invert_rigid
 Array = NDArray[np.float64]
 LEAST_TOLERANCE_M = 0.003
 SIGMAS = 4.0
+NEAR_M = 0.03
+"""A pose of the board that two cameras place so near to each other, and by their own sigmas, is seen alike."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Relative:
+    """Where one camera is beside another, by the poses of the board that both saw.
+
+    Args:
+        one, other: their names.
+        one_from_other: shape (4, 4).
+        support: how many poses agree with it, finely counted: the edge's weight.
+        shared: how many both saw.
+        alike: how many of these they place alike, by it.
+    """
+
+    one: str
+    other: str
+    one_from_other: Array
+    support: float
+    shared: int
+    alike: int
 
 
 def require_one_piece(names: Sequence[str], seen: Sequence[SeenBoard]) -> None:
@@ -100,35 +123,54 @@ def first_solution(
     Returns:
         base_from_camera by name, base_from_board by pose.
     """
+    edges = relatives(names, seen, corners)
+    counts = {name: sum(one.view.camera == name for one in seen) for name in names}
+    root = max(names, key=lambda name: counts[name])
+    base_from_camera = {root: np.eye(4)}
+    while len(base_from_camera) < len(names):
+        edge = max(
+            (edge for edge in edges if (edge.one in base_from_camera) != (edge.other in base_from_camera)),
+            key=lambda edge: edge.support,
+        )
+        if edge.one in base_from_camera:
+            base_from_camera[edge.other] = base_from_camera[edge.one] @ edge.one_from_other
+        else:
+            base_from_camera[edge.one] = base_from_camera[edge.other] @ invert_rigid(edge.one_from_other)
+    return base_from_camera, _boards(seen, base_from_camera, outermost(corners))
+
+
+def outermost(corners: Array) -> Array:
+    """Four corners of the board that lie farthest out, shape (4, 3)."""
+    return corners[[0, int(np.argmax(corners[:, 0])), int(np.argmax(corners[:, 1])), len(corners) - 1]]
+
+
+def relatives(names: Sequence[str], seen: Sequence[SeenBoard], corners: Array) -> list[Relative]:
+    """Each two cameras that saw the board in the same poses.
+
+    Args:
+        names: of the cameras.
+        seen: views.
+        corners: of the board, shape (n, 3), board frame [m].
+    """
     views: dict[str, dict[int, SeenBoard]] = {name: {} for name in names}
     for one in seen:
         views[one.view.camera][one.view.pose] = one
-    box = corners[[0, int(np.argmax(corners[:, 0])), int(np.argmax(corners[:, 1])), len(corners) - 1]]
-    edges = []
+    box, edges = outermost(corners), []
     for number, a in enumerate(names):
         for b in names[number + 1 :]:
             common = sorted(views[a].keys() & views[b].keys())
             if common:
-                a_from_b, support = _relative(
-                    [views[a][p] for p in common], [views[b][p] for p in common], box
-                )
-                edges.append((support, a, b, a_from_b))
-    root = max(names, key=lambda name: len(views[name]))
-    base_from_camera = {root: np.eye(4)}
-    while len(base_from_camera) < len(names):
-        support, a, b, a_from_b = max(
-            (edge for edge in edges if (edge[1] in base_from_camera) != (edge[2] in base_from_camera)),
-            key=lambda edge: edge[0],
-        )
-        if a in base_from_camera:
-            base_from_camera[b] = base_from_camera[a] @ a_from_b
-        else:
-            base_from_camera[a] = base_from_camera[b] @ invert_rigid(a_from_b)
-    return base_from_camera, _boards(seen, base_from_camera, box)
+                edges.append(relative([views[a][p] for p in common], [views[b][p] for p in common], box))
+    return edges
 
 
-def _relative(a: Sequence[SeenBoard], b: Sequence[SeenBoard], box: Array) -> tuple[Array, float]:
-    """The relative pose that most of the poses seen by both agree with, and by how many it is supported."""
+def relative(a: Sequence[SeenBoard], b: Sequence[SeenBoard], box: Array) -> Relative:
+    """The relative pose that most of the poses seen by both agree with, and by how many it is supported.
+
+    Args:
+        a, b: views of two cameras, of the same poses in the same order.
+        box: corners of the board that lie farthest out, shape (4, 3) [m].
+    """
     pairs = [
         (number, one, other)
         for number, (in_a, in_b) in enumerate(zip(a, b, strict=True))
@@ -150,7 +192,10 @@ def _relative(a: Sequence[SeenBoard], b: Sequence[SeenBoard], box: Array) -> tup
         if best is None or (round(agreed.sum(), 1), -own) > best[:2]:
             best = (round(float(agreed.sum()), 1), -float(own), a_from_b)
     assert best is not None
-    return best[2], best[0] + 1e-3 / (1e-3 - best[1])
+    off = np.linalg.norm(in_a - _moved(best[2], in_b), axis=2).max(axis=1)
+    alike = {int(n) for n in number[off < NEAR_M + SIGMAS * own_spread]}
+    support = best[0] + 1e-3 / (1e-3 - best[1])
+    return Relative(a[0].view.camera, b[0].view.camera, best[2], support, len(a), len(alike))
 
 
 def _moved(to_from_from: Array, points: Array) -> Array:

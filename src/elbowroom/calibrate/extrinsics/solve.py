@@ -30,6 +30,7 @@ from elbowroom.calibrate.extrinsics.disagreement import (
 from elbowroom.calibrate.extrinsics.graph import first_solution, require_one_piece, shared_poses
 from elbowroom.calibrate.extrinsics.known_points import KnownPoints
 from elbowroom.calibrate.extrinsics.misread import misread_views
+from elbowroom.calibrate.extrinsics.out_of_step import require_in_step
 from elbowroom.calibrate.extrinsics.unknowns import State
 from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
 from elbowroom.errors import CalibrationError
@@ -124,6 +125,7 @@ def solve_extrinsics(
     seen = seen_boards(named, board, views)
     _require_views(named, seen, least_views)
     require_board_size(board, seen)
+    require_in_step(named, board, seen)
     progress("first solution")
     corners = board.corners_in_board
     base_from_camera, base_from_board = first_solution(list(named), seen, corners)

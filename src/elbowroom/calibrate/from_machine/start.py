@@ -59,18 +59,11 @@ def start(drawn: DrawnMachine, views: MachineViews) -> Array:
         CalibrationError: nothing of the machine moved in its view, or no pose suits.
     """
     name, rough = views.camera.name, views.camera.world_from_camera
-    small = views.images.coarser(max(1, views.images.thinned.width // START_WIDTH_PX))
-    points = moving_points(small, views.images)
-    surfaces = [_surface(drawn, small, pose) for pose in views.base_from_links]
-    usable = [
-        (p, s)
-        for p, s in zip(points, surfaces, strict=True)
-        if len(p) >= FEWEST_POINTS and len(s.points) >= FEWEST_POINTS
-    ]
+    usable = _usable(drawn, views)
     if len(usable) < 3:
         raise CalibrationError(
-            f"camera {name}: the machine moves in its view in {len(usable)} of {len(points)} poses, at least 3 are "
-            "needed; move it where this camera sees it, or look whether the camera's rough pose is right"
+            f"camera {name}: the machine moves in its view in {len(usable)} of {len(views.poses)} poses, at least 3 "
+            "are needed; move it where this camera sees it, or look whether the camera's rough pose is right"
         )
     candidates = [rough]
     for seen, surface in usable:
@@ -97,6 +90,18 @@ def start(drawn: DrawnMachine, views: MachineViews) -> Array:
             f"{np.degrees(far_rad):.0f} degrees from its rough pose; give a rough pose within 10 cm and 5 degrees"
         )
     return best
+
+
+def _usable(drawn: DrawnMachine, views: MachineViews) -> list[tuple[Array, Surface]]:
+    """Per pose that has a say what moved and the machine's surface."""
+    small = views.images.coarser(max(1, views.images.thinned.width // START_WIDTH_PX))
+    points = moving_points(small, views.images)
+    surfaces = [_surface(drawn, small, pose) for pose in views.base_from_links]
+    return [
+        (p, s)
+        for p, s in zip(points, surfaces, strict=True)
+        if len(p) >= FEWEST_POINTS and len(s.points) >= FEWEST_POINTS
+    ]
 
 
 def moving_points(small: PlanarImages, images: PlanarImages) -> list[Array]:

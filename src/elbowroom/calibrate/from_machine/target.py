@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.calibrate.from_machine.drawn_machine import DrawnMachine
 from elbowroom.calibrate.from_machine.fit import Known, MachineFit, fit, require_world
+from elbowroom.calibrate.from_machine.other_poses import explained
 from elbowroom.calibrate.from_machine.start import start
 from elbowroom.calibrate.from_machine.surface_sums import SurfaceSums
 from elbowroom.calibrate.from_machine.verdict import check_camera, notes_of
@@ -95,7 +96,7 @@ def calibrate_from_machine(
     starts = dict(
         zip(
             (v.camera.name for v in views),
-            _all_or_named(lambda v: start(drawn, v), views),
+            _all_or_named(lambda v: start(drawn, v), views, machine),
             strict=True,
         )
     )
@@ -113,7 +114,7 @@ def calibrate_from_machine(
         done=lambda: progress("least squares"),
     )
     machine = replace(machine, world_from_base=found.world_from_base)
-    _all_or_named(lambda v: check_camera(machine, v, found), views)
+    _all_or_named(lambda v: check_camera(machine, v, found), views, machine)
     calibrated = tuple(
         _calibrated(v, found, notes_of(machine, v, found))
         for v in views
@@ -139,8 +140,8 @@ def _known(views: Sequence[MachineViews], hold: Mapping[str, NDArray[np.float64]
     return {name: Known(poses[name], covariance) for name, covariance in hold.items()}
 
 
-def _all_or_named(work: Callable, views: Sequence[MachineViews]) -> list:
-    """Does work for each camera; if it fails for any, all of them are named in the one error."""
+def _all_or_named(work: Callable, views: Sequence[MachineViews], machine: Machine) -> list:
+    """Does work for each camera; if it fails for any, all of them are named in the one error, with what would fit."""
 
     def tried(view: MachineViews) -> object:
         try:
@@ -152,10 +153,12 @@ def _all_or_named(work: Callable, views: Sequence[MachineViews]) -> list:
     errors = [(v, r) for v, r in zip(views, results, strict=True) if isinstance(r, CalibrationError)]
     if not errors:
         return results
-    others = ", ".join(v.camera.name for v, _ in errors[1:])
-    raise CalibrationError(
-        str(errors[0][1]) + (f" (and the same or the like for {others})" if others else "")
-    )
+    refused = [v.camera.name for v, _ in errors]
+    others = ", ".join(refused[1:])
+    first, error = errors[0]
+    why = explained(machine, first, views, refused)
+    said = str(error) if why is None else f"camera {refused[0]}: {why}; as it is: {error}"
+    raise CalibrationError(said + (f" (and the same or the like for {others})" if others else ""))
 
 
 def _first_base(

@@ -62,10 +62,20 @@ def refine_sections(found: Refinement, rows: Sequence[Mapping[str, Any]]) -> lis
     ]
 
 
-def pair_table(found: Refinement) -> Table:
-    """Shares of co-visible pixels that agree within 5 cm, before and after."""
+def pair_table(found: Refinement, worst: int | None = None) -> Table:
+    """Shares of co-visible pixels that agree within 5 cm, before and after.
+
+    Args:
+        found: what was found.
+        worst: so many pairs, those that agree least; None: all.
+    """
+    pairs, which = found.pairs, ""
+    if worst is not None and len(pairs) > worst:
+        pairs = tuple(sorted(pairs, key=lambda pair: pair.after.agree_pct)[:worst])
+        which = f"The {worst} of {len(found.pairs)} pairs that agree least (--report and --json have all). "
     return Table(
-        "Pixels of the one whose points the other looks at: agree within 5 cm, are hidden, are seen through [%]",
+        f"{which}Pixels of the one whose points the other looks at: agree within 5 cm, are hidden, are seen through "
+        "[%]",
         ("one", "other", "compared", "agree before", "agree", "hidden", "seen through"),
         [
             (
@@ -77,7 +87,7 @@ def pair_table(found: Refinement) -> Table:
                 f"{pair.after.hidden_pct:.1f}",
                 f"{pair.after.conflict_pct:.1f}",
             )
-            for pair in found.pairs
+            for pair in pairs
         ],
         (0, 1),
     )

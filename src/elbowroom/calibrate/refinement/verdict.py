@@ -20,6 +20,8 @@ FEWEST_COMMON = 300
 """Points that two cameras must have in common to count as a pair, over all moments."""
 LEAST_SHARE = 0.2
 """Share of a camera's common points that must agree in the end."""
+SURE_M, SURE_RAD = 0.001, float(np.radians(0.02))
+"""One sigma below which it does not matter that the images say nothing more [m, rad]."""
 FREE = 0.9
 """A direction in which the covariance is still this share of what it was (one sigma) was not touched by the images."""
 
@@ -112,7 +114,9 @@ def untouched_notes(name: str, covariance: Array, before: Array) -> tuple[str, .
     # back from units of sigma to metres and radians
     freed = np.linalg.cholesky(before) @ directions[:, untouched]
     place_m, turn = deviations(freed @ freed.T)
+    if place_m < SURE_M and turn < SURE_RAD:
+        return ()
     return (
-        f"{name}: the common scene leaves {weakest_words(freed @ freed.T)} free ({place_m * 1e3:.0f} mm, "
-        f"{np.degrees(turn):.2f} degrees, as before); put furniture where it and others look",
+        f"{name}: the common scene says nothing of {weakest_words(freed @ freed.T)}, which is known to "
+        f"{place_m * 1e3:.1f} mm and {np.degrees(turn):.2f} degrees, as before; put furniture where it and others look",
     )

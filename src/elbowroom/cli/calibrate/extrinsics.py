@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.calibrate.options import Confidence, Near, OutSite, ReportFolder, SiteOrFolder
+from elbowroom.cli.calibrate.options import Confidence, ForceFile, Near, OutSite, ReportFolder, SiteOrFolder
 from elbowroom.cli.options import JsonFile
 
 
@@ -18,6 +18,7 @@ def extrinsics(
     ] = None,
     confidence: Confidence = 0.95,
     near: Near = None,
+    force_file: ForceFile = False,
     json: JsonFile = None,
 ) -> None:
     """Find where the cameras are from a board that two or more of them see at a time, and how sure that is.
@@ -29,6 +30,6 @@ def extrinsics(
     from elbowroom.cli.calibrate.extrinsics_run import ExtrinsicsOptions, run_extrinsics
     from elbowroom.cli.calibrate.result import ResultOptions
 
-    result = ResultOptions(out=out, report=report, confidence=confidence, near_m=near)
+    result = ResultOptions(out=out, report=report, confidence=confidence, near_m=near, force_file=force_file)
     options = ExtrinsicsOptions(site=site, without_poses=tuple(without_pose or ()), result=result)
     run_extrinsics(options, json)

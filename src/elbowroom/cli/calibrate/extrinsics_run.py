@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from elbowroom.calibrate.boards.capture import Sightings, sightings
+from elbowroom.calibrate.boards.capture import Sightings, images_of, instead_of, sightings
 from elbowroom.calibrate.extrinsics.site_anchor import anchor_of
 from elbowroom.calibrate.extrinsics.solve import Extrinsics, solve_extrinsics
 from elbowroom.calibrate.pages.board_report import rms
@@ -46,7 +46,7 @@ def run_extrinsics(options: ExtrinsicsOptions, json_file: Path | None) -> None:
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 4) as steps:
             steps.begin("looking for the board in all images")
-            seen = sightings(site)
+            seen = sightings(site, steps.counted)
             found = _solved(site, seen, anchor, options.without_poses, steps.begin)
         rows = write_result(
             site, found.cameras, options.result, "extrinsics", add, depth_errors=found.depth_errors()
@@ -75,25 +75,46 @@ def _solved(
             site.cameras(), seen.board, views, anchor, least_views=least, progress=progress
         )
     except CalibrationError as error:
-        raise CalibrationError(told(str(error), seen)) from None
+        raise CalibrationError(told(str(error), seen, lambda names: closer(site, seen, names))) from None
 
 
-def told(error: str, seen: Sightings) -> str:
+def closer(site: Site, seen: Sightings, names: Sequence[str]) -> str | None:
+    """What images of some cameras show instead of the board; None: nothing that can be told.
+
+    Args:
+        site: whose images they are.
+        seen: what was looked for.
+        names: of the cameras.
+    """
+    others = [camera.name for camera in site.cameras() if camera.name not in names]
+    return instead_of(site, seen.board, images_of(site, names), others_see_it=seen.is_seen_by(others))
+
+
+def told(
+    error: str, seen: Sightings, closer: Callable[[Sequence[str]], str | None] = lambda names: None
+) -> str:
     """What was wrong, with the option that leaves a bad pose out and with what the images of a bad camera showed.
 
     Args:
         error: as `solve_extrinsics` says it.
         seen: what it was given.
+        closer: looks what the images of some cameras show instead of the board.
     """
     pose = re.match(r"pose (\d+).* do not agree where the board was", error)
     if pose is not None:
         error += f" (--without-pose {pose[1]})"
     why = [
-        str(trouble)
+        trouble
         for trouble in seen.troubles
-        if f" {trouble.camera} " in error or f" {trouble.camera};" in error
+        if any(f" {trouble.camera}{end}" in error for end in (" ", ";", ","))
     ]
-    return f"{error} (of {len(why)} images without a view: {why[0]})" if why else error
+    if not why or pose is not None:
+        return error
+    unseen = "never seen" in error or "share no pose" in error or "too few poses" in error
+    instead = closer(sorted({trouble.camera for trouble in why})) if unseen else None
+    if instead is not None:
+        return f"{instead} ({error})"
+    return f"{error} (of {len(why)} images without a view: {why[0]})"
 
 
 def _capture_row(

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from elbowroom.cli.calibrate.options import OutSite, ReportFolder, SiteOrFolder
+from elbowroom.cli.calibrate.options import ForceFile, OutSite, ReportFolder, SiteOrFolder
 from elbowroom.cli.options import JsonFile
 
 
@@ -20,6 +20,7 @@ def intrinsics(
         Literal["0", "5", "8"],
         typer.Option(help="Coefficients; 0 where the driver delivers pinhole images already."),
     ] = "5",
+    force_file: ForceFile = False,
     json: JsonFile = None,
 ) -> None:
     """Find focal length, principal point, distortion, depth scale and bias of each camera, and how sure they are.
@@ -29,6 +30,11 @@ def intrinsics(
     from elbowroom.cli.calibrate.intrinsics_run import IntrinsicsOptions, run_intrinsics
 
     options = IntrinsicsOptions(
-        site=site, out=out, report=report, only=tuple(camera or ()), coefficients=int(distortion)
+        site=site,
+        out=out,
+        report=report,
+        only=tuple(camera or ()),
+        coefficients=int(distortion),
+        force_file=force_file,
     )
     run_intrinsics(options, json)

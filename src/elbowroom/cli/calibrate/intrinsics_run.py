@@ -6,12 +6,13 @@ from pathlib import Path
 
 from rich.console import Console
 
-from elbowroom.calibrate.boards.capture import Sightings, sightings
+from elbowroom.calibrate.boards.capture import Sightings, images_of, instead_of, sightings
 from elbowroom.calibrate.intrinsics import FoundIntrinsics, solve_intrinsics
+from elbowroom.calibrate.intrinsics.doubt import doubts_of_lens
 from elbowroom.calibrate.intrinsics.site_keys import changed_keys
 from elbowroom.calibrate.pages.intrinsics import lens_table, report_sections
 from elbowroom.cli.calibrate.images import PoseImages
-from elbowroom.cli.calibrate.result import say_weak, write_page
+from elbowroom.cli.calibrate.result import refuse, say_weak, write_page
 from elbowroom.cli.calibrate.site import chosen_cameras, site_path
 from elbowroom.cli.progress import Steps
 from elbowroom.cli.screen import show
@@ -31,6 +32,7 @@ class IntrinsicsOptions:
     report: Path | None
     only: tuple[str, ...]
     coefficients: int
+    force_file: bool = False
 
 
 def run_intrinsics(options: IntrinsicsOptions, json_file: Path | None) -> None:
@@ -46,18 +48,28 @@ def run_intrinsics(options: IntrinsicsOptions, json_file: Path | None) -> None:
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 2) as steps:
             steps.begin("looking for the board in all images")
-            seen = sightings(site)
+            seen = sightings(site, steps.counted)
             steps.begin("solving camera by camera")
             found = [_solved(site, camera, seen, options.coefficients) for camera in cameras]
         lenses = {one.camera.name: changed_keys(site, one) for one in found}
-        update_lenses(site, lenses, options.out, "intrinsics")
+        doubts = doubts_of_lens(found)
+        if not doubts:
+            update_lenses(site, lenses, options.out, "intrinsics")
         for one in found:
             add(one.row())
         add({"kind": "capture", "site": str(site.path), **seen.row(), "seconds": steps.seconds})
     show(lens_table(found))
     say_weak([note for one in found for note in one.notes])
     print(f"views     {len(seen.views)} of {len(seen.views) + len(seen.troubles)} images")
+    if doubts:
+        refuse(
+            doubts,
+            options.out,
+            lambda aside: update_lenses(site, lenses, aside, "intrinsics"),
+            force_file=options.force_file,
+        )
     print(f"site      {options.out}")
+    print(f"next      elbowroom calibrate extrinsics {options.out} --out calibrated.yaml")
     if options.report is not None:
         _write_page(options.report, site, found, seen)
 
@@ -72,7 +84,12 @@ def _solved(site: Site, camera: DepthCamera, seen: Sightings, coefficients: int)
         why = [str(trouble) for trouble in seen.troubles if trouble.camera == camera.name]
         if not why:
             raise
-        raise CalibrationError(f"{error} (of its images {len(why)} show no whole board: {why[0]})") from None
+        others = [one.name for one in site.cameras() if one.name != camera.name]
+        work = images_of(site, [camera.name])
+        closer = instead_of(site, seen.board, work, others_see_it=seen.is_seen_by(others))
+        raise CalibrationError(
+            f"{error} (of its images {len(why)} show no whole board: {closer or why[0]})"
+        ) from None
 
 
 def _write_page(report: Path, site: Site, found: Sequence[FoundIntrinsics], seen: Sightings) -> None:

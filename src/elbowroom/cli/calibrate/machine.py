@@ -4,7 +4,15 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.calibrate.options import Confidence, Near, Only, OutSite, ReportFolder, SiteOrFolder
+from elbowroom.cli.calibrate.options import (
+    Confidence,
+    ForceFile,
+    Near,
+    Only,
+    OutSite,
+    ReportFolder,
+    SiteOrFolder,
+)
 from elbowroom.cli.options import JsonFile
 
 
@@ -34,6 +42,7 @@ def machine(
     ] = 2.0,
     confidence: Confidence = 0.95,
     near: Near = None,
+    force_file: ForceFile = False,
     json: JsonFile = None,
 ) -> None:
     """Find where the cameras are from images of the machine in several poses, no board needed, and how sure that is.
@@ -50,6 +59,8 @@ def machine(
         base=base,
         hold=tuple(hold or ()),
         model_mm=model_mm,
-        result=ResultOptions(out=out, report=report, confidence=confidence, near_m=near),
+        result=ResultOptions(
+            out=out, report=report, confidence=confidence, near_m=near, force_file=force_file
+        ),
     )
     run_machine(options, json)

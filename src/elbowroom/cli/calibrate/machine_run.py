@@ -14,7 +14,7 @@ from elbowroom.calibrate.pages.surface_report import machine_sections
 from elbowroom.cli.calibrate.result import ResultOptions, write_page, write_result
 from elbowroom.cli.calibrate.site import chosen_cameras, require_known, site_path
 from elbowroom.cli.progress import Steps
-from elbowroom.errors import CalibrationError, SiteError
+from elbowroom.errors import CalibrationError, MachineError, SiteError
 from elbowroom.files.json_rows import AddRow, json_rows
 from elbowroom.site import Site
 from elbowroom.site.calibration_entry import WorldFromCamera
@@ -53,15 +53,20 @@ def run_machine(options: MachineOptions, json_file: Path | None) -> None:
     begun = time.perf_counter()
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 3) as steps:
-            found = calibrate_from_machine(
-                machine,
-                cameras,
-                moments(site),
-                hold=hold,
-                free_base=options.base,
-                model_sigma_m=options.model_mm / 1e3,
-                progress=steps.begin_once,
-            )
+            try:
+                found = calibrate_from_machine(
+                    machine,
+                    cameras,
+                    moments(site),
+                    hold=hold,
+                    free_base=options.base,
+                    model_sigma_m=options.model_mm / 1e3,
+                    progress=steps.begin_once,
+                )
+            except MachineError as error:
+                raise MachineError(
+                    f"{error}; joints are recorded in radians and metres: are these degrees?"
+                ) from None
         for row in found.rows:
             add(row)
         add(found.row() | {"seconds": time.perf_counter() - begun})

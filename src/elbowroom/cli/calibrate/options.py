@@ -34,6 +34,13 @@ Near = Annotated[
         help="Lateral margins hold from this depth on. Default: 1, or a camera's least depth if that is more.",
     ),
 ]
+ForceFile = Annotated[
+    bool,
+    typer.Option(
+        "--force-file",
+        help="Write what is no result all the same, to SITE's name with .doubted in it; the command fails as without.",
+    ),
+]
 Only = Annotated[
     list[str] | None,
     typer.Option(

@@ -4,7 +4,15 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.calibrate.options import Confidence, Near, Only, OutSite, ReportFolder, SiteOrFolder
+from elbowroom.cli.calibrate.options import (
+    Confidence,
+    ForceFile,
+    Near,
+    Only,
+    OutSite,
+    ReportFolder,
+    SiteOrFolder,
+)
 from elbowroom.cli.options import JsonFile
 
 
@@ -26,6 +34,7 @@ def refine(
     ] = None,
     confidence: Confidence = 0.95,
     near: Near = None,
+    force_file: ForceFile = False,
     json: JsonFile = None,
 ) -> None:
     """Move cameras until the walls, the floor and the furniture that they see in common fit together.
@@ -41,6 +50,8 @@ def refine(
         only=tuple(camera or ()),
         hold=tuple(hold or ()),
         sure_to=sure_to,
-        result=ResultOptions(out=out, report=report, confidence=confidence, near_m=near),
+        result=ResultOptions(
+            out=out, report=report, confidence=confidence, near_m=near, force_file=force_file
+        ),
     )
     run_refine(options, json)

@@ -21,6 +21,9 @@ from elbowroom.site import Site
 from elbowroom.site.update import refuse_other_files
 from elbowroom.sources import moments
 
+SHOWN_PAIRS = 12
+"""On the terminal; the page and the rows have all."""
+
 
 @dataclass(frozen=True, slots=True)
 class RefineOptions:
@@ -53,7 +56,7 @@ def run_refine(options: RefineOptions, json_file: Path | None) -> None:
         for pair in found.pairs:
             add(pair.row() | {"seconds": time.perf_counter() - begun})
         rows = write_result(site, found.cameras, options.result, "refine", add)
-        show(pair_table(found))
+        show(pair_table(found, worst=SHOWN_PAIRS))
         if options.result.report is not None:
             about = f"{site.name}: cameras refined on what they see in common"
             write_page(options.result.report, "Refinement", about, refine_sections(found, rows))

@@ -1,17 +1,20 @@
 """What every calibration ends with: the new site file, the table of changes, the page."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.calibrate.result.beside_truth import beside_truth
 from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
 from elbowroom.calibrate.result.change import change_rows, change_table
+from elbowroom.calibrate.result.doubt import doubts_of
 from elbowroom.calibrate.result.site_margin import with_margins
 from elbowroom.cli.screen import show
+from elbowroom.errors import CalibrationError
 from elbowroom.files.atomic import folder, whole_file
 from elbowroom.files.json_rows import AddRow, meta
 from elbowroom.site import Site
@@ -31,12 +34,14 @@ class ResultOptions:
         report: folder of the page; None: there is none.
         confidence: that nothing is displaced by more than a camera's margin.
         near_m: depth from which lateral margins hold [m]; None: as `pose_margin`.
+        force_file: what is no result is written all the same, under another name.
     """
 
     out: Path
     report: Path | None
     confidence: float
     near_m: float | None
+    force_file: bool = False
 
 
 def write_result(
@@ -62,17 +67,54 @@ def write_result(
 
     Returns:
         The rows.
+
+    Raises:
+        CalibrationError: what was found is no result; the file, if it is forced, has another name.
     """
     cameras = with_margins(site, found, options.confidence, depth_errors, near_m=options.near_m)
     covariances = {one.camera.name: one.covariance for one in found}
-    update_site(site, cameras, covariances, options.out, command, world_from_base)
+    doubts = doubts_of(found, only_far=command == "refine")
+    if not doubts:
+        update_site(site, cameras, covariances, options.out, command, world_from_base)
     rows = change_rows(found, {camera.name: camera for camera in cameras})
     for row in rows:
         add(row)
     show(change_table(rows))
     say_weak([note for one in found for note in one.notes])
+    if doubts:
+        refuse(
+            doubts,
+            options.out,
+            lambda aside: update_site(site, cameras, covariances, aside, command, world_from_base),
+            force_file=options.force_file,
+        )
+    truth = beside_truth(found, site.path.parent)
+    if truth is not None:
+        print(f"truth     {truth}")
     print(f"site      {options.out}")
+    print(f"next      elbowroom site check {options.out}")
     return rows
+
+
+def refuse(doubts: Sequence[str], out: Path, write: Callable[[Path], Path], *, force_file: bool) -> NoReturn:
+    """Says why what was found is no result; the file that was asked for is not written.
+
+    Args:
+        doubts: a sentence each.
+        out: the file that was asked for.
+        write: writes what was found into a file.
+        force_file: whether it is written under another name, to be looked at.
+
+    Raises:
+        CalibrationError: always.
+    """
+    aside = out.with_name(f"{out.stem}.doubted{out.suffix}")
+    if force_file:
+        write(aside)
+        where = f"{out} was not written; what was found is in {aside}"
+    else:
+        where = f"{out} was not written (--force-file writes what was found to {aside.name}, to be looked at)"
+    raise CalibrationError(f"this is no result: {'; '.join(doubts)}; {where}")
 
 
 def say_weak(notes: Sequence[str]) -> None:

@@ -96,6 +96,7 @@ def run_bench_machine(quick: bool, cameras: int, json: Path | None) -> None:
             "drawn": "{drawn_triangles:,}",
             "median": "{median_ms:.1f} ms",
             "worst": "{max_ms:.1f} ms",
+            "processor": "{cpu_median_ms:.1f} ms",
             "times as long": "{times_as_long:.2f}",
             "due": due,
         },

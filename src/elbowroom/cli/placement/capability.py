@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from elbowroom.cli.placement.options import CapabilityOptions
+from elbowroom.cli.placement.room import room_of
 from elbowroom.files.atomic import folder
 from elbowroom.files.json_rows import json_rows
 from elbowroom.placement.charts import capability_section
@@ -27,7 +28,7 @@ def run_capability(options: CapabilityOptions, json_file: Path | None) -> None:
         InputError: a site, a number of views or a folder that cannot be.
     """
     site = Site.load(options.site)
-    cameras, room, grid = cameras_of(site), FixedRoom.of_site(site), site.grid(options.voxel_size_m)
+    cameras, room, grid = cameras_of(site), room_of(site), site.grid(options.voxel_size_m)
     with json_rows(json_file) as add:
         result = capability(verify(grid, cameras, room), options.views)
         row = result.row() | {"site": str(site.path), "name": site.name, "cameras": len(cameras)}

@@ -9,6 +9,7 @@ from rich.console import Console
 
 from elbowroom.cli.interrupt import asked_to_end
 from elbowroom.cli.placement.options import OptimiseOptions
+from elbowroom.cli.placement.room import room_of
 from elbowroom.cli.placement.verify import say_files, say_verification, verified_row
 from elbowroom.cli.screen import show
 from elbowroom.errors import InputError
@@ -35,7 +36,7 @@ def run_optimise(options: OptimiseOptions, json_file: Path | None) -> None:
         raise InputError(f"--seconds: {options.seconds:g}, must be above 0")
     site = Site.load(THESIS_ROOM if options.site is None else options.site)
     goal = Goal(options.share_pct, options.cameras, options.by_price)
-    room = FixedRoom.of_site(site)
+    room = room_of(site)
     with json_rows(json_file) as add:
         done = _optimised(site, room, goal, options)
         row = verified_row(done.found) | _layout(site, goal, len(done.cameras) - len(done.bought))

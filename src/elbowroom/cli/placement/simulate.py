@@ -9,6 +9,7 @@ from rich.console import Console
 
 from elbowroom.cli.options import options_named
 from elbowroom.cli.placement.options import SimulateOptions
+from elbowroom.cli.placement.room import room_of
 from elbowroom.cli.screen import note, show
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
@@ -65,7 +66,7 @@ def walled_room(site: Site) -> FixedRoom:
     Raises:
         InputError: it says nothing of one.
     """
-    room = FixedRoom.of_site(site)
+    room = room_of(site)
     if room is None:
         raise InputError(
             f"{site.path}: room: missing; scenes need walls, or no ray that meets nobody returns"

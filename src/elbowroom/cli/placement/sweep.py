@@ -9,6 +9,7 @@ from pathlib import Path
 from rich.console import Console
 
 from elbowroom.cli.placement.options import SweepOptions
+from elbowroom.cli.placement.room import room_of
 from elbowroom.cli.screen import note, show
 from elbowroom.errors import InputError
 from elbowroom.files.atomic import folder
@@ -155,7 +156,7 @@ def _sensors(site: Site, options: SweepOptions) -> list[Sensor]:
 
 def _rooms(site: Site, walls_m: Sequence[float]) -> dict[str, FixedRoom]:
     """The site's room, or square ones about its grid, floor and ceiling as the site's."""
-    own = FixedRoom.of_site(site)
+    own = room_of(site)
     if walls_m:
         return {f"walls {side:g} m": _square_room(site, own, side) for side in walls_m}
     if own is None:

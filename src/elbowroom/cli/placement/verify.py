@@ -8,10 +8,10 @@ from typing import Any
 from rich.console import Console
 
 from elbowroom.cli.placement.options import VerifyOptions
+from elbowroom.cli.placement.room import room_of
 from elbowroom.cli.progress import Steps
 from elbowroom.files.json_rows import json_rows
 from elbowroom.geometry import VoxelGrid
-from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.pictures import save_pictures
 from elbowroom.placement.requirement import requirement_of
 from elbowroom.placement.verification import Verification, verify
@@ -30,7 +30,7 @@ def run_verify(options: VerifyOptions, json_file: Path | None) -> None:
     """
     site = Site.load(options.site)
     requirement = requirement_of(site, options.required.views, options.required.angle_deg)
-    cameras, room, grid = cameras_of(site), FixedRoom.of_site(site), site.grid(options.voxel_size_m)
+    cameras, room, grid = cameras_of(site), room_of(site), site.grid(options.voxel_size_m)
     with json_rows(json_file) as add:
         with Steps(Console(stderr=True), 2) as steps:
             steps.begin("readying kernels, which are compiled at the first start")

@@ -97,7 +97,8 @@ def _recording_rows(path: Path) -> Iterator[Row]:
     site = Site.load(path)
     every = list(moments(site))
     for which, moment in {"first": every[0], "last": every[-1]}.items():
-        scene = Scene(site.grid(), site.cameras(), moment.frames, site.margin())
+        angle_deg = site.terms().witness_angle_deg
+        scene = Scene(site.grid(), site.cameras(), moment.frames, site.margin(), witness_angle_deg=angle_deg)
         for each in scene_rows(scene):
             yield {**each, "what": f"{which} {each['what']}"}
         if len(every) == 1:

@@ -18,6 +18,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine, explain_frames
 from elbowroom.motion import JointPath, Motion, Verdict, check_motions
 from elbowroom.reconstruct import DETAILS, RULES, Evidence, FreeSpace, PointReport, reconstruct
+from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG
 from elbowroom.sensing import DepthFrame, Margin
 
 Row = Mapping[str, Any]
@@ -59,6 +60,7 @@ class Scene:
         machine: None: none is there.
         joints: its positions by name [m or rad].
         motions: what is checked.
+        witness_angle_deg: below which cameras are one witness [deg].
     """
 
     grid: VoxelGrid
@@ -68,6 +70,7 @@ class Scene:
     machine: Machine | None = None
     joints: Mapping[str, float] | None = None
     motions: Sequence[Motion | JointPath] = ()
+    witness_angle_deg: float = WITNESS_ANGLE_DEG
 
 
 def scene_rows(scene: Scene) -> Iterator[Row]:
@@ -86,6 +89,7 @@ def scene_rows(scene: Scene) -> Iterator[Row]:
                 rule=rule,
                 detail=detail,
                 margin=scene.margin,
+                witness_angle_deg=scene.witness_angle_deg,
             )
             yield space_row(space, rule, detail)
             if scene.machine is not None and scene.joints is not None:

@@ -10,7 +10,10 @@ from numpy.typing import NDArray
 from elbowroom.errors import SiteError
 from elbowroom.evaluate.due import Due, where
 from elbowroom.geometry import DepthCamera, VoxelGrid
-from elbowroom.reconstruct import DETAILS, RULES, FreeSpace, carve, resolve
+from elbowroom.reconstruct import DETAILS, RULES, FreeSpace, Terms, resolve
+from elbowroom.reconstruct.carve import carve_images
+from elbowroom.reconstruct.explained import NOTHING
+from elbowroom.reconstruct.images import room_images
 from elbowroom.sensing import DepthFrame, Margin
 from elbowroom.site import Site
 from elbowroom.sources import excluded_frames, moments
@@ -86,14 +89,15 @@ def sevenscenes_rows(path: Path, voxel_sizes_m: tuple[float, ...]) -> Iterator[d
         free_pct, false_pct, points.
     """
     site = Site.load(path)
+    angle_deg = site.terms().witness_angle_deg
     for voxel_size_m in voxel_sizes_m:
         views = split_recording(site, voxel_size_m)
         plain = tuple(replace(camera, flying_pixels=False) for camera in views.cameras)
         for name, cameras, margin in (("site", views.cameras, views.margin), ("narrow", plain, NARROW)):
             for detail in DETAILS:
-                evidence = carve(
-                    views.grid, cameras, views.frames, detail=detail, margin=margin, complete=True
-                )
+                terms = Terms(detail=detail, margin=margin, witness_angle_deg=angle_deg)
+                images = room_images(cameras, views.frames)
+                evidence = carve_images(views.grid, images, NOTHING, terms, complete=True)
                 for rule in RULES:
                     space = resolve(evidence, cameras, rule=rule, detail=detail, margin=margin)
                     free_pct, false_pct = rates(views, space)

@@ -6,10 +6,9 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.contradiction.eye import Eye
-from elbowroom.reconstruct.contradiction.findings import beyond_limit, found_in
+from elbowroom.reconstruct.contradiction.findings import beyond_limit, contradictions
 from elbowroom.reconstruct.contradiction.pairs import NOTHING, Pairs, points_of, seen_by, together
 from elbowroom.reconstruct.contradiction.sample import Sample, sample_of
-from elbowroom.reconstruct.contradiction.views import Views
 from elbowroom.sensing import DepthFrame, Snapshot
 
 FIRST = 3
@@ -48,9 +47,8 @@ class ContradictionLook:
         """What is found by now."""
         frames = {frame.camera: frame for frame in snapshot.frames}
         if self._looked < FIRST and not self._first:
-            views = Views.of(self._cameras, snapshot.frames, self._margin)
-            self._first = found_in(views)
-            self._looked = FIRST if len(views.eyes) == len(self._cameras) else self._looked + 1
+            self._first = contradictions(self._cameras, snapshot.frames, self._margin)
+            self._looked = FIRST if len(frames) == len(self._cameras) else self._looked + 1
         elif self._passes % self._every == 0:
             self._ask_one(frames)
         self._passes += 1

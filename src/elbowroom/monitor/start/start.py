@@ -8,6 +8,7 @@ from elbowroom.geometry import bits
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.health.clocks import Clocks
 from elbowroom.monitor.loop import Loop
+from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.monitor.start.looking import looks_of
 from elbowroom.monitor.start.watching import checks_of
 from elbowroom.motion import check_motions
@@ -21,15 +22,14 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
     """A loop over a room, ready to run; a recording comes no faster than it was recorded.
 
     Args:
-        room: with a machine and speeds.
+        room: without a machine, or without speeds, its free space is seen and no motion is judged.
         begin: told what is being done.
 
     Raises:
-        InputError: no machine, no speeds, or the first cycle failed, so that all would.
+        InputError: the first cycle failed, so that all would.
         SiteError, CalibrationError: as `checks_of`.
     """
-    machine, motions = room.machine_and_motions()
-    cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
+    cycle = _cycle(room)
     recorded = isinstance(room.source, Recorded)
     pause_ns = _gap_ns(room) if recorded else gap_ns(None)
     checks = replace(checks_of(room, begin), looks=looks_of(room))
@@ -46,6 +46,13 @@ def _gap_ns(room: Room) -> int:
     return gap_ns(None) if times is None else times.gap_ns
 
 
+def _cycle(room: Room) -> Cycle | SpaceCycle:
+    if room.unasked is not None:
+        return SpaceCycle(room.grid, room.cameras, room.machine, room.terms)
+    machine, motions = room.machine_and_motions()
+    return Cycle(room.grid, room.cameras, machine, motions, room.terms)
+
+
 def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
     """Compiles all that the loop uses, by doing it once; also where something is in the way."""
     cycle = loop.cycle
@@ -53,10 +60,11 @@ def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
     snapshot = next(iter(loop.room.source), None)
     if snapshot is None:
         return
-    begin("motions that are blocked")
-    nothing = bits.empty(cycle.grid)
-    all_blocked = FreeSpace(cycle.grid, nothing, nothing, nothing, nothing)
-    check_motions(all_blocked, cycle.machine, snapshot.joints or {}, cycle.motions)
+    if isinstance(cycle, Cycle):
+        begin("motions that are blocked")
+        nothing = bits.empty(cycle.grid)
+        all_blocked = FreeSpace(cycle.grid, nothing, nothing, nothing, nothing)
+        check_motions(all_blocked, cycle.machine, snapshot.joints or {}, cycle.motions)
     begin("first cycle")
     result = loop.judge(snapshot)
     if result.fault is not None:

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from elbowroom.motion.kernels.field import Fields, at_least
-from elbowroom.motion.kernels.mover import Mover, Skin, carried, place_at
+from elbowroom.motion.kernels.mover import Skin, carried, place_at
 
 
 class Pairs(NamedTuple):
@@ -34,13 +34,6 @@ class Pairs(NamedTuple):
 
 RUN = 8
 """So many samples of a cluster that lie side by side are passed over together."""
-
-
-class Now(NamedTuple):
-    """How far apart the pairs are now, by `gaps_now`: of each member, (members,), the least of each, (pairs,) [m]."""
-
-    gaps: np.ndarray
-    least: np.ndarray
 
 
 class Steps(NamedTuple):
@@ -118,7 +111,7 @@ def gaps_now(pairs, placed, gaps, least):
 
 
 @njit(cache=True, nogil=True)
-def first_meeting(tree, world_from_base, pairs, course, length, speeds, now, steps):
+def first_meeting(mover, pairs, length, gaps, least, steps):
     """The travel up to which no pair meets, the member that meets after it, and the place of its nearest sample.
 
     A pair has met where what is told of its distance is no more than 0. Where that is less than the doubt about it
@@ -126,21 +119,20 @@ def first_meeting(tree, world_from_base, pairs, course, length, speeds, now, ste
     not meet. Links may meet in passing, between two looks, as far as they move between them.
 
     Args:
-        tree, world_from_base, course: what moves, and how (`Mover`).
+        mover: what moves, and how. Its speeds are the most by which the distance of each member's surface from the
+            other link changes per unit of travel, (members,) [m]; 0: they move as one.
         pairs: what must not meet.
         length: travel that is looked at, at most the course's.
-        speeds: the most by which the distance of each member's surface from the other link changes per unit of travel,
-            (members,) [m]; 0: they move as one.
-        now: how far apart they are.
+        gaps, least: now, of `gaps_now`.
         steps: how closely they are looked for.
 
     Returns:
         Travel at which the member that meets was last looked at before, the member or -1, place (3,) [m].
     """
-    mover = Mover(tree, world_from_base, pairs.skin, course, speeds)
+    tree, speeds = mover.tree, mover.speeds
     place, nearest = np.zeros(3), np.zeros(1, dtype=np.int64)
     placed, other_from_one = np.empty((1, tree.parent.size, 4, 4)), np.empty((3, 4))
-    gaps, floors = now.gaps, np.minimum(now.least - pairs.doubt, 0.0)
+    floors = np.minimum(least - pairs.doubt, 0.0)
     # of the members that can meet: which, when to look again, and when they were looked at and had not met
     active, until, before = np.empty(gaps.size, dtype=np.int64), np.empty(gaps.size), np.zeros(gaps.size)
     count = 0

@@ -30,7 +30,7 @@ class Eye:
         intrinsics: pinhole and distortion.
         radial: whether depth is the distance from the centre, not along the optical axis.
         scale: what its depths are multiplied by.
-        least_m, greatest_m: range of the sensor [m].
+        least_m, greatest_m: the least and the greatest depth that is a return [m].
         noise: of depth; None: exact.
         margin: what its depths are not trusted to.
     """
@@ -66,7 +66,7 @@ class Eye:
             radial=camera.depth_kind == "radial",
             scale=1.0,
             least_m=camera.min_depth_m,
-            greatest_m=camera.max_depth_m,
+            greatest_m=camera.deepest_m,
             noise=camera.noise,
             margin=camera.margin or margin,
         )

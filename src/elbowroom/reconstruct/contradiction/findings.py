@@ -19,6 +19,7 @@ from elbowroom.reconstruct.contradiction.suspicion import (
 )
 from elbowroom.reconstruct.contradiction.views import Views
 from elbowroom.sensing import DepthFrame
+from elbowroom.sensing.masked import masked_returns
 
 KIND = "contradiction"
 LIMIT = 0.2
@@ -40,16 +41,24 @@ SAME_M, SAME_RAD = 1e-3, 1e-3
 
 
 def contradictions(
-    cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame], margin: Margin
+    cameras: Sequence[DepthCamera],
+    frames: Sequence[DepthFrame],
+    margin: Margin,
+    found: Sequence[Finding] = (),
 ) -> tuple[Finding, ...]:
-    """What is found where the images of one moment are compared with each other.
+    """What is found where the images of one moment are compared with each other, and with their masks.
 
     Args:
         cameras: of the room.
         frames: at most one of each, of its camera's size; cameras without one are left out.
         margin: of cameras without one of their own.
+        found: about these cameras; those of which something found stops are not compared.
     """
-    return found_in(Views.of(cameras, frames, margin))
+    everybody = [camera.name for camera in cameras]
+    wrong = {name for finding in found if finding.stops for name in finding.about or everybody}
+    cameras = [camera for camera in cameras if camera.name not in wrong]
+    frames = [frame for frame in frames if frame.camera not in wrong]
+    return (*masked_returns(cameras, frames), *found_in(Views.of(cameras, frames, margin)))
 
 
 def found_in(views: Views) -> tuple[Finding, ...]:

@@ -1,5 +1,6 @@
 """What people get wrong about cameras, each with what undoes it."""
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
@@ -205,7 +206,10 @@ def _radians(order: str) -> Undo:
     def undone(eye: Eye) -> Eye | None:
         if np.linalg.det(eye.axes) < 0:
             return None
-        angles = Rotation.from_matrix(eye.axes).as_euler(order, degrees=True)
+        with warnings.catch_warnings():
+            # of angles that cannot be told apart any will do: it is small angles that are looked for
+            warnings.simplefilter("ignore", UserWarning)
+            angles = Rotation.from_matrix(eye.axes).as_euler(order, degrees=True)
         if np.abs(angles).max() > np.pi + 0.01:
             return None
         return replace(eye, axes=Rotation.from_euler(order, angles).as_matrix())

@@ -13,6 +13,7 @@ from rich.text import Text
 
 from elbowroom.files.peak_memory import peak_memory_mb
 from elbowroom.monitor import CycleResult
+from elbowroom.monitor.rows import shares_pct
 from elbowroom.motion import Level
 from elbowroom.view.screen.words import LEVEL_WORDS, NOT_CERTIFIED
 
@@ -42,6 +43,7 @@ class RunLog:
     age_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
     stages: deque[dict[str, float]] = field(default_factory=lambda: deque(maxlen=RECENT), init=False)
     ends_s: deque[float] = field(default_factory=lambda: deque(maxlen=RECENT + 1), init=False)
+    free_pct: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
     levels: dict[str, Counter[Level]] = field(default_factory=dict, init=False)
     faults: Counter[str] = field(default_factory=Counter, init=False)
     late: int = field(default=0, init=False)
@@ -66,6 +68,8 @@ class RunLog:
         self.ends_s.append(time.perf_counter())
         for verdict in result.verdicts:
             self.levels.setdefault(verdict.motion.name, Counter())[verdict.level] += 1
+        if not result.verdicts and result.space is not None:
+            self.free_pct.append(shares_pct(result.space)["free_pct"])
         if result.fault is not None:
             self.faults[result.fault] += 1
         if result.late is not None:
@@ -141,8 +145,13 @@ class RunLog:
                 times.add_row(name, f"{p50:.1f} ms", f"{p99:.1f} ms", f"{worst:.1f} ms")
         return times
 
-    def _shares(self) -> Table:
-        """How often each motion was at each level."""
+    def _shares(self) -> RenderableType:
+        """How often each motion was at each level; where none is asked, what was free."""
+        if self.free_pct:
+            low, mid, high = np.percentile(self.free_pct, (0, 50, 100))
+            return Text(
+                f"free: {mid:.1f} % of the watched box, {low:.1f} to {high:.1f} %; no motion was judged"
+            )
         shares = Table("movement", *LEVEL_WORDS.values(), box=None, pad_edge=False, header_style="dim")
         for name, counts in self.levels.items():
             total = counts.total()

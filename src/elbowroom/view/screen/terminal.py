@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from elbowroom.monitor import CycleResult, Pass
+from elbowroom.monitor.rows import shares_pct
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.sources import Room
 from elbowroom.view.screen.run_log import RunLog
@@ -23,8 +24,10 @@ from elbowroom.view.screen.words import (
     NOT_CERTIFIED,
     counts_text,
     health_text,
+    place_first,
     place_text,
     plain_line,
+    shares_text,
     travel_bar,
     travel_text,
 )
@@ -44,6 +47,8 @@ BAR_STYLES: dict[Level, str] = {
 REFRESH_S = 0.125
 """The screen is drawn anew no more often than this: eyes need no more, and drawing takes milliseconds."""
 PLAIN_EVERY_S = 1.0
+WIDE_BAR, NARROW_BAR = 20, 5
+"""Characters of the bar of free travel, on screens of 100 columns or more, and below."""
 
 
 class TerminalView:
@@ -147,7 +152,7 @@ class TerminalView:
             Text(self.watched.room, "dim"),
             self._speed(result),
             Text(),
-            self._table(result.verdicts, wide),
+            self._judged(result, wide),
             Text(),
             Text(health_text(result.health), "dim"),
         ]
@@ -175,6 +180,8 @@ class TerminalView:
             return f"{head} | STOP, the cycle failed: {result.fault}"
         if result.stopped_by is not None:
             return f"{head} | STOP: {result.stopped_by}"
+        if not result.verdicts and result.space is not None:
+            return f"{head} | {shares_text(shares_pct(result.space))}"
         return " | ".join([head, *map(plain_line, result.verdicts)])
 
     def _speed(self, result: CycleResult) -> Text:
@@ -190,19 +197,26 @@ class TerminalView:
         text.append("  cycle ")
         text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
         text.append(f" = {stages}", "dim")
-        text.append(f"\n{result.stamp_ns / 1e9:.1f} s, cycle {result.sequence + 1}: {counts_text(levels)}")
+        judged = counts_text(levels) or "no motion is judged"
+        text.append(f"\n{result.stamp_ns / 1e9:.1f} s, cycle {result.sequence + 1}: {judged}")
         text.append(
             f"  ({self.watched.source} apart: {log.recent(log.source_ms):.0f} ms; Ctrl-C ends)", "dim"
         )
         return text
 
+    def _judged(self, result: CycleResult, wide: bool) -> RenderableType:
+        """The verdicts; where no motion is asked, what is free."""
+        if result.verdicts or result.space is None:
+            return self._table(result.verdicts, wide)
+        return Text(shares_text(shares_pct(result.space)), "bold")
+
     def _table(self, verdicts: Sequence[Verdict], wide: bool) -> Table:
-        table = Table(box=None, pad_edge=False, header_style="dim", padding=(0, 2, 0, 0))
+        table = Table(box=None, pad_edge=False, header_style="dim", padding=(0, 2 if wide else 1, 0, 0))
+        bar = WIDE_BAR if wide else NARROW_BAR
         table.add_column("movement", no_wrap=True)
         table.add_column("level", no_wrap=True, width=14)
         table.add_column("free", justify="right", no_wrap=True, width=9)
-        if wide:
-            table.add_column("   S   M           L", no_wrap=True, width=20)
+        table.add_column("   S   M           L" if wide else "SM  L", no_wrap=True, width=bar)
         table.add_column("cause", no_wrap=True)
         table.add_column("where", no_wrap=True, overflow="ellipsis", ratio=1)
         for verdict in verdicts:
@@ -211,7 +225,7 @@ class TerminalView:
 
     def _row(self, verdict: Verdict, wide: bool) -> list[Text]:
         level = verdict.level
-        filled, rest = travel_bar(verdict)
+        filled, rest = travel_bar(verdict, WIDE_BAR if wide else NARROW_BAR)
         whole_reach = verdict.free_travel >= _looked_at(verdict) * (1 - 1e-9)
         more = "≥ " if whole_reach else ""
         at_limit = verdict.cause is Cause.NONE and not whole_reach
@@ -220,12 +234,11 @@ class TerminalView:
             Text(f" {MARKS[level]} {LEVEL_WORDS[level]} ".ljust(14), STYLES[level]),
             Text(more + travel_text(verdict.free_travel, verdict.free_travel_unit), "bold"),
         ]
-        if wide:
-            cells.append(Text.assemble((filled, BAR_STYLES[level]), (rest, "dim")))
         return [
             *cells,
+            Text.assemble((filled, BAR_STYLES[level]), (rest, "dim")),
             Text("joint limit" if at_limit else CAUSE_WORDS[verdict.cause]),
-            Text(place_text(verdict), "dim"),
+            Text(place_text(verdict) if wide else place_first(verdict), "dim"),
         ]
 
 

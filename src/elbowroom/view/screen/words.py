@@ -1,6 +1,7 @@
 """Verdicts and times in the words and marks that a terminal shows."""
 
 import math
+from collections.abc import Mapping
 
 from elbowroom.monitor import Condition, Health
 from elbowroom.motion import Cause, Level, Verdict
@@ -69,6 +70,26 @@ def travel_bar(verdict: Verdict, width: int = 20) -> tuple[str, str]:
     filled = min(width, math.floor(verdict.free_travel / whole * width + 1e-6))
     marks = {round(width / 5) - 1, round(2 * width / 5) - 1}
     return "█" * filled, "".join("│" if i in marks else "·" for i in range(filled, width))
+
+
+def place_first(verdict: Verdict) -> str:
+    """As `place_text` for narrow screens: "0.31 -0.20 1.05 detector"; what is cut off is never a number."""
+    if verdict.place_in_world is None:
+        return verdict.link or ""
+    x, y, z = verdict.place_in_world
+    return f"{x:.2f} {y:.2f} {z:.2f} {verdict.link}"
+
+
+def shares_text(shares: Mapping[str, float]) -> str:
+    """What a pass without motions came to: "free 61.2 %, surface 9.8 %, unseen 29.0 % (blind 0.4 %, own body 1.2 %)".
+
+    Args:
+        shares: of all voxels, as of `monitor.rows.shares_pct` [%].
+    """
+    return (
+        f"free {shares['free_pct']:.1f} %, surface {shares['surface_pct']:.1f} %, unseen {shares['unseen_pct']:.1f} % "
+        f"(blind {shares['blind_pct']:.1f} %, own body {shares['body_pct']:.1f} %)"
+    )
 
 
 def plain_line(verdict: Verdict) -> str:

@@ -1,0 +1,1 @@
+"""Files of triangles, each read as its format means it: units, axes, mirrored nodes; or refused by name."""

@@ -1,0 +1,76 @@
+"""The pass of a room in which no motion is asked: a snapshot in, free space out. Without verdicts its level is stop."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.machine import Machine
+from elbowroom.monitor.cycle import lateness
+from elbowroom.monitor.result import CycleResult
+from elbowroom.monitor.stages import timed
+from elbowroom.reconstruct import Terms, free_space_of
+from elbowroom.sensing import Snapshot
+
+
+@dataclass(slots=True, eq=False)
+class SpaceCycle:
+    """The pass, and all that stays the same from one to the next, as `Cycle` without motions.
+
+    Args:
+        grid: the watched box.
+        cameras: all cameras of the room.
+        machine: whose body is explained and taken out; None: the bare room.
+        terms: how strictly space is judged.
+        clock_ns: by which the time that a pass takes is told [ns]; it never goes back.
+    """
+
+    grid: VoxelGrid
+    cameras: Sequence[DepthCamera]
+    machine: Machine | None
+    terms: Terms = field(default_factory=Terms)
+    clock_ns: Callable[[], int] = time.perf_counter_ns
+    sequence: int = field(default=0, init=False)
+
+    def run(self, snapshot: Snapshot, begun_ns: int | None = None) -> CycleResult:
+        """The free space of a snapshot. It does not raise: a fault leaves no space, and its reason.
+
+        Args:
+            snapshot: what came.
+            begun_ns: when it came [ns of `clock_ns`]; None: now.
+        """
+        begun_ns = self.clock_ns() if begun_ns is None else begun_ns
+        stage_ms: dict[str, float] = {}
+        try:
+            oldest_ms = snapshot.oldest_age_ms
+            space = free_space_of(
+                self.grid,
+                self.cameras,
+                snapshot,
+                self.machine,
+                self.terms,
+                timer=lambda stage: timed(stage, stage_ms),
+            )
+            late = lateness(snapshot, self.terms.max_age_ns, (self.clock_ns() - begun_ns) / 1e6)
+        except Exception as error:
+            return self.failed(error, snapshot, stage_ms)
+        now_ns = snapshot.now_ns or 0
+        return CycleResult(self._number(), now_ns, space.released(), (), stage_ms, oldest_ms, late=late)
+
+    def failed(
+        self, error: Exception, snapshot: Snapshot | None, stage_ms: dict[str, float] | None = None
+    ) -> CycleResult:
+        """A pass that came to nothing.
+
+        Args:
+            error: what was raised.
+            snapshot: what the pass was about; None: nothing had come.
+            stage_ms: time that each stage took [ms], as far as it came.
+        """
+        now_ns = 0 if snapshot is None else snapshot.now_ns or 0
+        fault = f"{type(error).__name__}: {error}"
+        return CycleResult(self._number(), now_ns, None, (), stage_ms or {}, None, fault)
+
+    def _number(self) -> int:
+        self.sequence += 1
+        return self.sequence - 1

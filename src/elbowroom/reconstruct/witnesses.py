@@ -1,0 +1,56 @@
+"""Which cameras are one witness: those that look from nearly one place err together."""
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+
+from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.reconstruct.evidence import Evidence
+from elbowroom.reconstruct.kernels.planes import THREE, TWO
+
+
+@lru_cache(maxsize=16)
+def witnesses(
+    grid: VoxelGrid, cameras: tuple[DepthCamera, ...], angle_deg: float
+) -> tuple[tuple[int, ...], ...]:
+    """Groups of cameras that are one witness each, those of more than one camera.
+
+    Two cameras are one if the distance between them is less than an angle as seen from the middle of the grid, or from
+    half its diagonal where they are nearer than that; and with them all that are one with either. It does not depend
+    on frames: a camera that is lost leaves the others' groups as they are.
+
+    Args:
+        grid: the watched box.
+        cameras: of the room.
+        angle_deg: below it two are one [deg]; 0: each camera is a witness of its own.
+
+    Returns:
+        Numbers of cameras, rising in each group.
+    """
+    if angle_deg <= 0 or len(cameras) < 2:
+        return ()
+    lower, upper = np.array(grid.lower_m), np.array(grid.upper_m)
+    places = np.array([camera.centre_in_world for camera in cameras])
+    apart = np.linalg.norm(places[:, None] - places[None, :], axis=2)
+    away = np.linalg.norm((places[:, None] + places[None, :]) / 2 - (lower + upper) / 2, axis=2)
+    seen_from = np.maximum(away, np.linalg.norm(upper - lower) / 2)
+    near = apart < np.radians(angle_deg) * seen_from
+    count, group = connected_components(near, directed=False)
+    members = (tuple(np.flatnonzero(group == number).tolist()) for number in range(count))
+    return tuple(those for those in members if len(those) > 1)
+
+
+def as_one(evidence: Evidence, counted: bool) -> Evidence:
+    """What cameras know that are one witness: at most one sees through.
+
+    Args:
+        evidence: of these cameras alone, all asked of every voxel.
+        counted: whether it keeps how many cameras see through and dispute.
+    """
+    planes = evidence.planes.copy()
+    planes[TWO] = planes[THREE] = 0
+    group = frozenset({frozenset(evidence.cameras)})
+    counts = evidence.counts if counted else None
+    return replace(evidence, planes=planes, counts=counts, as_one=group)
