@@ -1,5 +1,7 @@
 """Bases that move: planar and floating joints, and a machine at another place."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from elbowroom.errors import MachineError
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
-from elbowroom.machine import Machine, body_samples, body_words, explain_frames
+from elbowroom.machine import Link, Machine, body_samples, body_words, explain_frames
 from elbowroom.machine.rasterise import rasterise
 from elbowroom.motion import Motion, check_motion, joint_motions
 from elbowroom.motion.skin import skin_of
@@ -189,3 +191,15 @@ def test_a_record_turns_a_base_the_shortest_way():
     assert (first.inv() * turned).magnitude() == pytest.approx(whole / 4)
     assert (turned.inv() * last).magnitude() == pytest.approx(3 * whole / 4)
     assert found["drive/x"] == pytest.approx(0.25)
+
+
+def test_machines_that_differ_by_their_place_alone_share_what_is_kept(arm):
+    seen = tuple(replace(link, seen=Link(link.name, link.vertices, link.faces)) for link in arm.links)
+    machine = replace(arm, links=seen)
+    for seed in range(2):
+        there = machine.at(pose_of(seed))
+        assert there.anywhere is machine and machine.anywhere is machine
+        assert there.as_seen.shape is machine.as_seen.shape
+        np.testing.assert_allclose(there.as_seen.world_from_base, there.world_from_base, atol=1e-12)
+    assert replace(machine, unchecked_links=()).anywhere is not machine
+    assert machine.allowing(("foot", "fore")).anywhere is not machine

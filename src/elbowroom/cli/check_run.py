@@ -1,5 +1,6 @@
 """The run of `elbowroom check`: a moment, a motion, a verdict and its reasons."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 from rich.console import Console
@@ -7,6 +8,7 @@ from rich.console import Console
 from elbowroom.cli.progress import Steps
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
+from elbowroom.machine import Machine
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.monitor.why.why import Why, why
 from elbowroom.motion import Cause, Motion, Verdict, check_motion
@@ -85,13 +87,18 @@ def ask(
         print(line)
     if pictures:
         print(f"{len(pictures)} pictures, one of each camera that has the voxel in its image, in {out}")
-    if machine.unchecked_links:
-        print(f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}.")
-    if machine.bodiless_links:
-        print(f"Without a body, by the site's word: {', '.join(machine.bodiless_links)}.")
-    for line in machine.allowances:
-        print(f"{line}.")
+    for line in _by_the_sites_word(machine):
+        print(line)
     print(NOT_CERTIFIED)
+
+
+def _by_the_sites_word(machine: Machine) -> Iterator[str]:
+    """What is not looked at, as every summary says it."""
+    if machine.unchecked_links:
+        yield f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}."
+    if machine.bodiless_links:
+        yield f"Without a body, by the site's word: {', '.join(machine.bodiless_links)}."
+    yield from (f"{line}." for line in machine.allowances)
 
 
 def _travel(motion: Motion, verdict: Verdict) -> str:

@@ -17,7 +17,7 @@ class Surface:
     """
 
     vertices: NDArray[np.float64]
-    faces: NDArray[np.integer]
+    faces: NDArray[np.int32]
 
     def __post_init__(self) -> None:
         vertices = np.array(self.vertices, dtype=np.float64).reshape(-1, 3)

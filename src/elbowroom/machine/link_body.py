@@ -92,7 +92,10 @@ class Bodies:
         bodies = {name: self._surface(by_name[name], read.get(name, [])) for name in order}
         # pictures after that, so that what they name changes nothing about where bodies are found
         seen = {name: self._seen(by_name[name], read[name], bodies[name]) for name in order if read.get(name)}
-        links = tuple(Link(name, body.vertices, body.faces, seen.get(name)) for name, body in bodies.items())
+        links = tuple(
+            Link(name, body.vertices, body.faces.astype(np.int32), seen.get(name))
+            for name, body in bodies.items()
+        )
         if self._lost:
             first, text = self._lost[0]
             others = [name for name in dict.fromkeys(name for name, _ in self._lost) if name != first]
@@ -123,7 +126,9 @@ class Bodies:
         points, triangles = triangles_of(shape, mesh_file)
         what = f"{self.report.path}: link {link.name}: origin"
         link_from_shape = nearest_rigid(shape.link_from_shape, what, MachineError)
-        return [Surface(points @ link_from_shape[:3, :3].T + link_from_shape[:3, 3], triangles)]
+        return [
+            Surface(points @ link_from_shape[:3, :3].T + link_from_shape[:3, 3], triangles.astype(np.int32))
+        ]
 
     def _seen(self, link: RawLink, shapes: Sequence[Shape], body: Surface) -> Link | None:
         """The link with what cameras see of it for a body, where that is another surface."""
@@ -148,7 +153,7 @@ class Bodies:
         # each has been read
         pieces = [piece for shape in shapes for piece in self._piece(link, shape)]
         seen = seen_surface(visual, body, [piece.vertices for piece in pieces], self.explain_with)
-        return None if seen is None else Link(link.name, seen.vertices, seen.faces)
+        return None if seen is None else Link(link.name, seen.vertices, seen.faces.astype(np.int32))
 
     def _mesh(self, link: RawLink, shape: Shape) -> MeshFile | None:
         """What a mesh file holds; None: it is lost, which is noted."""

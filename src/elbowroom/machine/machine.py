@@ -1,12 +1,13 @@
 """The machine: links with a body, joints that move them, and where the links are."""
 
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -48,6 +49,9 @@ class Tolerance(NamedTuple):
 Joints = Mapping[str, ArrayLike]
 """Joint positions by name [m or rad]: numbers, or arrays of one length n for n configurations."""
 
+_anywhere: WeakValueDictionary[tuple[Hashable, ...], "Machine"] = WeakValueDictionary()
+"""By all but their place, the first of the machines that are alike."""
+
 
 @dataclass(frozen=True, eq=False)
 class Machine:
@@ -85,6 +89,7 @@ class Machine:
     tolerance: Tolerance = field(default_factory=Tolerance)
     findings: tuple[Finding, ...] = field(default=(), repr=False)
     shape: Shape = field(init=False, repr=False)
+    _elsewhere: "Machine | None" = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "shape", Shape.of(self.links))
@@ -104,6 +109,22 @@ class Machine:
             self._require_links("stands_on", stand.links)
         for pair in self.allowed_contacts:
             self._require_links("allowed_contacts", pair)
+        first = _anywhere.setdefault(self._all_but_place(), self)
+        object.__setattr__(self, "_elsewhere", None if first is self else first)
+
+    def _all_but_place(self) -> tuple[Hashable, ...]:
+        """What machines have in common that differ by their place alone."""
+        own = (tuple(map(id, values)) for values in (self.links, self.joints, self.stands, self.findings))
+        named = self.unchecked_links, self.allowed_contacts, self.parts, self.bodiless_links
+        return self.name, id(self.tree), *own, *named, self.tolerance
+
+    @property
+    def anywhere(self) -> "Machine":
+        """The machine that stands for all that differ from it by their place alone.
+
+        What does not depend on the place is kept with it (`geometry.kept`).
+        """
+        return self if self._elsewhere is None else self._elsewhere
 
     def _require_links(self, what: str, names: Sequence[str]) -> None:
         """Each name, which may hold wildcards, is that of a link."""
@@ -288,7 +309,7 @@ class Machine:
             multiplier=np.append(tree.multiplier, 1.0),
             offset=np.append(tree.offset, 0.0),
         )
-        carried = Link(part.name, part.surface.vertices, part.surface.faces)
+        carried = Link(part.name, part.surface.vertices, part.surface.faces.astype(np.int32))
         touched = [(part.name, self.link_names[other]) for other in self._held_with(row)]
         return replace(
             self,

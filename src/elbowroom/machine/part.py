@@ -83,7 +83,7 @@ class Part:
         if not Path(path).is_file():
             raise MachineError(f"part {name}: {path}: no such file; expected a mesh")
         read = read_mesh(Path(path))
-        return cls(name, Surface(read.vertices * given, read.faces))
+        return cls(name, Surface(read.vertices * given, read.faces.astype(np.int32)))
 
 
 def _solid(name: str, kind: Literal["box", "cylinder"], sizes: Sequence[float]) -> Surface:
@@ -92,4 +92,5 @@ def _solid(name: str, kind: Literal["box", "cylinder"], sizes: Sequence[float]) 
 
     if not (np.isfinite(sizes).all() and min(sizes) > 0):
         raise MachineError(f"part {name}: sizes {list(sizes)} must be finite and above 0 [m]")
-    return Surface(*solid_triangles(kind, sizes))
+    vertices, faces = solid_triangles(kind, sizes)
+    return Surface(vertices, faces.astype(np.int32))

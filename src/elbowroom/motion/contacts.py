@@ -15,10 +15,12 @@ from elbowroom.motion.kernels.field import Fields, slack_of
 from elbowroom.motion.kernels.meeting import RUN, Pairs, gaps_now
 from elbowroom.motion.kernels.mover import Skin
 
-SAMPLES = 16_000
+SAMPLES = 8_000
 """A machine's surface has about so many samples here; a robot of 1 m2 is covered to within 6 mm."""
 FINEST = 1 / 8
 """A field's cells are no smaller than this share of the voxels that the samples would do for."""
+COARSER = 1.5
+"""A field is much coarser than another whose cells are smaller than its own by this factor."""
 POSES, ALWAYS = 40, 0.95
 """Links that lie in each other in this share of so many poses, drawn from the joints' limits, are meant to."""
 
@@ -97,21 +99,24 @@ def _stiff_with(machine: Machine, row: int) -> int:
 
 
 def _pairs(skin: Skin, width: NDArray[np.float64], fields: Fields, rows: list[tuple[int, int]]) -> Pairs:
-    """The kernels' pairs: the link that is measured more finely gets the other's samples.
+    """The kernels' pairs: samples of the link farther from the base, of which each cluster has a speed of its own.
+
+    But where the other link's field is much coarser, it gives the samples.
 
     Args:
         skin, width, fields: as of `Pairs`.
         rows: of the links of each pair.
     """
     clusters = {row: np.flatnonzero(skin.link == row) for pair in rows for row in pair}
-    fine_last = [(a, b) if fields.edge[b] <= fields.edge[a] else (b, a) for a, b in rows]
-    members = [clusters[sampled] for sampled, _ in fine_last]
+    by_side = [(b, a) if fields.edge[a] <= COARSER * fields.edge[b] else (a, b) for a, b in rows]
+    members = [clusters[sampled] for sampled, _ in by_side]
     return Pairs(
         skin=skin,
         width=width,
         fields=fields,
-        sampled=np.array([a for a, _ in fine_last], dtype=np.int64),
-        other=np.array([b for _, b in fine_last], dtype=np.int64),
+        sampled=np.array([a for a, _ in by_side], dtype=np.int64),
+        other=np.array([b for _, b in by_side], dtype=np.int64),
+        doubt=np.array([skin.cover + slack_of(fields.edge[b]) for _, b in by_side]),
         pair=np.repeat(np.arange(len(rows)), [len(own) for own in members]),
         cluster=np.concatenate([np.zeros(0, dtype=np.int64), *members]),
     )
@@ -157,10 +162,8 @@ def _always_touch(machine: Machine, pairs: Pairs) -> NDArray[np.bool_]:
     placed = machine.world_from_link_array(rng.uniform(lower, upper, (POSES, len(joints))))
     touch = np.zeros(len(pairs.sampled))
     gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
-    # what is told of a gap is less than the gap by this
-    told_less = pairs.skin.cover + slack_of(pairs.fields.edge[pairs.other])
     for pose in placed:
-        gaps_now(pairs, pose, 0.0, gaps, least)
-        touch += least + told_less <= 0.0
+        gaps_now(pairs, pose, gaps, least)
+        touch += least + pairs.doubt <= 0.0
     always: NDArray[np.bool_] = touch >= ALWAYS * POSES
     return always

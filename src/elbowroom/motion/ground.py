@@ -44,7 +44,7 @@ def grounds_of(space: FreeSpace, machine: Machine) -> tuple[Ground, ...]:
     for stands in sorted(set(touches)):
         own = space
         if stands:
-            words = _words_in(machine, space.grid, stands)
+            words = _words_in(machine.anywhere, space.grid, stands)
             own = replace(space, free_words=space.free_words | words)
         grounds.append(Ground(own, volume_of(own), np.array([touch == stands for touch in touches])))
     return tuple(grounds)

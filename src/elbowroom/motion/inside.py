@@ -33,7 +33,7 @@ def blocks_inside(
     for ground in grounds:
         found = np.full(len(machine.links), NOTHING, dtype=np.int64)
         places = np.zeros((len(machine.links), 3))
-        deep = _deep(machine, ground.space.grid.voxel_size_m)
+        deep = _deep(machine.anywhere, ground.space.grid.voxel_size_m)
         blocked_inside(deep, ground.links, world_from_link, ground.volume, found, places)
         for row in np.flatnonzero(found != NOTHING):
             blocks[int(row)] = Block(0.0, int(found[row]), -1, places[row])

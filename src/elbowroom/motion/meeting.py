@@ -10,15 +10,11 @@ from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED
 from elbowroom.motion.contacts import pairs_of
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels.meeting import Nearness, Pairs, first_meeting, gaps_now
+from elbowroom.motion.kernels.meeting import Pairs, Steps, first_meeting, gaps_now
 from elbowroom.motion.sweep import cluster_speeds
 
-LEAST_IN_COVERS = 0.1
-"""Links that come nearer than this have met; in covering radii of their samples."""
-MORE_IN_COVERS = 1.0
-"""Links that are so near already may come nearer by this; in the same."""
 STEP_IN_COVERS = 2.0
-"""No step along a way is shorter than what moves links by this; in the same."""
+"""No step along a way is shorter than what moves links by this; in covering radii of their samples."""
 TOGETHER = 1 / 64
 """Looks that lie nearer to each other than this share of the way are done at one place."""
 
@@ -53,16 +49,16 @@ class Meeting:
     @classmethod
     def of(cls, machine: Machine, world_from_link: NDArray[np.float64]) -> Self:
         """At one place of the machine, whose links are there: shape (n_links, 4, 4)."""
-        pairs = pairs_of(machine)
+        pairs = pairs_of(machine.anywhere)
         gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
-        gaps_now(pairs, world_from_link, LEAST_IN_COVERS * pairs.skin.cover, gaps, least)
+        gaps_now(pairs, world_from_link, gaps, least)
         return cls(machine, pairs, world_from_link, gaps, least)
 
     def first(self, way: Way, length: float) -> Met | None:
         """Where two links first come so near that they may touch; None: nowhere.
 
-        Links that are so near already may not come nearer by more than the covering radius of their samples; and links
-        may touch by as much in passing.
+        Links that are so near already may come nearer by as much as is in doubt about their distance, a centimetre
+        or so.
 
         Args:
             way: where the motion leads.
@@ -82,7 +78,7 @@ class Meeting:
             self._closing(speeds, by_link, way),
             self.gaps,
             self.least,
-            self._nearness,
+            Steps(STEP_IN_COVERS * self.pairs.skin.cover, TOGETHER),
         )
         if member < 0:
             return None
@@ -90,11 +86,6 @@ class Meeting:
         rows = sorted((self.pairs.sampled[pair], self.pairs.other[pair]), key=lambda row: -by_link[row])
         one, other = (self.machine.link_names[row] for row in rows)
         return Met(float(travel), one, other, place)
-
-    @property
-    def _nearness(self) -> Nearness:
-        cover = self.pairs.skin.cover
-        return Nearness(LEAST_IN_COVERS * cover, MORE_IN_COVERS * cover, STEP_IN_COVERS * cover, TOGETHER)
 
     def _closing(
         self, speeds: NDArray[np.float64], by_link: NDArray[np.float64], way: Way

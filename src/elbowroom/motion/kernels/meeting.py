@@ -18,6 +18,7 @@ class Pairs(NamedTuple):
         width: of the run that begins with each sample, how far its others are from it at most, (samples,) [m].
         fields: of all links.
         sampled, other: rows of the links, (pairs,).
+        doubt: by how much more than what is told of it a pair's distance may be, (pairs,) [m].
         pair, cluster: of each cluster of a sampled link, once for each pair, (members,), sorted by pair.
     """
 
@@ -26,6 +27,7 @@ class Pairs(NamedTuple):
     fields: Fields
     sampled: np.ndarray
     other: np.ndarray
+    doubt: np.ndarray
     pair: np.ndarray
     cluster: np.ndarray
 
@@ -34,19 +36,15 @@ RUN = 8
 """So many samples of a cluster that lie side by side are passed over together."""
 
 
-class Nearness(NamedTuple):
-    """What counts as met, and how closely it is looked for.
+class Steps(NamedTuple):
+    """How closely meetings are looked for.
 
     Fields:
-        least: gaps below it [m];
-        more: by this less than now, where a gap is less already [m].
-        step: links are looked at again after having moved by this, or by their gap if that is more [m].
-        together: how far apart in travel two looks must be to be worth two placings, as a share of what is looked at.
+        least: links are looked at again after having moved by this, or by their gap if that is more [m].
+        together: looks nearer to each other than this share of what is looked at are done at one place.
     """
 
     least: float
-    more: float
-    step: float
     together: float
 
 
@@ -92,14 +90,13 @@ def _gap(pairs, member, other_from_one, fine_below, nearest):
 
 
 @njit(cache=True, nogil=True)
-def gaps_now(pairs, placed, fine_below, gaps, least):
+def gaps_now(pairs, placed, gaps, least):
     """Fills, for each member of the pairs, its gap, and for each pair the least of them [m].
 
     Args:
         pairs: what must not meet.
         placed: where links are, (links, 4, 4).
-        fine_below: as of `_gap`; also gaps below it are exact as far as samples and fields are.
-        gaps: (members,).
+        gaps: (members,); those within the pair's doubt are as good as samples and fields are.
         least: (pairs,).
     """
     other_from_one, nearest, last = np.empty((3, 4)), np.zeros(1, dtype=np.int64), -1
@@ -109,15 +106,17 @@ def gaps_now(pairs, placed, fine_below, gaps, least):
         if pair != last:
             _relate(placed, pairs.sampled[pair], pairs.other[pair], other_from_one)
             last = pair
-        gaps[member] = _gap(pairs, member, other_from_one, fine_below, nearest)
+        gaps[member] = _gap(pairs, member, other_from_one, pairs.doubt[pair], nearest)
         least[pair] = min(least[pair], gaps[member])
 
 
 @njit(cache=True, nogil=True)
-def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, least, nearness):
+def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, least, steps):
     """The travel up to which no pair meets, the member that meets after it, and the place of its nearest sample.
 
-    Links may meet in passing, between two looks, as far as they move between them.
+    A pair has met where what is told of its distance is no more than 0. Where that is less than the doubt about it
+    already, it has met when it is told to be nearer by all of the doubt: links that stay as far apart as they are do not
+    meet. Links may meet in passing, between two looks, as far as they move between them.
 
     Args:
         tree, world_from_base, course: what moves, and how (`Mover`).
@@ -126,7 +125,7 @@ def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, le
         speeds: the most by which the distance of each member's surface from the other link changes per unit of travel,
             (members,) [m]; 0: they move as one.
         gaps, least: now, of `gaps_now`.
-        nearness: what counts as met.
+        steps: how closely they are looked for.
 
     Returns:
         Travel at which the member that meets was last looked at before, the member or -1, place (3,) [m].
@@ -134,14 +133,14 @@ def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, le
     mover = Mover(tree, world_from_base, pairs.skin, course, speeds)
     place, nearest = np.zeros(3), np.zeros(1, dtype=np.int64)
     placed, other_from_one = np.empty((1, tree.parent.size, 4, 4)), np.empty((3, 4))
-    floors = np.where(least > nearness.least, 0.0, least - nearness.least - nearness.more)
+    floors = np.minimum(least - pairs.doubt, 0.0)
     # of the members that can meet: which, when to look again, and when they were looked at and had not met
     active, until, before = np.empty(gaps.size, dtype=np.int64), np.empty(gaps.size), np.zeros(gaps.size)
     count = 0
     for member in range(gaps.size):
         reach = gaps[member] - floors[pairs.pair[member]]
         if speeds[member] > 0.0 and reach < speeds[member] * length:
-            active[count], until[count] = member, max(reach, nearness.step) / speeds[member]
+            active[count], until[count] = member, max(reach, steps.least) / speeds[member]
             count += 1
     while count > 0:
         travel = until[:count].min()
@@ -151,19 +150,17 @@ def first_meeting(tree, world_from_base, pairs, course, length, speeds, gaps, le
         last, left = -1, 0
         for n in range(count):
             member, safe, known = active[n], until[n], before[n]
-            if safe <= travel + nearness.together * length:
+            if safe <= travel + steps.together * length:
                 pair = pairs.pair[member]
                 if pair != last:
                     _relate(placed[0], pairs.sampled[pair], pairs.other[pair], other_from_one)
                     last = pair
-                away = (
-                    _gap(pairs, member, other_from_one, floors[pair] + nearness.least, nearest) - floors[pair]
-                )
-                if away <= nearness.least:
+                away = _gap(pairs, member, other_from_one, floors[pair], nearest) - floors[pair]
+                if away <= 0.0:
                     row = pairs.sampled[pair]
                     place[0], place[1], place[2] = carried(placed[0, row], pairs.skin.points[nearest[0]])
                     return known, member, place
-                safe, known = travel + max(away, nearness.step) / speeds[member], travel
+                safe, known = travel + max(away, steps.least) / speeds[member], travel
             # what stays apart on all of the way is not asked again
             if safe < length:
                 active[left], until[left], before[left] = member, safe, known

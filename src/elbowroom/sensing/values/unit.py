@@ -73,7 +73,7 @@ def look_at_units(images: Sequence[Thinned], grid: VoxelGrid) -> list[Finding]:
     stands = _standing(every, slack)
     if is_far(stands) or (stands.reach >= 1.6 and stands.behind >= 0.65):
         return [Finding(KIND, names, _too_far(stands, usable[0], every, slack), is_far(stands))]
-    if stands.reach <= 0.3:
+    if stands.reach <= 0.25:
         return [Finding(KIND, names, _too_near(stands, usable[0], every, slack), stands.reach <= 0.15)]
     return [found for image in usable for found in _one(image, ends[image.camera.name], slack)]
 
