@@ -94,6 +94,18 @@ margins of three sigmas, without a lateral error.
         tables.alone_tables,
     ),
     Section(
+        "hand.json",
+        "A hand in the excess",
+        """
+Four arms of boxes whose collision geometry fills the openings between them, and a ball of 5 cm, as a hand, within 1 cm
+of an arm; twelve cameras of 640 x 480. Of all motions that meet the hand within the braking distance, the levels.
+*auto*: visual geometry explains what is seen; *collision*: what is swept explains as well, so the machine alone stops,
+since its own returns lie in its model ([why](safety.md#own-body)).
+""",
+        "elbowroom evaluate hand",
+        tables.hand_tables,
+    ),
+    Section(
         "evaluate_poses.json",
         "Verdicts beside exact geometry",
         """

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from elbowroom.evaluate.hand import hand
 from elbowroom.evaluate.rooms import alone, poses, travel
 from result_tables.cells import Row, centimetres, of, same, table
 
@@ -18,6 +19,21 @@ def alone_tables(rows: Sequence[Row]) -> list[str]:
             "voxel": centimetres,
             **same("detail", "poses", "verdicts", "stop", "decelerate", "inform", "clear"),
             "clear %": of("clear_pct", 2, due=alone.DUE),
+        },
+    )
+
+
+def hand_tables(rows: Sequence[Row]) -> list[str]:
+    """Levels of motions that meet a hand, and of the machine alone, by what explains."""
+    return table(
+        _summaries(rows),
+        {
+            "explained by": of("explain_with"),
+            **same("noise", "arms", "motions"),
+            "hand in the excess": of("in_excess"),
+            **same("stop", "decelerate", "inform"),
+            "clear": of("clear", due=hand.DUE),
+            "machine alone, stop %": of("alone_stop_pct", 1, due=hand.DUE),
         },
     )
 

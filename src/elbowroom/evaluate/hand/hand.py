@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.choices import ExplainWith
-from elbowroom.evaluate.due import Due
+from elbowroom.evaluate.due import Due, where
 from elbowroom.evaluate.hand.arms import ARMS, Arm
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
@@ -31,8 +31,18 @@ STEPS = 60
 OUTSIDE = 0.1
 """Of the places that lie in no link's collision geometry, so many are taken."""
 TRIES = 2000
-DUE = (Due("clear", "≤", 0), Due("alone_stop_pct", "≤", 5.0))
-"""Of the arms as they are explained by default."""
+BY_DEFAULT = where(explain_with="auto")
+DUE = (
+    Due("clear", "≤", 0, words="clear"),
+    Due(
+        "alone_stop_pct",
+        "≤",
+        5.0,
+        BY_DEFAULT,
+        "stops of the machine alone that is explained by what is seen of it",
+    ),
+)
+"""A hand is met whatever explains; the machine alone stops only where its model is larger than what is seen."""
 
 
 def hand_rows(

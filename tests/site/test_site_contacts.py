@@ -1,0 +1,78 @@
+"""What a site says of what its machine touches, carries and looks like."""
+
+import pytest
+import trimesh
+
+from elbowroom.errors import MachineError, SiteError
+from elbowroom.site import Site
+from elbowroom.site.notes import notes_of
+
+
+def site_of(folder, plain, **machine):
+    return Site.load(folder.write({**plain, "machine": machine}))
+
+
+CARRIED = {
+    "links": ["first"],
+    "lower_m": [-1, -1, -0.1],
+    "upper_m": [1, 1, 0.0],
+}
+
+
+@pytest.fixture
+def urdf(arm_urdf):
+    return str(arm_urdf)
+
+
+def test_contacts_stands_and_parts_are_read(folder, plain, urdf):
+    first, last = "base", "hand"
+    trimesh.creation.box((100, 20, 10)).export(folder.path / "rod.stl")
+    site = site_of(
+        folder,
+        plain,
+        urdf=urdf,
+        allowed_contacts=[[first, last]],
+        stands_on=[{**CARRIED, "links": [first]}],
+        carries=[
+            {"name": "plate", "link": last, "box_m": [0.3, 0.3, 0.01]},
+            {"name": "rod", "link": "plate", "mesh": "rod.stl", "mesh_scale": 0.001},
+            {"name": "can", "link": last, "cylinder_m": [0.03, 0.1]},
+        ],
+    )
+    machine = site.machine()
+    assert machine.parts == ("plate", "rod", "can")
+    assert machine.stands[0].links == (first,)
+    assert (first, last) in machine.allowed_contacts
+    notes = "\n".join(notes_of(site))
+    assert (
+        f"Not stopped by anything there, by the site's word: {first} in (-1, -1, -0.1) to (1, 1, 0) m"
+        in notes
+    )
+    assert f"May touch each other, by the site's word: {first} and {last}" in notes
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"stands_on": [{**CARRIED, "links": []}]}, "links"),
+        ({"stands_on": [{**CARRIED, "upper_m": [1, 1, -1]}]}, "has no inside"),
+        ({"stands_on": [{**CARRIED, "links": ["nobody"]}]}, "link 'nobody' does not exist"),
+        ({"allowed_contacts": [["nobody", "nothing"]]}, "link 'nobody' does not exist"),
+        ({"allowed_contacts": [["one"]]}, "allowed_contacts"),
+        ({"carries": [{"name": "a", "link": "nobody", "box_m": [1, 1, 1]}]}, "link 'nobody' does not exist"),
+        ({"carries": [{"name": "a", "link": "b"}]}, "exactly one of box_m, cylinder_m"),
+        (
+            {"carries": [{"name": "a", "link": "b", "box_m": [1, 1, 1], "mesh": "a.stl"}]},
+            "exactly one of box_m",
+        ),
+        (
+            {"carries": [{"name": "a", "link": "b", "box_m": [1, 1, 1], "mesh_scale": 1}]},
+            "mesh_scale only with mesh",
+        ),
+        ({"explain_with": "both"}, "explain_with"),
+    ],
+)
+def test_what_cannot_be_meant_is_refused_in_a_line(folder, plain, urdf, more, words):
+    with pytest.raises((SiteError, MachineError), match=words) as error:
+        site_of(folder, plain, urdf=urdf, **more).machine()
+    assert "\n" not in str(error.value)
