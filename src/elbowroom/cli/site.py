@@ -15,6 +15,7 @@ from elbowroom.files.json_rows import write_json
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from elbowroom.finding import Finding
     from elbowroom.geometry import DepthCamera, VoxelGrid
     from elbowroom.site import Site
 
@@ -111,6 +112,7 @@ def _findings(site: "Site") -> dict[str, Any]:
         meeting = times_of(site)
         times = None if meeting is None else times_row(meeting)
     notes += tight_notes(site)
+    found = looked_at(site)
     return {
         "site": str(site.path),
         "name": site.name,
@@ -129,8 +131,21 @@ def _findings(site: "Site") -> dict[str, Any]:
         "times": times,
         **memory_of(grid, cameras).row(),
         "notes": notes,
-        "findings": [asdict(finding) for finding in looked_at(site)],
+        "findings": [asdict(finding) for finding in (*found, *_of_the_model(site, found))],
     }
+
+
+def _of_the_model(site: "Site", found: "Sequence[Finding]") -> "Sequence[Finding]":
+    """Links whose model is larger than the first moment of a recording shows them, if nothing there is wrong."""
+    from elbowroom.reconstruct.model_findings import model_findings
+    from elbowroom.sources import open_room
+
+    machine, is_there = site.machine(), site.entry.recording is not None and site.missing_recording is None
+    if machine is None or not is_there or any(finding.stops for finding in found):
+        return ()
+    room = open_room(site)
+    snapshot = next(iter(room.source), None)
+    return () if snapshot is None else model_findings(machine, room.cameras, snapshot)
 
 
 def _coverage(grid: "VoxelGrid", cameras: "Sequence[DepthCamera]") -> dict[str, float]:

@@ -6,7 +6,7 @@ Numba compiles one function at a time in a process, but several processes fill o
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Literal
@@ -75,7 +75,10 @@ def _machine_in_images() -> None:
 
 
 def _motion() -> None:
+    import numpy as np
+
     from elbowroom.geometry import VoxelGrid, bits
+    from elbowroom.machine import Part
     from elbowroom.machine.probe import probe
     from elbowroom.motion import Motion, blocks_in_reach, check_motion
     from elbowroom.reconstruct import FreeSpace
@@ -85,6 +88,11 @@ def _motion() -> None:
     space = FreeSpace(grid, nothing, nothing, nothing, nothing)
     motion = Motion("slide", 1, 0.01)
     check_motion(space, probe(), {"slide": 0.0}, motion)
+    # links that could meet
+    beside = np.eye(4)
+    beside[0, 3] = 0.3
+    both = replace(probe().with_part("base", Part.box("part", (0.1, 0.1, 0.1)), beside), allowed_contacts=())
+    check_motion(FreeSpace(grid, ~nothing, nothing, nothing, nothing), both, {"slide": 0.0}, motion)
     blocks_in_reach(grid, probe(), {"slide": 0.0}, [motion])
 
 
@@ -113,7 +121,7 @@ JOBS = (
     Job(
         "motions",
         _motion,
-        ("elbowroom.motion.kernels.sweep", "first_block"),
+        ("elbowroom.motion.kernels.meeting", "first_meeting"),
         "motion",
         "the machine's body",
     ),
