@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -106,6 +107,32 @@ def test_what_a_camera_is_worth_is_what_leaving_it_out_and_losing_it_do(cameras,
         name = cameras[n].name
         assert scene.loss_pct[name] == pytest.approx(whole - found(cameras, rest_frames))
         assert scene.contributes_pct[name] == pytest.approx(whole - found(rest, rest_frames), abs=0.05)
+
+
+def test_cameras_side_by_side_are_rehearsed_as_the_one_witness_that_they_are(cameras, moments, settings):
+    pose = cameras[0].world_from_camera.copy()
+    pose[:3, 3] += 0.03 * pose[:3, 0]
+    near = [*cameras, replace(cameras[0], name="beside", world_from_camera=pose)]
+    scene = rehearse(near, moments[:1], settings).scenes[0]
+    frames = render(near, moments[0], seed=1)
+    same = {"margin": settings.terms.margin, "looks": False}
+
+    def found(of, given):
+        return reconstruct(GRID, of, given, settings.machine, moments[0].joints, **same).free_words
+
+    truth = true_occupancy(GRID, moments[0])
+    truly_free = bits.pack(~truth.occupied & ~truth.machine, GRID)
+
+    def percent(words):
+        return (
+            100.0
+            * np.unpackbits((words & truly_free).view(np.uint8)).sum()
+            / np.unpackbits(truly_free.view(np.uint8)).sum()
+        )
+
+    assert scene.free_pct == pytest.approx(percent(found(near, frames)))
+    without = percent(found(near[:-1], frames[:-1]))
+    assert scene.contributes_pct["beside"] == pytest.approx(scene.free_pct - without)
 
 
 def test_losing_a_camera_never_finds_more(cameras, moments, settings):

@@ -112,9 +112,11 @@ def test_three_that_see_through_overrule_one_that_measured_and_two_do_not(detail
     for through, free in ((1, False), (2, False), (3, True)):
         group = cameras[: through + 1]
         frames = [DepthFrame(c.name, 0, wall if n == 0 else empty) for n, c in enumerate(group)]
-        space = reconstruct(GRID, group, frames, detail=detail)
+        # all in one place: as witnesses they are one, unless each is said to be one of its own
+        space = reconstruct(GRID, group, frames, detail=detail, witness_angle_deg=0.0)
         assert space.free[10].all() == free
         assert space.free[10].any() == free
+        assert not reconstruct(GRID, group, frames, detail=detail).free[10].any()
         assert reconstruct(GRID, group, frames, detail=detail, rule="majority").free[10].any() == (
             through > 1
         )

@@ -12,7 +12,7 @@ from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.reconstruct import Terms, carve, free_space_of, merge, resolve
-from elbowroom.reconstruct.witnesses import witnesses
+from elbowroom.reconstruct.witnesses import merged_by_witness, witnesses
 from elbowroom.sensing import DepthFrame, Snapshot
 from elbowroom.simulate import wall_cameras
 from reference import reconstruct_scenes as scenes
@@ -137,6 +137,22 @@ def test_cameras_that_are_one_witness_must_be_carved_together():
         resolve(merge(parts), cameras)
     together = resolve(carve(grid, cameras, frames), cameras)
     np.testing.assert_array_equal(together.free, space_of(grid, cameras, frames, Margin(), 2.0).free)
+
+
+@pytest.mark.parametrize("complete", [False, True])
+@pytest.mark.parametrize("detail", ["footprint", "pixel"])
+def test_parts_of_each_camera_can_be_merged_by_witness(detail, complete):
+    for seed in range(6):
+        _, grid, cameras, frames = crowded_room(seed)
+        parts = [
+            carve(grid, [camera], [frame], detail=detail, complete=complete)
+            for camera, frame in zip(cameras, frames, strict=True)
+        ]
+        merged = merged_by_witness(parts, witnesses(grid, tuple(cameras), 2.0))
+        together = carve(grid, cameras, frames, detail=detail, complete=complete)
+        np.testing.assert_array_equal(merged.planes, together.planes)
+        assert merged.as_one == together.as_one
+        np.testing.assert_array_equal(resolve(merged, cameras).free, resolve(together, cameras).free)
 
 
 def test_a_room_whose_cameras_are_all_one_witness_has_what_nobody_disputes():

@@ -18,6 +18,7 @@ from elbowroom.reconstruct.carve import carve_images
 from elbowroom.reconstruct.explained import explain
 from elbowroom.reconstruct.images import room_images
 from elbowroom.reconstruct.resolve import decide
+from elbowroom.reconstruct.witnesses import merged_by_witness, witnesses
 from elbowroom.sensing import Snapshot
 from elbowroom.simulate import Moment, render, true_occupancy
 from elbowroom.site import Site
@@ -193,10 +194,11 @@ def _scene(
         space = decide(evidence, of, machine, moment.joints, settings.terms)
         return space, 100.0 * _count(space.free_words & truly_free) / count
 
-    space, free_pct = share(merge(parts), cameras)
+    groups = witnesses(grid, tuple(cameras), settings.terms.witness_angle_deg)
+    space, free_pct = share(merged_by_witness(parts, groups), cameras)
     contributes, loss = dict[str, float](), dict[str, float]()
     if by_camera:
-        for camera, rest in zip(cameras, _all_but_one(parts, settings), strict=True):
+        for camera, rest in zip(cameras, _all_but_one(parts, groups, settings), strict=True):
             others = [other for other in cameras if other is not camera]
             contributes[camera.name] = free_pct - share(rest, others)[1]
             loss[camera.name] = free_pct - share(rest, cameras)[1]
@@ -240,9 +242,25 @@ def evidence_by_camera(
     ]
 
 
-def _all_but_one(parts: Sequence[Evidence], settings: Settings) -> Iterator[Evidence]:
-    """For each part all others merged, by what lies before it and what lies behind."""
-    nothing = Evidence.nothing(settings.grid, settings.terms.needs_counts)
+def _all_but_one(
+    parts: Sequence[Evidence], groups: Sequence[Sequence[int]], settings: Settings
+) -> Iterator[Evidence]:
+    """For each part all others merged, by what lies before it and what lies behind.
+
+    Args:
+        parts: of each camera.
+        groups: numbers of those that are one witness each.
+        settings: how space is declared free.
+    """
+    if groups:
+        for left in range(len(parts)):
+            kept = [number for number in range(len(parts)) if number != left]
+            near = [[kept.index(number) for number in group if number != left] for group in groups]
+            left_over = [parts[number] for number in kept]
+            near = [group for group in near if group]
+            yield merged_by_witness(left_over, near) if left_over else _nothing(settings)
+        return
+    nothing = _nothing(settings)
     behind = [nothing]
     for part in reversed(parts[1:]):
         behind.append(merge([part, behind[-1]]))
@@ -250,6 +268,10 @@ def _all_but_one(parts: Sequence[Evidence], settings: Settings) -> Iterator[Evid
     for part, rest in zip(parts, reversed(behind), strict=True):
         yield merge([before, rest])
         before = merge([before, part])
+
+
+def _nothing(settings: Settings) -> Evidence:
+    return Evidence.nothing(settings.grid, settings.terms.needs_counts)
 
 
 def _count(words: Words) -> int:

@@ -93,7 +93,7 @@ def carve_images(
     rest = Explained(explained.model_depth, None)
     # of one witness every camera is asked, also where several see through: who disputes counts
     shared = (_carve_all(grid, images.of(*group), rest, terms, True, focus) for group in near)
-    return merge([own, *(as_one(one, complete) for one in shared)])
+    return merge([own, *(as_one([one], complete) for one in shared)])
 
 
 def _carve_all(

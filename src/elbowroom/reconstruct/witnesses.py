@@ -1,13 +1,14 @@
 """Which cameras are one witness: those that look from nearly one place err together."""
 
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, reduce
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from elbowroom.geometry import DepthCamera, VoxelGrid
-from elbowroom.reconstruct.evidence import Evidence
+from elbowroom.reconstruct.evidence import Evidence, merge
 from elbowroom.reconstruct.kernels.planes import THREE, TWO
 
 
@@ -42,15 +43,29 @@ def witnesses(
     return tuple(those for those in members if len(those) > 1)
 
 
-def as_one(evidence: Evidence, counted: bool) -> Evidence:
-    """What cameras know that are one witness: at most one sees through.
+def as_one(parts: Sequence[Evidence], counted: bool) -> Evidence:
+    """What cameras know that are one witness: together they see through what any of them does, and dispute likewise.
 
     Args:
-        evidence: of these cameras alone, all asked of every voxel.
-        counted: whether it keeps how many cameras see through and dispute.
+        parts: evidence of these cameras: of each alone, or of several that were all asked of every voxel.
+        counted: whether it keeps how many cameras see through and dispute; then all parts must have counts.
     """
-    planes = evidence.planes.copy()
+    planes = reduce(np.bitwise_or, (part.planes for part in parts)).copy()
     planes[TWO] = planes[THREE] = 0
-    group = frozenset({frozenset(evidence.cameras)})
-    counts = evidence.counts if counted else None
-    return replace(evidence, planes=planes, counts=counts, as_one=group)
+    merged, names = merge(parts), frozenset(name for part in parts for name in part.cameras)
+    groups = merged.as_one | ({names} if len(names) > 1 else set())
+    return replace(merged, planes=planes, counts=merged.counts if counted else None, as_one=groups)
+
+
+def merged_by_witness(parts: Sequence[Evidence], groups: Sequence[Sequence[int]]) -> Evidence:
+    """What all cameras know, each carved alone, as if those of one witness had been carved together.
+
+    Args:
+        parts: evidence by camera.
+        groups: numbers of those that are one witness each, as of `witnesses`.
+    """
+    near = [[parts[number] for number in group] for group in groups]
+    grouped = {number for group in groups for number in group}
+    own = [part for number, part in enumerate(parts) if number not in grouped]
+    counted = all(part.counts is not None for part in parts)
+    return merge([*own, *(as_one(group, counted) for group in near)])

@@ -1,6 +1,7 @@
 """What images show instead of the board that a site describes: another count, another unit of depth, no mark."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from elbowroom.calibrate.boards.board import Board
 from elbowroom.calibrate.boards.board_view import BoardView
 from elbowroom.calibrate.boards.trouble import Fault, Trouble
-from elbowroom.errors import CalibrationError
+from elbowroom.errors import CalibrationError, FrameError
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.parallel import spread
 from elbowroom.sources.layouts.image import Image
@@ -131,8 +132,10 @@ def _unit(board: Board, few: Work, look: Look, enough: int) -> float | None:
     """By how much the unit of depth is to be multiplied so that the board shows."""
     for factor in UNITS:
         scaled = [(image._replace(scale_m=factor * image.scale_m), pose) for image, pose in few]
-        if _views(board, scaled, look) >= enough:
-            return factor
+        # a factor by which depths are hundreds of metres is none, which the frame itself refuses
+        with suppress(FrameError):
+            if _views(board, scaled, look) >= enough:
+                return factor
     return None
 
 

@@ -141,7 +141,9 @@ def explain_rows() -> Iterator[Row]:
     grid = room_grid(COARSE_M)
     for noise, detail in product((None, "tof"), DETAILS):
         cameras, frames = images_of(moment, Shot(NOW_S, noise=noise))
-        space = reconstruct(grid, cameras, frames, room.machine, moment.joints, detail=detail, margin=NARROW)
+        space = reconstruct(
+            grid, cameras, frames, room.machine, moment.joints, detail=detail, margin=NARROW, looks=False
+        )
         reports = [space.explain(point) for point in POINTS_M]
         pieces = [("reports", "\n".join(report_text(report) for report in reports))]
         yield row(f"reports, {noise or 'exact'}", pieces, Terms().rule, detail)
@@ -173,12 +175,13 @@ def settings_rows() -> Iterator[Row]:
             detail=detail,
             margin=NARROW,
             **more,  # type: ignore[arg-type]
+            looks=False,
         )
         yield space_row(space, rule, detail, f"{name}: space")
         verdicts = check_motions(space, room.machine, moment.joints, motions)
         yield verdicts_row(verdicts, rule, detail, f"{name}: verdicts")
     for rule, detail in chosen:
-        bare = reconstruct(grid, cameras, frames, rule=rule, detail=detail, margin=NARROW)
+        bare = reconstruct(grid, cameras, frames, rule=rule, detail=detail, margin=NARROW, looks=False)
         yield space_row(bare, rule, detail, "no machine: space")
         yield space_row(bare.without(room.machine, moment.joints), rule, detail, "without: space")
 

@@ -90,6 +90,7 @@ def scene_rows(scene: Scene) -> Iterator[Row]:
                 detail=detail,
                 margin=scene.margin,
                 witness_angle_deg=scene.witness_angle_deg,
+                looks=False,
             )
             yield space_row(space, rule, detail)
             if scene.machine is not None and scene.joints is not None:

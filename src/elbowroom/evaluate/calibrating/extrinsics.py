@@ -234,11 +234,11 @@ def room_rows(
         moment = room.at(time_s)
         there = true_occupancy(grid, moment)
         exact = render(true, moment, noise=False)
-        seen = reconstruct(grid, true, exact, rule="any", detail="point").free
+        seen = reconstruct(grid, true, exact, rule="any", detail="point", looks=False).free
         frames = render(true, moment, seed=number)
         for lateral, tally in tallies.items():
             said = [with_margin(one, lateral) for one in found.cameras]
-            space = reconstruct(grid, said, frames, machine=room.machine, joints=moment.joints)
+            space = reconstruct(grid, said, frames, machine=room.machine, joints=moment.joints, looks=False)
             tally.add(space.free, there.occupied, there.machine, seen)
     held = sum(_margin_holds(one, truth[one.camera.name]) for one in found.cameras)
     for lateral, tally in tallies.items():

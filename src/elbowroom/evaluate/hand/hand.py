@@ -91,7 +91,9 @@ def _scene_rows(
         moment = Moment(0.0, (*shell(), *things, *link_solids(arm.machine, joints)), joints)
         frames = render(views, moment)
         for words, other in arms.items():
-            space = reconstruct(GRID, views, frames, other.machine, joints, margin=Margin(lateral_px=0.0))
+            space = reconstruct(
+                GRID, views, frames, other.machine, joints, margin=Margin(lateral_px=0.0), looks=False
+            )
             for verdict, meet in zip(
                 check_motions(space, other.machine, joints, motions), meets, strict=True
             ):

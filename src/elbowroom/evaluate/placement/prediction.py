@@ -82,6 +82,7 @@ def found_pct(cameras: Sequence[DepthCamera], moment: Moment, settings: Settings
         settings.machine,
         moment.joints,
         margin=settings.terms.margin,
+        looks=False,
     )
     truth = true_occupancy(settings.grid, moment)
     truly = ~truth.occupied & ~truth.machine

@@ -52,7 +52,9 @@ def alone_rows(
         frames, joints = render(views, moment), moment.joints
         for edge in voxel_sizes_m:
             grid = room_grid(edge)
-            space = reconstruct(grid, views, frames, room.machine, joints, detail=detail, margin=WELL_KNOWN)
+            space = reconstruct(
+                grid, views, frames, room.machine, joints, detail=detail, margin=WELL_KNOWN, looks=False
+            )
             for verdict in check_motions(space, room.machine, joints, motions):
                 row = {"kind": "verdict", "pose": pose, "voxel_size_m": edge, **said}
                 yield row | only(verdict.row(), SAID)

@@ -61,7 +61,9 @@ def poses_rows(
         moment = room.random_moment(rng)
         truth, joints = ExactTravel(room.machine, moment.solids), moment.joints
         frames = render(views, moment, noise=False)
-        space = reconstruct(grid, views, frames, room.machine, joints, detail=detail, margin=WELL_KNOWN)
+        space = reconstruct(
+            grid, views, frames, room.machine, joints, detail=detail, margin=WELL_KNOWN, looks=False
+        )
         verdicts = check_motions(space, room.machine, joints, motions)
         for motion, verdict in zip(motions, verdicts, strict=True):
             compared = Comparison(motion, verdict, truth.until_contact(joints, motion)).row()

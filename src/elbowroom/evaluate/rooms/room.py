@@ -138,13 +138,18 @@ def room_rows(
     for voxel_size_m in voxel_sizes_m:
         grid = VoxelGrid.covering(ROOM_LOWER_M, ROOM_UPPER_M, voxel_size_m)
         truths = [true_occupancy(grid, scene.moment) for scene in scenes]
-        seen = [reconstruct(grid, exact, scene.plain, rule="any", detail="point").free for scene in scenes]
+        seen = [
+            reconstruct(grid, exact, scene.plain, rule="any", detail="point", looks=False).free
+            for scene in scenes
+        ]
         for noise, detail in itertools.product((False, True), details):
             tally = Tally()
             for scene, truth, visible in zip(scenes, truths, seen, strict=True):
                 views, frames = (noisy, scene.rough) if noise else (exact, scene.plain)
                 joints = scene.moment.joints
-                space = reconstruct(grid, views, frames, room.machine, joints, rule=rule, detail=detail)
+                space = reconstruct(
+                    grid, views, frames, room.machine, joints, rule=rule, detail=detail, looks=False
+                )
                 tally.add(space.free, truth.occupied, truth.machine, visible)
             said = {"voxel_size_m": voxel_size_m, "detail": detail, "rule": rule, "noise": noise}
             yield {**said, **cameras_row(exact), "moments": len(scenes), **tally.row()}

@@ -57,7 +57,7 @@ def _rows(name: str, hang: Hang, count: int, rule: Rule, scenes: int) -> Iterato
         touched = solid.touched(GRID)
         touched_voxels += int(touched.sum())
         for n, detail in enumerate(DETAILS):
-            free = reconstruct(GRID, cameras, frames, rule=rule, detail=detail).free
+            free = reconstruct(GRID, cameras, frames, rule=rule, detail=detail, looks=False).free
             wrong[seed, n] = (free & touched).sum()
     for n, detail in enumerate(DETAILS):
         yield {

@@ -119,6 +119,7 @@ def _space(
         detail=errors.detail,
         margin=margin_for(errors.rotation_deg, errors.translation_m, share, scene.views[0].intrinsics.fx),
         focus=focus,
+        looks=False,
     )
 
 
@@ -135,7 +136,7 @@ def _exact_scene(number: int, voxel_size_m: float, size: str, cameras: int) -> _
     grid, moment = room_grid(voxel_size_m), setup(number).at(c_arm())
     views = wall_cameras(cameras, HEIGHTS_M, size=size)
     frames = render(views, moment, noise=False)
-    seen = reconstruct(grid, views, frames, rule="any", detail="point").free
+    seen = reconstruct(grid, views, frames, rule="any", detail="point", looks=False).free
     return _Scene(moment, grid, true_occupancy(grid, moment), views, frames, seen)
 
 

@@ -35,15 +35,17 @@ def fig3_picture(setup: Setup, machine: Machine) -> bytes:
     views = wall_cameras(4, (2.4, 2.0), width=320, height=240)
     frames = render(views, moment, noise=False)
     tiles = [
-        _tile(reconstruct(grid, [view], [frame]).free[:, :, layer])
+        _tile(reconstruct(grid, [view], [frame], looks=False).free[:, :, layer])
         for view, frame in zip(views, frames, strict=True)
     ]
-    together = reconstruct(grid, views, frames, rule="any").free
+    together = reconstruct(grid, views, frames, rule="any", looks=False).free
     tiles.append(_tile(together[:, :, layer]))
     here = _body(machine, dict(moment.joints), grid)
     nothing = np.zeros(grid.shape[:2], dtype=np.bool_)
     tiles.append(_tile(~nothing, robot=here[:, :, layer]))
-    model = reconstruct(grid, views, frames, machine=machine, joints=moment.joints, rule="any").free
+    model = reconstruct(
+        grid, views, frames, machine=machine, joints=moment.joints, rule="any", looks=False
+    ).free
     tiles.append(_tile(model[:, :, layer]))
     bodies = []
     for move in MOVES:

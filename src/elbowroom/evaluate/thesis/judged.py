@@ -103,6 +103,7 @@ def seen_space(
         detail=variant.detail,
         margin=Margin(lateral_px=variant.lateral_px),
         focus=blocks_in_reach(grid, machine, moment.joints, motions),
+        looks=False,
     )
 
 

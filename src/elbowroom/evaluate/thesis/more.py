@@ -68,8 +68,8 @@ def judge_counts(number: int, voxel_size_m: float) -> Outcome:
     for count in COUNTS:
         views = hung_clear(sensor_cameras("640x480", count=count), scene.solids(), max(HEIGHTS_M))
         frames = render(views, moment, noise=False)
-        seen = reconstruct(grid, views, frames, rule="any", detail="point").free
-        space = reconstruct(grid, views, frames, machine=machine, joints=moment.joints)
+        seen = reconstruct(grid, views, frames, rule="any", detail="point", looks=False).free
+        space = reconstruct(grid, views, frames, machine=machine, joints=moment.joints, looks=False)
         tally = Tally()
         tally.add(space.free, truth.occupied, truth.machine, seen)
         verdicts = check_motions(space, machine, moment.joints, motions)
@@ -99,7 +99,7 @@ def judge_balls(sensor: str, voxel_size_m: float) -> Outcome:
         frames = render(views, moment, noise=False)
         touched = [touched_by(grid, solid) for solid, _ in balls]
         for detail in ("point", "footprint", "pixel"):
-            free = reconstruct(grid, views, frames, detail=detail).free
+            free = reconstruct(grid, views, frames, detail=detail, looks=False).free
             wrong = [
                 free[tuple(slice(c, c + n) for c, n in zip(corner, part.shape, strict=True))][part]
                 for corner, part in touched

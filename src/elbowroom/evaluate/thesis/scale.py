@@ -170,6 +170,7 @@ def _space(
         explain_tolerance_m=EXPLAIN_M,
         body_growth_m=body_growth(grid.voxel_size_m),
         focus=focus,
+        looks=False,
     )
 
 

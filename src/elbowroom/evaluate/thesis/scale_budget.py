@@ -174,6 +174,7 @@ def _spaces(pose: int, grid: VoxelGrid, moment: Moment, motions: Sequence[Motion
             explain_tolerance_m=EXPLAIN_M,
             body_growth_m=growth_m,
             focus=focus,
+            looks=False,
         )
         for allowed, noise in IMAGES
     ]

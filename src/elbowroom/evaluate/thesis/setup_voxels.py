@@ -43,7 +43,9 @@ class SetupVoxels:
     def __init__(self, number: int, moment: Moment, grid: VoxelGrid, exact: Images) -> None:
         self.number, self.moment, self.grid = number, moment, grid
         self.truth, self.centres = true_occupancy(grid, moment), true_centres(grid, moment)
-        self.seen = reconstruct(grid, exact.cameras, exact.frames, rule="any", detail="point").free
+        self.seen = reconstruct(
+            grid, exact.cameras, exact.frames, rule="any", detail="point", looks=False
+        ).free
 
     def space(self, images: Images, detail: Detail, margin: Margin) -> FreeSpace:
         """As reconstructed; the point test by the thesis' own rule: three overrule a surface.
@@ -61,6 +63,7 @@ class SetupVoxels:
             rule="three",
             detail=detail,
             margin=margin,
+            looks=False,
         )
 
     def row(self, space: FreeSpace, images: Images, detail: Detail, margin: Margin) -> dict[str, Any]:
