@@ -165,6 +165,18 @@ def test_visual_geometry_that_is_a_picture_of_something_else_explains_only_by_wo
     assert seen_of(c_arm(tmp_path, visual=visual, explain_with="visual")) is not None
 
 
+def test_a_picture_that_is_larger_than_what_is_swept_is_said(tmp_path):
+    def told(visual, **more):
+        found = c_arm(tmp_path, visual=visual, **more).findings
+        return [finding.text for finding in found if finding.kind == "larger"]
+
+    (text,) = told([((0.6, 0.2, 0.5), (0.535, 0, 0))])
+    assert "link c: its visual geometry stands out of its collision geometry by up to 35 mm" in text
+    assert not told(C) and not told([AROUND])
+    # no picture of the same thing
+    assert not told([((530, 60, 500), (535, 0, 0))])
+
+
 def test_a_visual_mesh_that_is_missing_is_an_error_only_by_word(tmp_path):
     def with_mesh(**more):
         shape = link("c", *AROUND).replace(

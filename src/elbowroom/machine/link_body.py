@@ -16,7 +16,7 @@ from elbowroom.machine.description.shapes import Shape
 from elbowroom.machine.link import Link, Surface
 from elbowroom.machine.mesh_file import MeshFile, read_mesh
 from elbowroom.machine.meshes import triangles_of
-from elbowroom.machine.seen import are_the_same, seen_surface, together
+from elbowroom.machine.seen import are_the_same, fit_of, together
 
 LARGEST_LINK_M = 20.0
 """A longer link is refused, unless the site says otherwise [m]."""
@@ -47,7 +47,7 @@ class Bodies:
         packages: where mesh files are looked for.
         without_body: names of links whose geometry is left out.
         largest_link_m: a longer link is refused [m]; None: `LARGEST_LINK_M`, and a mesh that is out of proportion.
-        explain_with: which geometry says what cameras see of a link (`seen_surface`).
+        explain_with: which geometry says what cameras see of a link (`machine.seen`).
 
     Raises:
         MachineError: a link without a body that does not exist.
@@ -152,8 +152,16 @@ class Bodies:
             return None
         # each has been read
         pieces = [piece for shape in shapes for piece in self._piece(link, shape)]
-        seen = seen_surface(visual, body, [piece.vertices for piece in pieces], self.explain_with)
-        return None if seen is None else Link(link.name, seen.vertices, seen.faces.astype(np.int32))
+        fit = fit_of(visual, body, [piece.vertices for piece in pieces])
+        if fit.is_larger:
+            self.report.warn(
+                "larger",
+                link.element,
+                f"its visual geometry stands out of its collision geometry by up to {1e3 * fit.outside_m:.0f} mm; if "
+                "the machine is as it is drawn, motions are swept with less than the machine",
+            )
+        is_seen = fit.is_seen if self.explain_with == "auto" else len(visual.faces) > 0
+        return Link(link.name, visual.vertices, visual.faces.astype(np.int32)) if is_seen else None
 
     def _mesh(self, link: RawLink, shape: Shape) -> MeshFile | None:
         """What a mesh file holds; None: it is lost, which is noted."""

@@ -26,7 +26,7 @@ from elbowroom.machine.stand import Stand
 
 ROUNDING = 1e-6
 """Positions beyond a limit by this much are rounding, not a fault [m or rad]."""
-QUIET = ("package", "limits", "axes")
+QUIET = ("package", "limits", "axes", "larger")
 """Kinds of findings that are kept with the machine, and are no slip that a warning is due for."""
 
 

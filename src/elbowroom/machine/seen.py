@@ -6,18 +6,20 @@ that is really there.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from elbowroom.choices import ExplainWith
 from elbowroom.machine.description.shapes import Shape
 from elbowroom.machine.link import Surface
 
 OUTSIDE_M = 0.01
 """Visual geometry that stands out of the collision geometry by more is a picture of something else, or what collides is
 drawn too small: then the collision geometry explains, and what stands out stops the machine [m]."""
+MUCH_M = 0.25
+"""What stands out by more is no picture of the same thing [m]."""
 SHORT_M, SHORT = 0.1, 0.25
 """Visual geometry that stays inside the box about the collision geometry by more on any side, as a length [m] and as a
 share of the box's edge, is a picture of a part of the link."""
@@ -42,22 +44,38 @@ def together(pieces: Sequence[Surface]) -> Surface:
     )
 
 
-def seen_surface(
-    visual: Surface, collision: Surface, shapes: Sequence[NDArray[np.float64]], explain_with: ExplainWith
-) -> Surface | None:
-    """What cameras see of a link; None: its collision geometry.
+class Fit(NamedTuple):
+    """How visual geometry lies in the collision geometry of its link.
+
+    Args:
+        fills: whether it reaches about as far, on each side; none at all does not.
+        outside_m: how far it stands out, at most [m].
+    """
+
+    fills: bool
+    outside_m: float
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether it is what cameras see of the link, as far as that can be told."""
+        return self.fills and self.outside_m <= OUTSIDE_M
+
+    @property
+    def is_larger(self) -> bool:
+        """Whether it is a picture of the link, and the link is swept with less."""
+        return self.fills and OUTSIDE_M < self.outside_m < MUCH_M
+
+
+def fit_of(visual: Surface, collision: Surface, shapes: Sequence[NDArray[np.float64]]) -> Fit:
+    """How visual geometry lies in the collision geometry of its link.
 
     Args:
         visual, collision: of the link.
         shapes: vertices of each collision shape, shape (n, 3), link frame [m].
-        explain_with: "visual": whatever it is; "auto": visual geometry that fills the collision geometry and lies
-            within it.
     """
-    if not len(visual.faces) or explain_with == "collision":
-        return None
-    if explain_with == "auto" and not (_fills(visual, collision) and outside(visual, shapes) <= OUTSIDE_M):
-        return None
-    return visual
+    if not len(visual.faces):
+        return Fit(False, 0.0)
+    return Fit(_fills(visual, collision), outside(visual, shapes))
 
 
 def outside(visual: Surface, shapes: Sequence[NDArray[np.float64]]) -> float:

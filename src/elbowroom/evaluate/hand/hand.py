@@ -46,6 +46,7 @@ DUE = (
 
 
 def hand_rows(
+    arms: Sequence[str] = tuple(ARMS),
     *,
     scenes: int = 25,
     cameras: int = 12,
@@ -56,6 +57,7 @@ def hand_rows(
     """Each arm in random poses with a hand close by, and without; all motions judged from images of each noise.
 
     Args:
+        arms: of `ARMS`.
         scenes: of each arm.
         cameras, size: along the walls, at 2.4 and 0.4 m in turn.
         noise: presets by name; "exact": none.
@@ -66,14 +68,14 @@ def hand_rows(
     """
     for preset in noise:
         views = wall_cameras(cameras, (2.4, 0.4), size=size, noise=NOISE_PRESETS.get(preset))
-        for number, name in enumerate(ARMS):
-            rng = np.random.default_rng((seed, number))
+        for name in arms:
+            rng = np.random.default_rng((seed, list(ARMS).index(name)))
             with TemporaryDirectory() as folder:
                 by_words: tuple[ExplainWith, ExplainWith] = ("auto", "collision")
-                arms = {words: Arm.in_folder(name, Path(folder), words) for words in by_words}
+                explained = {words: Arm.in_folder(name, Path(folder), words) for words in by_words}
             for scene in range(scenes):
                 shared = {"kind": "verdict", "arm": name, "scene": scene, "noise": preset, "seed": seed}
-                yield from ({**shared, **row} for row in _scene_rows(arms, views, rng))
+                yield from ({**shared, **row} for row in _scene_rows(explained, views, rng))
 
 
 def _scene_rows(
