@@ -25,8 +25,19 @@ def rippled(seed, subdivisions=4):
 
 
 def apart(points, vertices, faces):
-    """Distance of each point to triangles, by trimesh."""
-    return trimesh.proximity.closest_point(trimesh.Trimesh(vertices, faces, process=False), points)[1]
+    """Distance of each point to triangles, by trimesh, each triangle asked.
+
+    Its `proximity` asks those near the point's nearest corner alone, and may miss the nearest triangle.
+    """
+    corners = vertices[faces]
+    return np.array(
+        [
+            np.linalg.norm(
+                trimesh.triangles.closest_point(corners, np.tile(p, (len(corners), 1))) - p, axis=1
+            ).min()
+            for p in points
+        ]
+    )
 
 
 def spread_over(vertices, faces, rng, count):

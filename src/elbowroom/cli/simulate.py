@@ -49,13 +49,6 @@ def simulate(
     from elbowroom.cli.simulate_run import Asked, WallOptions, simulate_site, simulate_walls
 
     positions = parse_joints(joints)
-    walls = {
-        "--cameras": cameras,
-        "--size": size,
-        "--height": height,
-        "--box": box,
-        "--voxel-size": voxel_size,
-    }
     asked = Asked(
         room=None if room is None else RoomFile(room, up, unit),
         out=out,
@@ -69,9 +62,10 @@ def simulate(
         truth=truth,
     )
     if site is not None:
-        given = [name for name, value in (walls | {"--machine": machine}).items() if value is not None]
-        if given:
-            raise InputError(f"{given[0]}: {ONLY_WITHOUT_SITE}; leave it out")
+        _refuse_given(
+            {"--cameras": cameras, "--size": size, "--height": height, "--box": box}
+            | {"--voxel-size": voxel_size, "--machine": machine}
+        )
         simulate_site(site, asked, json)
         return
     if room is None or out is None:
@@ -86,6 +80,13 @@ def simulate(
         machine=machine is not False,
     )
     simulate_walls(asked, walled, json)
+
+
+def _refuse_given(walls: dict[str, object]) -> None:
+    """Refuses what says how cameras hang along walls, by option, where a site says where they hang."""
+    for name, value in walls.items():
+        if value is not None:
+            raise InputError(f"{name}: {ONLY_WITHOUT_SITE}; leave it out")
 
 
 def _people(moving: list[str]) -> int:
