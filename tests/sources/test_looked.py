@@ -75,6 +75,18 @@ def test_the_greatest_range_written_for_nothing_is_said_and_is_no_surface(tmp_pa
     assert "taken as no return" in capsys.readouterr().out
 
 
+def test_a_part_of_the_image_that_never_returns_is_told_with_the_command_that_masks_it(tmp_path, capsys):
+    scene = room.scene()
+    path = site_of(tmp_path, scene)
+    assert run(["site", "check", str(path)]) == 0 and "never returns" not in capsys.readouterr().out
+    codes = {name: raw.copy() for name, raw in scene.codes.items()}
+    codes["ne"][: room.HEIGHT // 4] = 0
+    path = site_of(tmp_path, replace(scene, codes=codes))
+    assert run(["site", "check", str(path)]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "through: ne 25%" in told and f"elbowroom site mask {path}" in told
+
+
 @pytest.mark.parametrize(("fx", "said"), [(160.0, "principal point"), (0.5, "field of view")])
 def test_a_wrong_lens_stops_before_any_image_is_read(tmp_path, fx, said):
     path = site_of(tmp_path, room.scene(), fx=fx, fy=fx, cx=2 * fx - 0.5, cy=1.5 * fx - 0.5)

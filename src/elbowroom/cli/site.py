@@ -89,6 +89,7 @@ def _findings(site: "Site") -> dict[str, Any]:
     from elbowroom.sources import (
         cameras_of,
         check_images,
+        dark_note,
         looked_at,
         silent_cameras,
         time_findings,
@@ -113,6 +114,8 @@ def _findings(site: "Site") -> dict[str, Any]:
         times = None if meeting is None else times_row(meeting)
     notes += tight_notes(site)
     found = looked_at(site)
+    if not any(finding.stops for finding in found) and (dark := dark_note(site)) is not None:
+        notes.append(dark)
     return {
         "site": str(site.path),
         "name": site.name,

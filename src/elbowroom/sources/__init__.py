@@ -2,7 +2,7 @@
 
 from elbowroom.sources.cameras import cameras_of
 from elbowroom.sources.depth_png import read_depth_png
-from elbowroom.sources.looked import looked_at
+from elbowroom.sources.looked import dark_note, looked_at
 from elbowroom.sources.recorded import (
     Recorded,
     check_images,
@@ -21,6 +21,7 @@ __all__ = [
     "Source",
     "cameras_of",
     "check_images",
+    "dark_note",
     "excluded_frames",
     "looked_at",
     "moments",

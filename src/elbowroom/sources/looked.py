@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
 from elbowroom.reconstruct.contradiction.findings import contradictions
+from elbowroom.sensing.never import Never
 from elbowroom.sensing.values import look_at_images, look_at_setting
 from elbowroom.site import Site
 from elbowroom.site.plausible import look_at_site
@@ -14,6 +15,8 @@ from elbowroom.sources.layouts.layout import layout_of
 
 MOMENTS = 3
 """So many moments of a recording are read: the first, the last, and those evenly between."""
+DARK = 0.1
+"""Where so much of an image never returns, from its border on, that is told."""
 
 
 def looked_at(site: Site) -> tuple[Finding, ...]:
@@ -34,6 +37,30 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
             of_values = look_at_images(grid, cameras, frames, units_m)
             found += [*of_values, *contradictions(cameras, frames, site.margin(), of_values)]
     return once(found)
+
+
+def dark_note(site: Site) -> str | None:
+    """Which cameras have a part of the image that never returns, in the moments that are looked at; None: none has.
+
+    Raises:
+        SiteError, FrameError: as `moments`.
+    """
+    if site.entry.recording is None or site.missing_recording is not None:
+        return None
+    found: dict[str, Never] = {}
+    for group in _some(layout_of(site).moments()):
+        for image in group:
+            if image.camera.mask is None:
+                found.setdefault(image.camera.name, Never(image.camera)).add(image.read())
+    dark = {name: float(never.mask()[0].mean()) for name, never in found.items()}
+    many = {name: share for name, share in dark.items() if share >= DARK}
+    if not many:
+        return None
+    shares = ", ".join(f"{name} {share:.0%}" for name, share in many.items())
+    return (
+        f"a part of the image never returns, and disputes what other cameras see through: {shares}. If nothing can be "
+        f"there that is not seen (dark corners, walls beyond the range): elbowroom site mask {site.path} --out masks"
+    )
 
 
 def units_of(site: Site, cameras: Sequence[DepthCamera]) -> Mapping[str, float]:
