@@ -8,9 +8,8 @@ from tempfile import TemporaryDirectory
 from PIL import Image
 from rich.console import Console
 
-from elbowroom.monitor import Cycle
 from elbowroom.monitor.loop import timed_source
-from elbowroom.reconstruct import warm_up
+from elbowroom.monitor.start.start import started
 from elbowroom.site import Site
 from elbowroom.sources import open_room
 from elbowroom.sources.simulated import Simulated
@@ -26,16 +25,15 @@ COLUMNS = 118
 def main() -> None:
     """Judges a second of the room, then draws its last pass."""
     room = open_room(Site.simulated_room())
-    machine, motions = room.machine_and_motions()
-    cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms, focused=False)
+    machine, _ = room.machine_and_motions()
     assert isinstance(room.source, Simulated)
-    warm_up(machine)
+    loop = started(room, lambda what: None)
     # recorded as on a terminal, shown nowhere
     console = Console(record=True, width=COLUMNS, file=io.StringIO(), force_terminal=True)
     view = TerminalView(console)
     view.watched = watched_of(room)
     for n, (snapshot, source_ms) in enumerate(timed_source(room.source.at(TIMES_S))):
-        result = cycle.run(snapshot)
+        result = loop.judge(snapshot)
         # the first pass is slow, others are not
         if n > 0:
             view.log.add(result, source_ms)
@@ -46,7 +44,8 @@ def main() -> None:
     svg = re.sub(r"@font-face \{.*?\}\s*|<!-- .*? -->\s*", "", svg, flags=re.DOTALL)
     (HERE / "monitor.svg").write_text(svg, encoding="utf-8")
     with TemporaryDirectory() as folder:
-        save_sections(result.space, Path(folder), machine, snapshot.joints, room.cameras)
+        # the loop looks where the machine can go; the picture shows all of the room
+        save_sections(room.space_of(snapshot), Path(folder), machine, snapshot.joints, room.cameras)
         picture = Image.open(Path(folder) / "section_z2.png")
         picture.convert("P", palette=Image.Palette.ADAPTIVE, colors=64).save(
             HERE / "section.png", optimize=True

@@ -187,7 +187,8 @@ class TerminalView:
     def _speed(self, result: CycleResult) -> Text:
         log = self.log
         age = result.age_ms if result.late is not None else log.recent(log.age_ms)
-        stages = " + ".join(f"{name} {ms:.0f}" for name, ms in log.recent_stage_ms.items())
+        # what rounds to nothing is left out
+        stages = " + ".join(f"{name} {ms:.0f}" for name, ms in log.recent_stage_ms.items() if ms >= 0.5)
         levels = [verdict.level for verdict in result.verdicts]
         text = Text()
         text.append(f"{log.rate_hz:.1f} Hz", "bold")
