@@ -9,6 +9,7 @@ from elbowroom.sensing.never import Never
 from elbowroom.sensing.values import look_at_images, look_at_setting
 from elbowroom.site import Site
 from elbowroom.site.plausible import look_at_site
+from elbowroom.site.recording_entry import SevenScenes
 from elbowroom.sources.cameras import cameras_of
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
@@ -46,6 +47,9 @@ def dark_note(site: Site) -> str | None:
         SiteError, FrameError: as `moments`.
     """
     if site.entry.recording is None or site.missing_recording is not None:
+        return None
+    if isinstance(site.entry.recording, SevenScenes):
+        # each frame is a camera of its own, and none looks twice
         return None
     found: dict[str, Never] = {}
     for group in _some(layout_of(site).moments()):
