@@ -89,13 +89,8 @@ class Cycle:
             snapshot: what the pass was about; None: nothing had come.
             stage_ms: time that each stage took [ms], as far as it came.
         """
-        try:
-            now_ns, oldest_ms = (snapshot.now_ns or 0, snapshot.oldest_age_ms) if snapshot else (0, None)
-        except Exception:  # what failed may be the snapshot itself
-            now_ns, oldest_ms = 0, None
         verdicts = tuple(self._stop(motion) for motion in self.motions)
-        fault = f"{type(error).__name__}: {error}"
-        return CycleResult(self._number(), now_ns, None, verdicts, stage_ms or {}, oldest_ms, fault)
+        return failure(self._number(), error, snapshot, stage_ms, verdicts)
 
     def _late(self, snapshot: Snapshot, begun_ns: int) -> str | None:
         """What is said where a frame that was used has come of age since its pass began."""
@@ -122,6 +117,30 @@ class Cycle:
     def _stop(self, motion: Motion, cause: Cause = Cause.FAULT) -> Verdict:
         units = {joint.name: joint.unit for joint in self.machine.joints}
         return Verdict.stop(motion, units.get(motion.joint, "m or rad"), cause)
+
+
+def failure(
+    sequence: int,
+    error: Exception,
+    snapshot: Snapshot | None,
+    stage_ms: dict[str, float] | None,
+    verdicts: tuple[Verdict, ...] = (),
+) -> CycleResult:
+    """What a pass came to that failed; it does not raise, whatever the snapshot is.
+
+    Args:
+        sequence: number of the pass.
+        error: what was raised.
+        snapshot: what the pass was about; None: nothing had come.
+        stage_ms: time that each stage took [ms], as far as it came; None: none was begun.
+        verdicts: stop for every motion that was asked.
+    """
+    try:
+        now_ns, oldest_ms = (snapshot.now_ns or 0, snapshot.oldest_age_ms) if snapshot else (0, None)
+    except Exception:  # what failed may be the snapshot itself
+        now_ns, oldest_ms = 0, None
+    fault = f"{type(error).__name__}: {error}"
+    return CycleResult(sequence, now_ns, None, verdicts, stage_ms or {}, oldest_ms, fault)
 
 
 def lateness(snapshot: Snapshot, limit_ns: int | None, took_ms: float) -> str | None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
-from elbowroom.monitor.cycle import lateness
+from elbowroom.monitor.cycle import failure, lateness
 from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.stages import timed
 from elbowroom.reconstruct import Terms, free_space_of
@@ -67,9 +67,7 @@ class SpaceCycle:
             snapshot: what the pass was about; None: nothing had come.
             stage_ms: time that each stage took [ms], as far as it came.
         """
-        now_ns = 0 if snapshot is None else snapshot.now_ns or 0
-        fault = f"{type(error).__name__}: {error}"
-        return CycleResult(self._number(), now_ns, None, (), stage_ms or {}, None, fault)
+        return failure(self._number(), error, snapshot, stage_ms)
 
     def _number(self) -> int:
         self.sequence += 1
