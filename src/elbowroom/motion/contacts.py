@@ -14,6 +14,7 @@ from elbowroom.motion.field import fields_of
 from elbowroom.motion.kernels.field import Fields, slack_of
 from elbowroom.motion.kernels.meeting import RUN, Pairs, gaps_now
 from elbowroom.motion.kernels.mover import Skin
+from elbowroom.motion.skin import bare_skin
 
 SAMPLES = 8_000
 """A machine's surface has about so many samples here; a robot of 1 m2 is covered to within 6 mm."""
@@ -140,22 +141,7 @@ def _skin(samples: BodySamples) -> tuple[Skin, NDArray[np.float64]]:
     first = np.arange(len(points)) - place % RUN
     width = np.zeros(len(points))
     np.maximum.at(width, first, np.linalg.norm(points - points[first], axis=1) + ROUNDING_M)
-    none = np.zeros(0, dtype=np.int32)
-    skin = Skin(
-        points=points,
-        cluster_of=none,
-        start=samples.cluster_start,
-        stop=samples.cluster_stop,
-        link=samples.cluster_link,
-        centre=samples.cluster_centre,
-        radius=samples.cluster_radius,
-        cover=samples.cover_m,
-        off=samples.bound_m,
-        triangles=np.zeros((0, 3, 3)),
-        patches=none,
-        patch_start=np.zeros(0, dtype=np.int64),
-    )
-    return skin, width
+    return bare_skin(samples, points), width
 
 
 def _always_touch(machine: Machine, pairs: Pairs) -> NDArray[np.bool_]:

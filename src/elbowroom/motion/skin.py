@@ -45,9 +45,25 @@ def _skin(shape: Shape, samples: BodySamples) -> Skin:
         lambda pair: _list(samples, pair[0], (triangles, stops), patches[starts[pair[1]] :], True),
         list(zip(rows, firsts, strict=True)),
     )
-    return Skin(
-        points=samples.points,
+    return bare_skin(samples, samples.points)._replace(
         cluster_of=np.repeat(np.arange(counts.size, dtype=np.int32), counts),
+        triangles=triangles,
+        patches=patches,
+        patch_start=starts,
+    )
+
+
+def bare_skin(samples: BodySamples, points: NDArray[np.float32]) -> Skin:
+    """The samples in their clusters, without triangles.
+
+    Args:
+        samples: of links.
+        points: those of the samples, in any order within each cluster, shape (n, 3), link frame [m].
+    """
+    none = np.zeros(0, dtype=np.int32)
+    return Skin(
+        points=points,
+        cluster_of=none,
         start=samples.cluster_start,
         stop=samples.cluster_stop,
         link=samples.cluster_link,
@@ -55,9 +71,9 @@ def _skin(shape: Shape, samples: BodySamples) -> Skin:
         radius=samples.cluster_radius,
         cover=samples.cover_m,
         off=samples.bound_m,
-        triangles=triangles,
-        patches=patches,
-        patch_start=starts,
+        triangles=np.zeros((0, 3, 3)),
+        patches=none,
+        patch_start=np.zeros(0, dtype=np.int64),
     )
 
 
