@@ -62,6 +62,29 @@ def test_a_moment_without_frames_says_nothing():
     assert all(look.hear(Snapshot(())) == () for _ in range(FIRST + 2))
 
 
+def test_cameras_that_were_all_dark_at_the_start_do_not_stop_for_ever_and_are_looked_at_then():
+    scene = room.scene(noise_m=0.002)
+    black = np.zeros((room.HEIGHT, room.WIDTH), np.float32)
+    dark = snapshot(scene, **dict.fromkeys(room.EYES, black))
+    look = look_of(scene)
+    for _ in range(FIRST + 2 * EVERY):
+        assert any(finding.stops for finding in look.hear(dark))
+    healed = [look.hear(snapshot(scene)) for _ in range(EVERY)]
+    assert healed[-1] == ()
+
+
+def test_a_unit_is_found_where_the_first_moments_were_dark_or_empty():
+    scene = room.scene(unit_m=0.00025)
+    wrong = replace(scene, units_m=dict.fromkeys(scene.units_m, 0.001))
+    black = np.zeros((room.HEIGHT, room.WIDTH), np.float32)
+    for early in (Snapshot(()), snapshot(wrong, **dict.fromkeys(room.EYES, black))):
+        look = look_of(wrong)
+        for _ in range(FIRST + 1):
+            look.hear(early)
+        heard = [look.hear(snapshot(wrong)) for _ in range(EVERY)]
+        assert [(finding.kind, finding.stops) for finding in heard[-1]] == [("unit", True)]
+
+
 def test_a_lens_of_another_size_is_said_from_the_beginning():
     scene = room.scene()
     wide = [replace(c, intrinsics=replace(c.intrinsics, cx=159.5, cy=119.5)) for c in scene.cameras]

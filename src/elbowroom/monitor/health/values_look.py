@@ -20,7 +20,8 @@ EVERY = 4
 class ValuesLook:
     """Units, sentinels, masks, lenses and places that cannot be meant so (`Look`).
 
-    What is found of an image is said until that camera is looked at again; of units, lenses and places, to the end.
+    What is found of an image is said until that camera is looked at again, and what is found of several until all are
+    looked at again; of units, lenses and places, to the end. A moment without frames does not count.
 
     Args:
         grid: the watched box.
@@ -48,13 +49,28 @@ class ValuesLook:
         """What is found by now."""
         if any(finding.stops for finding in self._setting):
             return self._setting
-        if self._heard < FIRST:
-            self._look_at_all(snapshot)
-        elif (self._heard - FIRST) % EVERY == 0:
-            self._look_at_one(snapshot, (self._heard - FIRST) // EVERY)
-        self._heard += 1
+        if snapshot.frames:
+            self._look(snapshot)
+            self._heard += 1
+        return (*self._setting, *self._told())
+
+    def _told(self) -> Sequence[Finding]:
+        """What is said of the images by now."""
         found = [*self._of_all, *(finding for each in self._of_one.values() for finding in each)]
-        return (*self._setting, *together(found, len(self._cameras)))
+        return together(found, len(self._cameras))
+
+    def _look(self, snapshot: Snapshot) -> None:
+        """At all images at the first moments, and while something stops that may pass; else at one in turn."""
+        turn, rest = divmod(self._heard - FIRST, EVERY)
+        if turn < 0:
+            self._look_at_all(snapshot)
+        elif rest == 0 and any(each.stops and each.kind not in LASTING for each in self._told()):
+            lasting = [finding for finding in self._told() if finding.kind in LASTING]
+            self._look_at_all(snapshot)
+            told = {finding.kind for finding in lasting}
+            self._of_all = [*lasting, *(each for each in self._of_all if each.kind not in told)]
+        elif rest == 0:
+            self._look_at_one(snapshot, turn)
 
     def _look_at_all(self, snapshot: Snapshot) -> None:
         images = [
