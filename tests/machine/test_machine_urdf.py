@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from elbowroom.errors import MachineError, MachineWarning, PoseWarning
 from elbowroom.machine import Machine
-from elbowroom.machine.machine import Tolerance
+from elbowroom.machine.joint_state import JointTolerance
 from reference import machine_twins as naive
 
 AT_REST = {"slide": 0.0, "elbow": 0.0, "grip": 0.02}
@@ -127,7 +127,7 @@ def test_a_position_beyond_a_limit_by_little_is_taken_as_it_is(arm, way):
     assert arm.checked({**AT_REST, "elbow": way * (2 + over)})["elbow"] == way * (2 + over)
     with pytest.raises(MachineError, match="out of its limits"):
         arm.checked({**AT_REST, "elbow": way * (2 + np.radians(1.1))})
-    strict = replace(arm, tolerance=Tolerance(rad=0.0, m=0.0))
+    strict = replace(arm, tolerance=JointTolerance(rad=0.0, m=0.0))
     with pytest.raises(MachineError, match="out of its limits"):
         strict.checked({**AT_REST, "elbow": way * (2 + over)})
 

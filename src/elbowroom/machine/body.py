@@ -7,8 +7,9 @@ from elbowroom.errors import MachineError
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.parallel import spread, thread_count
+from elbowroom.machine.joint_state import Joints
 from elbowroom.machine.kernels.body import mark_balls, mark_points
-from elbowroom.machine.machine import Joints, Machine
+from elbowroom.machine.machine import Machine
 from elbowroom.machine.samples import ROUNDING_M, BodySamples, body_samples
 
 POINTS_PER_THREAD = 40_000

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from elbowroom.geometry import DepthCamera
-from elbowroom.machine.machine import Joints, Machine
+from elbowroom.machine.joint_state import Joints
+from elbowroom.machine.machine import Machine
 from elbowroom.machine.rasterise import rasterise
 from elbowroom.machine.samples import BodySamples, body_samples
 

@@ -14,10 +14,11 @@ from elbowroom.geometry.kernels.bits import Lattice
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine.body import default_growth
 from elbowroom.machine.buffers import zero_image
+from elbowroom.machine.joint_state import Joints
 from elbowroom.machine.kernels.draw import Canvas, View, draw, to_kind
 from elbowroom.machine.kernels.explain import Tolerance, explain
 from elbowroom.machine.kernels.returns import TILE, Around, mark_tiles
-from elbowroom.machine.machine import Joints, Machine
+from elbowroom.machine.machine import Machine
 from elbowroom.machine.rasterise import canvas, drawn_mesh, view_of
 from elbowroom.machine.samples import body_samples
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -18,36 +17,22 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import nearest_rigid
 from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
+from elbowroom.machine.joint_state import (
+    Follower,
+    Joints,
+    JointTolerance,
+    possible_positions,
+    require_followers,
+)
 from elbowroom.machine.kernels.body import FIXED, Tree, place_links
 from elbowroom.machine.link import Link
 from elbowroom.machine.part import Part
 from elbowroom.machine.shape import Shape
 from elbowroom.machine.stand import Stand
 
-ROUNDING = 1e-6
-"""Positions beyond a limit by this much are rounding, not a fault [m or rad]."""
 QUIET = ("package", "limits", "axes", "larger")
 """Kinds of findings that are kept with the machine, and are no slip that a warning is due for."""
 
-
-class Tolerance(NamedTuple):
-    """How far a joint may be said to be where it cannot be: encoders and descriptions differ by little.
-
-    Args:
-        rad: for joints that turn [rad].
-        m: for joints that slide [m].
-    """
-
-    rad: float = float(np.radians(1.0))
-    m: float = 0.005
-
-    def of(self, unit: str) -> float:
-        """For joints of a unit, "rad" or "m"; never less than rounding."""
-        return max(self.m if unit == "m" else self.rad, ROUNDING)
-
-
-Joints = Mapping[str, ArrayLike]
-"""Joint positions by name [m or rad]: numbers, or arrays of one length n for n configurations."""
 
 _anywhere: WeakValueDictionary[tuple[Hashable, ...], "Machine"] = WeakValueDictionary()
 """By all but their place, the first of the machines that are alike."""
@@ -86,7 +71,7 @@ class Machine:
     stands: tuple[Stand, ...] = ()
     parts: tuple[str, ...] = ()
     bodiless_links: tuple[str, ...] = ()
-    tolerance: Tolerance = field(default_factory=Tolerance)
+    tolerance: JointTolerance = field(default_factory=JointTolerance)
     findings: tuple[Finding, ...] = field(default=(), repr=False)
     shape: Shape = field(init=False, repr=False)
     _elsewhere: "Machine | None" = field(init=False, repr=False)
@@ -413,45 +398,26 @@ class Machine:
             MachineError: a missing joint, a value that is not finite or out of the joint's limits, a follower that is
                 not where its leader puts it.
         """
-        found = {}
-        for name in self.joint_names:
-            joint = self.joint(name)
-            if name not in joints:
-                raise MachineError(
-                    f"machine {self.name}: joint {name!r} has no position; all joints need one"
-                )
-            values = _finite(joint, joints[name])
-            over = self.tolerance.of(joint.unit)
-            beyond = (values < joint.lower - over) | (values > joint.upper + over)
-            if beyond.any():
-                raise MachineError(
-                    f"joint {name}: {values[beyond].flat[0]:g} {joint.unit} is out of its limits, "
-                    f"{joint.lower:g} to {joint.upper:g} {joint.unit}"
-                )
-            found[name] = values
-        self._require_followers(joints, found)
+        found = possible_positions(self.name, self._commanded, self.tolerance, joints)
+        require_followers(self.name, self._followers, self.tolerance, joints, found)
         return found
 
-    def _require_followers(self, joints: Joints, found: Mapping[str, NDArray[np.float64]]) -> None:
-        """Refuses followers that are said to be elsewhere than the joints that they follow put them."""
-        for follower in self.joints:
-            if follower.mimic is None or follower.name not in joints:
-                continue
-            values, row = _finite(follower, joints[follower.name]), self.link_names.index(follower.child)
-            leader = self.joint_names[self.tree.column[row]]
-            expected = self.tree.multiplier[row] * found[leader] + self.tree.offset[row]
-            if values.ndim and expected.ndim and values.shape != expected.shape:
-                raise MachineError(
-                    f"machine {self.name}: joint arrays of unlike lengths: {leader} {expected.size}, "
-                    f"{follower.name} {values.size}"
-                )
-            values, expected = np.broadcast_arrays(values, expected)
-            off = np.abs(values - expected) > self.tolerance.of(follower.unit)
-            if off.any():
-                raise MachineError(
-                    f"joint {follower.name}: {values[off].flat[0]:g} {follower.unit}, but it follows {leader}, which "
-                    f"puts it at {expected[off].flat[0]:g} {follower.unit}; the machine is not as its description says"
-                )
+    @cached_property
+    def _commanded(self) -> tuple[Joint, ...]:
+        """In the order of `joint_names`."""
+        return tuple(joint for joint in self.joints if joint.mimic is None)
+
+    @cached_property
+    def _followers(self) -> tuple[Follower, ...]:
+        """Each follower, and where its leader puts it."""
+        followers = []
+        for joint in self.joints:
+            if joint.mimic is not None:
+                row = self.link_names.index(joint.child)
+                leader = self.joint_names[self.tree.column[row]]
+                own = float(self.tree.multiplier[row]), float(self.tree.offset[row])
+                followers.append(Follower(joint, leader, *own))
+        return tuple(followers)
 
     def positions(self, joints: Joints) -> NDArray[np.float64]:
         """Checked joint positions as one array, shape (n_joints,) or (n, n_joints), columns as `joint_names`.
@@ -513,14 +479,3 @@ class Machine:
         placed = np.empty((len(given), len(self.links), 4, 4))
         place_links(self.tree, self.world_from_base, given, placed)
         return placed
-
-
-def _finite(joint: Joint, given: ArrayLike) -> NDArray[np.float64]:
-    """A joint's positions as numbers [m or rad]."""
-    try:
-        values = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise MachineError(f"joint {joint.name}: {given!r} is not a number [{joint.unit}]") from None
-    if not np.isfinite(values).all():
-        raise MachineError(f"joint {joint.name}: position is not finite, got {given!r} [{joint.unit}]")
-    return values

@@ -8,9 +8,10 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.kept import kept
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.machine.buffers import zero_image
+from elbowroom.machine.joint_state import Joints
 from elbowroom.machine.kernels.draw import Canvas, Mesh, View, draw, to_kind
 from elbowroom.machine.link import Link
-from elbowroom.machine.machine import Joints, Machine
+from elbowroom.machine.machine import Machine
 from elbowroom.machine.shape import Shape
 
 

@@ -14,7 +14,7 @@ from elbowroom.choices import ExplainWith
 from elbowroom.errors import MachineWarning, SiteError
 from elbowroom.machine import Joint, Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
-from elbowroom.machine.machine import Tolerance
+from elbowroom.machine.joint_state import JointTolerance
 from elbowroom.motion import Motion, braking_distance
 from elbowroom.site.contact_entry import PartEntry, StandEntry
 from elbowroom.site.entry import Entry, Flag, Matrix, NotNegative, Number, Positive, Text
@@ -63,10 +63,10 @@ class MachineEntry(Entry):
         return self
 
     @property
-    def tolerance(self) -> Tolerance:
+    def tolerance(self) -> JointTolerance:
         """How far a joint may be said to be where it cannot be."""
-        usual = Tolerance()
-        return Tolerance(
+        usual = JointTolerance()
+        return JointTolerance(
             usual.rad if self.limit_tolerance_deg is None else math.radians(self.limit_tolerance_deg),
             usual.m if self.limit_tolerance_mm is None else self.limit_tolerance_mm / 1e3,
         )
