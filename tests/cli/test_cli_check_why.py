@@ -1,6 +1,7 @@
 """`elbowroom check` and `site check` say by how much something is in the way, and what would change it."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from elbowroom.site import Site
 from reference.table_cell import POSE, cell, far_cell, table_cell
 
 __all__ = ["cell", "far_cell"]
+PROJECT = Path(__file__).resolve().parents[2]
 
 
 def check(path, joint, tmp_path, *more):
@@ -90,3 +92,13 @@ def test_a_clear_way_has_nothing_to_explain(cell, tmp_path):
     row = check(cell, "wrist_3", tmp_path, "--out", str(tmp_path / "seen"))
     if row["level"] == "clear":
         assert row["explanation"] == row["seen"] == row["advice"] == row["pictures"] == []
+
+
+def test_a_hand_at_the_wrist_is_near_the_link_that_it_stops_whatever_is_seen_beside_it(tmp_path):
+    site, out = PROJECT / "examples" / "arm_on_a_table" / "cell.yaml", tmp_path / "row.json"
+    words = ["--joint", "pan", "--direction", "+", "--moment", "5", "--json", str(out)]
+    assert run(["check", str(site), *words]) == 0
+    (row,) = json.loads(out.read_text())["rows"]
+    measuring = [seen for seen in row["seen"] if seen["sight"] == "surface"]
+    assert row["cause"] == "surface" and measuring
+    assert row["outside_m"] <= row["voxel_size_m"] + max(seen["margin_m"] for seen in measuring)

@@ -76,11 +76,20 @@ def why(space: FreeSpace, machine: Machine, joints: Mapping[str, float], verdict
     measured = source.surface_about(space.grid, report.index)
     outside_m = None
     if verdict.cause is Cause.SURFACE and verdict.link is not None:
-        stopping = [c.camera for c in report.cameras if c.sight in (Sight.SURFACE, Sight.EDGE)]
-        points = np.concatenate([np.zeros((0, 3)), *(measured[name] for name in stopping)])
-        outside_m = _distance(points, space, place, _link_at(machine, joints, verdict))
+        stopping = [c for c in report.cameras if c.sight in (Sight.SURFACE, Sight.EDGE)]
+        points = [measured[c.camera][_is_near(measured[c.camera], place, space, c)] for c in stopping]
+        near = np.concatenate([np.zeros((0, 3)), *points])
+        outside_m = _distance(near, space, place, _link_at(machine, joints, verdict))
     found = Why(verdict, report, outside_m, ())
     return Why(verdict, report, outside_m, tuple(_advice(found, source)))
+
+
+def _is_near(
+    points: NDArray[np.float64], place: tuple[float, float, float], space: FreeSpace, camera: CameraSight
+) -> NDArray[np.bool_]:
+    """Which points may lie in a voxel, give or take the camera's margin: pixels at its rim show what is beyond it."""
+    reach_m = space.grid.voxel_size_m + camera.margin_m
+    return np.asarray(np.linalg.norm(points - np.array(place), axis=1) <= reach_m)
 
 
 def _link_at(machine: Machine, joints: Mapping[str, float], verdict: Verdict) -> NDArray[np.float64]:
