@@ -9,8 +9,8 @@ blocks which the body does not cover at the start:
 
 with the blocked space B, the solid body M(t) after travel t, the voxel's edge h. No object lies in M(0), so what stands
 farther than eps from it lies in B', and the surface of M passes it before M covers it. What stands nearer is pressed by
-eps at most; so a motion that ends at B' ends earlier by as much travel as the slowest part that may come there needs for
-2 eps. Less evidence leaves more of B, so more of B'.
+eps at most; so a motion that ends at a voxel within eps of the link that meets it ends earlier, by as much travel as the
+slowest part that may come there needs for 2 eps. Less evidence leaves more of B, so more of B'.
 """
 
 from dataclasses import dataclass, replace
@@ -33,7 +33,7 @@ from elbowroom.motion.skin import skin_of
 from elbowroom.motion.sweep import Block, find_block, marked, volume_of
 from elbowroom.reconstruct.free_space import FreeSpace
 
-GROWTH_M = 0.002
+GROWTH_M = 0.0015
 """g0, at least: the facets of round links slide along in it, which stand out by a millimetre on a large arc [m]."""
 GROWTH_IN_VOXELS = 1 / 16
 """And at least this: twice what a patch is grown by in the sweep's shortest intervals [voxel edges]."""
@@ -70,10 +70,10 @@ class Start:
             placed: where the links are, shape (n_links, 4, 4).
         """
         edge = ground.volume.lattice.edge
-        skin = skin_of(machine, edge)
+        skin, half = skin_of(machine, edge), HALF_DIAGONAL * edge / CELLS
         growth = max(GROWTH_M, GROWTH_IN_VOXELS * edge) + skin.off
-        shared = _shared(machine, ground.volume, placed, growth + HALF_DIAGONAL * edge / CELLS)
-        near_m = growth + skin.off + 2 * HALF_DIAGONAL * edge / CELLS
+        near_m = growth + skin.off + 2 * half
+        shared = _shared(machine, ground.volume, placed, (growth + half, near_m + half))
         return cls(ground, None, near_m, placed)._with(shared)
 
     def _with(self, shared: Shared) -> Self:
@@ -157,19 +157,22 @@ class Start:
         return float(2 * self.near_m / speeds[may].min()) if len(may) else 0.0
 
 
-def _shared(machine: Machine, volume: Volume, placed: NDArray[np.float64], reach_m: float) -> Shared:
+def _shared(
+    machine: Machine, volume: Volume, placed: NDArray[np.float64], reach_m: tuple[float, float]
+) -> Shared:
     """The blocked voxels that links reach into, and what of them stays blocked.
 
     Args:
         machine: whose checked links.
         volume: what is blocked.
         placed: where links are.
-        reach_m: a cell is covered whose middle is so near to the surface [m].
+        reach_m: a cell is covered whose middle is so near to the surface; and links reach into its voxel from which
+            it is so near [m].
     """
     skin, lattice = skin_of(machine, volume.lattice.edge), volume.lattice
     none = volume.shared
     finds = np.empty(ROOM_FOR, dtype=np.int64)
-    count = reached(placed, skin, skin.cover + reach_m, volume, finds)
+    count = reached(placed, skin, skin.cover + reach_m[1], volume, finds)
     if not 0 < count <= ROOM_FOR:
         return none
     numbers = np.unique(finds[:count])
@@ -185,10 +188,11 @@ def _shared(machine: Machine, volume: Volume, placed: NDArray[np.float64], reach
     for row, number in enumerate(numbers.tolist()):
         ij, k = divmod(number, lattice.nz)
         corner = np.array([*divmod(ij, lattice.ny), k]) * lattice.edge + (lattice.x0, lattice.y0, lattice.z0)
-        cover(of, placed, corner, lattice.edge, reach_m, covered, links[row])
+        voxel = np.append(corner, lattice.edge)
+        cover(of, placed, voxel, reach_m, covered, links[row])
         if of_seen is not None:
             # in what is swept and is not there, something else may be
-            cover(of_seen, placed, corner, lattice.edge, reach_m, truly, np.zeros_like(links[row]))
+            cover(of_seen, placed, voxel, reach_m, truly, np.zeros_like(links[row]))
             if ((covered == COVERED) & (truly != COVERED)).any():
                 continue
         is_shared[row] = links[row].any()

@@ -83,7 +83,7 @@ def reached(placed, skin, reach, volume, numbers):
 
 
 @njit(cache=True, nogil=True)
-def cover(pieces, placed, corner, edge, reach, covered, links):
+def cover(pieces, placed, voxel, reach, covered, links):
     """Which cells of a voxel a body covers: those that come within reach of its surface, or lie within it.
 
     Cells that are not near the surface hang together in rooms; a room lies within the body if any of its cells does, and
@@ -92,16 +92,16 @@ def cover(pieces, placed, corner, edge, reach, covered, links):
     Args:
         pieces: of the body.
         placed: where links are, (links, 4, 4).
-        corner: least one of the voxel, (3,) [m].
-        edge: of the voxel [m].
-        reach: of a cell's middle from the surface [m].
+        voxel: its least corner and its edge, (4,) [m].
+        reach: of a cell's middle from the surface [m]: the cell is covered; and its link is near the voxel.
         covered: (16, 16, 16) uint8, written: `COVERED`, or another number.
-        links: (links,) bool: set for links whose surface is in reach of a cell.
+        links: (links,) bool: set for links that are near.
     """
+    corner, edge = voxel[:3], voxel[3]
     covered[:] = OPEN
     triangle = np.empty((3, 3))
     middle = np.array([corner[0] + edge / 2, corner[1] + edge / 2, corner[2] + edge / 2])
-    around = np.sqrt(0.75) * edge + reach
+    around = np.sqrt(0.75) * edge + reach[1]
     for piece in range(pieces.link.size):
         world_from_link = placed[pieces.link[piece]]
         if not _is_near(pieces, piece, world_from_link, middle, around):
@@ -158,25 +158,26 @@ def _in_link(world_from_link, x, y, z):
 
 @njit
 def _cover_near(triangle, corner, cell, reach, covered):
-    """Marks the cells whose middle comes within reach of a triangle; whether there are any."""
+    """Marks the cells whose middle comes within the first reach of a triangle; whether any does within the second."""
     found = False
     first, last = np.empty(3, dtype=np.int64), np.empty(3, dtype=np.int64)
     for axis in range(3):
-        low = min(triangle[0, axis], triangle[1, axis], triangle[2, axis]) - reach - corner[axis]
-        high = max(triangle[0, axis], triangle[1, axis], triangle[2, axis]) + reach - corner[axis]
+        low = min(triangle[0, axis], triangle[1, axis], triangle[2, axis]) - reach[1] - corner[axis]
+        high = max(triangle[0, axis], triangle[1, axis], triangle[2, axis]) + reach[1] - corner[axis]
         first[axis] = int(min(max(np.floor(low / cell - 0.5), 0.0), float(CELLS)))
         last[axis] = int(max(min(np.ceil(high / cell - 0.5), CELLS - 1.0), -1.0))
+    covers, near = reach[0] * reach[0], reach[1] * reach[1]
     for i in range(first[0], last[0] + 1):
         x = corner[0] + (i + 0.5) * cell
         for j in range(first[1], last[1] + 1):
             y = corner[1] + (j + 0.5) * cell
             for k in range(first[2], last[2] + 1):
-                z = corner[2] + (k + 0.5) * cell
-                if (covered[i, j, k] == OPEN or not found) and squared_distance(
-                    triangle, x, y, z
-                ) <= reach * reach:
+                if found and covered[i, j, k] != OPEN:
+                    continue
+                squared = squared_distance(triangle, x, y, corner[2] + (k + 0.5) * cell)
+                found |= squared <= near
+                if squared <= covers:
                     covered[i, j, k] = COVERED
-                    found = True
     return found
 
 
