@@ -81,6 +81,8 @@ def ask(
         x, y, z = verdict.place_in_world
         what = verdict.cause.value + (f", {verdict.other_link}" if verdict.other_link else "")
         print(f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
+    if verdict.escapes:
+        print("It leads out of blocked space that the machine stands in or close beside.")
     if verdict.overridable:
         print("An operator who holds on may drive on at low speed, since nobody sees that space.")
     for line in [*reasons, *_numbers(found), *map(_sentence, found.advice)]:
