@@ -1,6 +1,6 @@
 """The run of `elbowroom check`: a moment, a motion, a verdict and its reasons."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -72,7 +72,7 @@ def ask(
                 "pictures": [str(path) for path in pictures],
                 "unchecked_links": machine.unchecked_links,
                 "bodiless_links": machine.bodiless_links,
-                "allowances": machine.allowances,
+                "allowances": room.allowances,
             }
         )
     print(f"{verdict.motion.name}: {verdict.level.value}")
@@ -87,18 +87,18 @@ def ask(
         print(line)
     if pictures:
         print(f"{len(pictures)} pictures, one of each camera that has the voxel in its image, in {out}")
-    for line in _by_the_sites_word(machine):
+    for line in _by_the_sites_word(machine, room.allowances):
         print(line)
     print(NOT_CERTIFIED)
 
 
-def _by_the_sites_word(machine: Machine) -> Iterator[str]:
+def _by_the_sites_word(machine: Machine, allowances: Sequence[str]) -> Iterator[str]:
     """What is not looked at, as every summary says it."""
     if machine.unchecked_links:
         yield f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}."
     if machine.bodiless_links:
         yield f"Without a body, by the site's word: {', '.join(machine.bodiless_links)}."
-    yield from (f"{line}." for line in machine.allowances)
+    yield from (f"{line}." for line in allowances)
 
 
 def _travel(motion: Motion, verdict: Verdict) -> str:

@@ -55,7 +55,7 @@ def room_row(room: Room) -> dict[str, Any]:
         "detail": room.terms.detail,
         "threads": thread_count(),
         "unchecked_links": room.machine.unchecked_links if room.machine else (),
-        "allowances": room.machine.allowances if room.machine else (),
+        "allowances": room.allowances,
         "bodiless_links": room.machine.bodiless_links if room.machine else (),
     }
 

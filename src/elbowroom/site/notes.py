@@ -14,6 +14,7 @@ def notes_of(site: Site) -> tuple[str, ...]:
     entry, notes = site.entry, []
     if not site.has_stamps:
         notes.append("frames have no times: no limit on their age")
+        notes.append("nobody knows what moved since frames without times: what they show is taken to hold")
         if entry.max_frame_age_ms is not None:
             notes.append("max_frame_age_ms has no effect on frames without times")
     elif entry.max_frame_age_ms is None:
@@ -24,6 +25,7 @@ def notes_of(site: Site) -> tuple[str, ...]:
         notes.append(
             "detail point, the thesis' test of voxel centres, is for comparison: it frees occupied voxels"
         )
+    notes += site.terms().allowances
     machine = site.machine()
     if machine is not None:
         if machine.unchecked_links:

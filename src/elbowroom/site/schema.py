@@ -3,18 +3,19 @@
 import math
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from elbowroom.choices import Detail, Rule
+from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid
-from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, WITNESS_ANGLE_DEG
+from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, PEOPLE_SPEED_M_S, WITNESS_ANGLE_DEG, require_speed
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
-from elbowroom.site.entry import Count, Entry, Number, Point, Positive, Text, Whole
+from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text, Whole
 from elbowroom.site.machine_entry import JointEntry, MachineEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.placement_entry import PlacementEntry
-from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, up_to
+from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, speed_of_people, up_to
 from elbowroom.site.recording_entry import RecordingEntry, SevenScenes
 from elbowroom.site.room_entry import RoomEntry
 from elbowroom.site.watch_entry import WatchEntry
@@ -124,6 +125,9 @@ class SiteEntry(Entry):
     witness_angle_deg: Annotated[Number, Field(ge=0, le=MOST_ANGLE_DEG)] = WITNESS_ANGLE_DEG
     margin: MarginEntry = MarginEntry()
     max_frame_age_ms: Annotated[Positive, between(1, 3.6e6, "ms", SECONDS)] | None = None
+    people_speed_m_s: Annotated[NotNegative, AfterValidator(speed_of_people)] = PEOPLE_SPEED_M_S
+    nothing_moves: Flag = False
+    pass_time_ms: Annotated[Positive, between(1, 6e4, "ms", SECONDS)] | None = None
     recording: RecordingEntry | None = None
     simulated: SimulatedEntry | None = None
     room: RoomEntry | None = None
@@ -162,4 +166,8 @@ class SiteEntry(Entry):
             raise ValueError("no key watch where layout seven_scenes makes a camera of each frame")
         if self.joints and self.machine is None:
             raise ValueError("joints only with a machine")
+        try:
+            require_speed(self.people_speed_m_s, self.nothing_moves)
+        except InputError as error:
+            raise ValueError(str(error)) from None
         return self

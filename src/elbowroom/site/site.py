@@ -126,6 +126,9 @@ class Site:
             self.max_age_ns,
             self.explain_tolerance_m,
             witness_angle_deg=self.entry.witness_angle_deg,
+            people_speed_m_s=self.entry.people_speed_m_s,
+            nothing_moves=self.entry.nothing_moves,
+            pass_ns=round((self.entry.pass_time_ms or 0.0) * 1e6),
         )
 
     def margin(self) -> Margin:
