@@ -98,6 +98,7 @@ class Verdict:
         cause: what the block is. NONE also where a joint limit, not a block, ends the travel. FAULT, STALE, INPUT
             and WATCH are no blocks: whatever the space is, nothing may move.
         other_link: the link of the machine that `link` meets, where that ends the travel; None: it is none.
+        escapes: the motion leads out of blocked space that its links reach into where they stand, or along it.
     """
 
     motion: Motion | JointPath
@@ -108,6 +109,7 @@ class Verdict:
     place_in_world: tuple[float, float, float] | None
     cause: Cause
     other_link: str | None = None
+    escapes: bool = False
 
     @classmethod
     def stop(cls, motion: Motion | JointPath, free_travel_unit: str, cause: Cause) -> Self:
@@ -151,6 +153,7 @@ class Verdict:
             "link": self.link,
             "place_m": self.place_in_world,
             "other_link": self.other_link,
+            "escapes": self.escapes,
         }
 
 

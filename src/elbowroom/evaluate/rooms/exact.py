@@ -82,6 +82,26 @@ class ExactTravel:
                     least = min(least, self._distance(body, placed[name], obstacle)[0])
         return least
 
+    def gaps(
+        self, joints: Mapping[str, float], joint: str, below_m: float
+    ) -> dict[tuple[str, str], float]:
+        """Distances of links that a joint moves from solids, by link and solid, those that are small alone [m].
+
+        Args:
+            joints: positions by name [m or rad].
+            joint: what moves.
+            below_m: greater distances are left out [m].
+        """
+        placed = self._machine.world_from_links(joints)
+        found = {}
+        for name in self._machine.moved_links(joint):
+            for obstacle in self._solids if name in self._links else ():
+                if obstacle.at_least(self._links[name], placed[name]) < below_m:
+                    distance = self._distance(self._links[name], placed[name], obstacle)[0]
+                    if distance < below_m:
+                        found[name, obstacle.name] = distance
+        return found
+
     def until_contact(self, joints: Mapping[str, float], motion: Motion) -> Contact:
         """How far one joint can go.
 
