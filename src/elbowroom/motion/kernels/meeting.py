@@ -1,4 +1,7 @@
-"""When a part of a machine first meets another: steps as long as their distance allows (conservative advancement)."""
+"""When links whose models lie in each other come deeper into each other: samples of one in the other's field.
+
+Links that are apart are another matter (`closing`).
+"""
 
 import math
 from typing import NamedTuple
@@ -6,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.machine.kernels.apart import relate
+from elbowroom.motion.kernels.closing import Bodies
 from elbowroom.motion.kernels.field import Fields, at_least
 from elbowroom.motion.kernels.mover import Skin, carried, place_at
 
@@ -20,6 +25,7 @@ class Pairs(NamedTuple):
         sampled, other: rows of the links, (pairs,).
         doubt: by how much more than what is told of it a pair's distance may be, (pairs,) [m].
         pair, cluster: of each cluster of a sampled link, once for each pair, (members,), sorted by pair.
+        bodies: the same pairs as triangles.
     """
 
     skin: Skin
@@ -30,6 +36,7 @@ class Pairs(NamedTuple):
     doubt: np.ndarray
     pair: np.ndarray
     cluster: np.ndarray
+    bodies: Bodies
 
 
 RUN = 8
@@ -46,17 +53,6 @@ class Steps(NamedTuple):
 
     least: float
     together: float
-
-
-@njit
-def _relate(placed, one, other, other_from_one):
-    """Fills a transform (3, 4) from a link's frame to another's."""
-    a, b = placed[one], placed[other]
-    for i in range(3):
-        for j in range(3):
-            other_from_one[i, j] = b[0, i] * a[0, j] + b[1, i] * a[1, j] + b[2, i] * a[2, j]
-        x, y, z = a[0, 3] - b[0, 3], a[1, 3] - b[1, 3], a[2, 3] - b[2, 3]
-        other_from_one[i, 3] = b[0, i] * x + b[1, i] * y + b[2, i] * z
 
 
 @njit
@@ -90,21 +86,25 @@ def _gap(pairs, member, other_from_one, fine_below, nearest):
 
 
 @njit(cache=True, nogil=True)
-def gaps_now(pairs, placed, gaps, least):
-    """Fills, for each member of the pairs, its gap, and for each pair the least of them [m].
+def gaps_now(pairs, placed, asked, gaps, least):
+    """Fills, for each member of some pairs, its gap, and for each of these pairs the least of them [m].
 
     Args:
         pairs: what must not meet.
         placed: where links are, (links, 4, 4).
+        asked: which of the pairs, (pairs,); of all others the gaps are without end.
         gaps: (members,); those within the pair's doubt are as good as samples and fields are.
         least: (pairs,).
     """
     other_from_one, nearest, last = np.empty((3, 4)), np.zeros(1, dtype=np.int64), -1
     least[:] = math.inf
+    gaps[:] = math.inf
     for member in range(gaps.size):
         pair = pairs.pair[member]
+        if not asked[pair]:
+            continue
         if pair != last:
-            _relate(placed, pairs.sampled[pair], pairs.other[pair], other_from_one)
+            relate(placed, pairs.sampled[pair], pairs.other[pair], other_from_one)
             last = pair
         gaps[member] = _gap(pairs, member, other_from_one, pairs.doubt[pair], nearest)
         least[pair] = min(least[pair], gaps[member])
@@ -152,7 +152,7 @@ def first_meeting(mover, pairs, length, gaps, least, steps):
             if safe <= travel + steps.together * length:
                 pair = pairs.pair[member]
                 if pair != last:
-                    _relate(placed[0], pairs.sampled[pair], pairs.other[pair], other_from_one)
+                    relate(placed[0], pairs.sampled[pair], pairs.other[pair], other_from_one)
                     last = pair
                 away = _gap(pairs, member, other_from_one, floors[pair], nearest) - floors[pair]
                 if away <= 0.0:
