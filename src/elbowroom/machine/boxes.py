@@ -8,8 +8,8 @@ from elbowroom.machine.kernels.boxes import Boxes, cut
 from elbowroom.machine.link import Link
 from elbowroom.machine.shape import Shape
 
-PART_DEPTH = 6
-"""A link is cut into parts, each with a speed of its own, at this depth of its tree: 64 at most."""
+PART_DEPTH = 4
+"""A link is cut into parts, each with a speed of its own, at this depth of its tree: 16 at most, and those above."""
 
 
 @kept

@@ -26,6 +26,7 @@ from elbowroom.machine.joint_state import (
 )
 from elbowroom.machine.kernels.body import FIXED, Tree, place_links
 from elbowroom.machine.link import Link
+from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.part import Part
 from elbowroom.machine.shape import Shape
 from elbowroom.machine.stand import Stand
@@ -51,6 +52,7 @@ class Machine:
         world_from_base: where the first link is, shape (4, 4), rigid.
         unchecked_links: links that may leave the grid by design and are not checked for collision.
         allowed_contacts: pairs of names of links that may touch, besides neighbours; a name may hold wildcards ("*").
+        own_links: pairs of links that are not compared, and the file that says so; None: none is named.
         stands: what some links may touch: a table, the floor.
         parts: names of the links that are carried (`with_part`).
         bodiless_links: links whose geometry was left out by somebody's word: they move without a body.
@@ -68,6 +70,7 @@ class Machine:
     world_from_base: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     unchecked_links: tuple[str, ...] = ()
     allowed_contacts: tuple[tuple[str, str], ...] = ()
+    own_links: OwnLinks | None = None
     stands: tuple[Stand, ...] = ()
     parts: tuple[str, ...] = ()
     bodiless_links: tuple[str, ...] = ()
@@ -92,6 +95,8 @@ class Machine:
         object.__setattr__(self, "stands", tuple(self.stands))
         for stand in self.stands:
             self._require_links("stands_on", stand.links)
+        if self.own_links is not None:
+            object.__setattr__(self, "own_links", self.own_links.among(self.link_names))
         for pair in self.allowed_contacts:
             self._require_links("allowed_contacts", pair)
         first = _anywhere.setdefault(self._all_but_place(), self)
@@ -101,7 +106,7 @@ class Machine:
         """What machines have in common that differ by their place alone."""
         own = (tuple(map(id, values)) for values in (self.links, self.joints, self.stands, self.findings))
         named = self.unchecked_links, self.allowed_contacts, self.parts, self.bodiless_links
-        return self.name, id(self.tree), *own, *named, self.tolerance
+        return self.name, id(self.tree), id(self.own_links), *own, *named, self.tolerance
 
     @property
     def anywhere(self) -> "Machine":
@@ -257,6 +262,14 @@ class Machine:
         """
         return replace(self, allowed_contacts=(*self.allowed_contacts, *contacts))
 
+    def comparing(self, own_links: OwnLinks | None) -> "Machine":
+        """The machine with the pairs of links that are not compared; those that it had are replaced.
+
+        Raises:
+            MachineError: a link that is named does not exist.
+        """
+        return replace(self, own_links=own_links)
+
     @cached_property
     def allowances(self) -> tuple[str, ...]:
         """What somebody's word lets pass, a line each: every summary says it."""
@@ -264,6 +277,7 @@ class Machine:
         return (
             *(f"Not stopped by anything there, by the site's word: {stand}" for stand in self.stands),
             *(f"May touch each other, by the site's word: {one} and {other}" for one, other in own),
+            *(() if self.own_links is None else (self.own_links.said,)),
         )
 
     def with_part(self, link: str, part: Part, link_from_part: ArrayLike | None = None) -> "Machine":

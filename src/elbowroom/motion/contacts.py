@@ -40,8 +40,8 @@ TOUCH_M = 1e-6
 def pairs_of(machine: Machine) -> Pairs:
     """The pairs of a machine's links that must not meet; made once per machine, then kept.
 
-    Left out are links and the next one up the tree that has a body, those that the machine's `allowed_contacts` name,
-    those that lie in each other in all poses, and pairs of unchecked links.
+    Left out are links and the next one up the tree that has a body, those that the machine's `allowed_contacts` or
+    `own_links` name, those that touch in all poses, and pairs of unchecked links.
 
     Args:
         machine: whose links.
@@ -58,8 +58,8 @@ def pairs_of(machine: Machine) -> Pairs:
 
 def watched_rows(machine: Machine) -> list[tuple[int, int]]:
     """The rows of the links of each pair that must not meet."""
-    rows = [pair for pair in _may_not_touch(machine) if _can_move_apart(machine, *pair)]
-    touch = touching(machine, bodies_of(machine, rows), _poses(machine, POSES)).mean(axis=0)
+    rows = [pair for pair in _may_not_touch(machine) if can_move_apart(machine, *pair)]
+    touch = touching(machine, bodies_of(machine, rows), random_poses(machine, POSES)).mean(axis=0)
     return [pair for pair, share in zip(rows, touch, strict=True) if share < ALWAYS]
 
 
@@ -114,25 +114,27 @@ def _may_not_touch(machine: Machine) -> list[tuple[int, int]]:
         (a, b)
         for a, b in combinations(bodies, 2)
         if not (names[a] in machine.unchecked_links and names[b] in machine.unchecked_links)
-        and a not in (_next_body(machine, b),)
+        and a not in (next_body(machine, b),)
         and not is_allowed(machine, names[a], names[b])
     ]
 
 
 def is_allowed(machine: Machine, one: str, other: str) -> bool:
-    """Whether a machine's `allowed_contacts` let two links touch; names there may hold wildcards.
+    """Whether a machine's `allowed_contacts` let two links touch, or its `own_links` say not to compare them.
 
     Args:
         machine: whose links.
         one, other: their names, in either order.
     """
+    if machine.own_links is not None and machine.own_links.has(one, other):
+        return True
     return any(
         (fnmatchcase(one, a) and fnmatchcase(other, b)) or (fnmatchcase(one, b) and fnmatchcase(other, a))
         for a, b in machine.allowed_contacts
     )
 
 
-def _next_body(machine: Machine, row: int) -> int:
+def next_body(machine: Machine, row: int) -> int:
     """The next link up the tree that has a body; -1: none."""
     parent = int(machine.tree.parent[row])
     while parent >= 0 and not machine.links[parent].has_geometry:
@@ -140,8 +142,13 @@ def _next_body(machine: Machine, row: int) -> int:
     return parent
 
 
-def _can_move_apart(machine: Machine, a: int, b: int) -> bool:
-    """Whether a joint lies between two links."""
+def can_move_apart(machine: Machine, a: int, b: int) -> bool:
+    """Whether a joint lies between two links.
+
+    Args:
+        machine: whose links.
+        a, b: their rows.
+    """
     return _stiff_with(machine, a) != _stiff_with(machine, b)
 
 
@@ -193,9 +200,15 @@ def _skin(samples: BodySamples) -> tuple[Skin, NDArray[np.float64]]:
     return bare_skin(samples, points), width
 
 
-def _poses(machine: Machine, count: int) -> NDArray[np.float64]:
-    """Poses drawn from the joints' limits, shape (count, n_joints)."""
-    rng = np.random.default_rng(0)
+def random_poses(machine: Machine, count: int, seed: int = 0) -> NDArray[np.float64]:
+    """Poses drawn from the joints' limits, shape (count, n_joints).
+
+    Args:
+        machine: whose joints.
+        count: how many.
+        seed: of the draw.
+    """
+    rng = np.random.default_rng(seed)
     joints = [machine.joint(name) for name in machine.joint_names]
     lower = np.array([max(joint.lower, -np.pi) for joint in joints])
     upper = np.array([min(joint.upper, np.pi) for joint in joints])

@@ -10,13 +10,13 @@ from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED
 from elbowroom.motion.contacts import pairs_of, parts_of, touch_of
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels.closing import Travelling, apart_now, first_touch
-from elbowroom.motion.kernels.meeting import Pairs, Steps, first_meeting, gaps_now
+from elbowroom.motion.kernels.closing import Travelling, apart_now
+from elbowroom.motion.kernels.meeting import Now, Pairs, Steps, first_meeting, gaps_now
 from elbowroom.motion.kernels.mover import Mover
 from elbowroom.motion.sweep import cluster_speeds
 
 STEP_IN_COVERS = 2.0
-"""Of links that lie in each other no step is shorter than what moves them by so many covering radii of their samples."""
+"""No step of samples is shorter than what moves them by so many covering radii of samples."""
 TOGETHER = 1 / 64
 """Looks that lie nearer to each other than this share of the way are done at one place."""
 
@@ -31,14 +31,6 @@ class Met(NamedTuple):
     place_in_world: NDArray[np.float64]
 
 
-class _Meets(NamedTuple):
-    """A pair that meets, or -1: the travel before it, and the place [m]."""
-
-    travel: float
-    pair: int
-    place: NDArray[np.float64]
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Meeting:
     """The links of a machine that must not meet, and how far apart they are now.
@@ -47,16 +39,13 @@ class Meeting:
         machine: the machine.
         pairs: of its links.
         world_from_link: where they are, shape (n_links, 4, 4).
-        apart: of `apart_now`; 0: they touch.
-        gaps, least: of `gaps_now`, of the pairs that touch.
+        now: how far apart they are there.
     """
 
     machine: Machine
     pairs: Pairs
     world_from_link: NDArray[np.float64]
-    apart: NDArray[np.float64]
-    gaps: NDArray[np.float64]
-    least: NDArray[np.float64]
+    now: Now
 
     @classmethod
     def of(cls, machine: Machine, world_from_link: NDArray[np.float64]) -> Self:
@@ -66,8 +55,8 @@ class Meeting:
         apart_now(pairs.bodies, world_from_link, pairs.bodies.met, apart)
         apart[apart <= touch_of(machine)] = 0.0
         gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
-        gaps_now(pairs, world_from_link, apart == 0.0, gaps, least)
-        return cls(machine, pairs, world_from_link, apart, gaps, least)
+        gaps_now(pairs, world_from_link, gaps, least)
+        return cls(machine, pairs, world_from_link, Now(apart, gaps, least))
 
     def first(self, way: Way, length: float) -> Met | None:
         """Where two links first come so near that they may touch; None: nowhere.
@@ -88,35 +77,31 @@ class Meeting:
         moving = moves_with[bodies.one] != moves_with[bodies.other]
         if not moving.any():
             return None
-        meets = self._touches(way, length, moving)
-        if (moving & (self.apart == 0.0)).any():
-            pressed = self._presses(way, length if meets.pair < 0 else meets.travel, moving)
-            meets = meets if pressed.pair < 0 else pressed
-        if meets.pair < 0:
+        travel, pair, place = self._first(way, length, moving)
+        if pair < 0:
             return None
-        rows = sorted((bodies.one[meets.pair], bodies.other[meets.pair]), reverse=True)
+        rows = sorted((bodies.one[pair], bodies.other[pair]), reverse=True)
         rows.sort(key=lambda row: moves_with[row] == moves_with[0])
         one, other = (self.machine.link_names[row] for row in rows)
-        return Met(float(meets.travel), one, other, meets.place)
+        return Met(float(travel), one, other, place)
 
-    def _touches(self, way: Way, length: float, moving: NDArray[np.bool_]) -> _Meets:
-        """The first of the pairs that are apart."""
-        machine, bodies = self.machine, self.pairs.bodies
-        speeds = cluster_speeds(machine, parts_of(machine.shape), self.world_from_link, way)
-        mover = Travelling(machine.tree, machine.world_from_base, way.course, speeds)
-        return _Meets(*first_touch(mover, bodies, length, self.apart, moving))
-
-    def _presses(self, way: Way, length: float, moving: NDArray[np.bool_]) -> _Meets:
-        """The first of the pairs that touch and come deeper into each other."""
-        pairs, skin = self.pairs, self.pairs.skin
-        speeds = cluster_speeds(self.machine, skin, self.world_from_link, way)
-        by_link = np.zeros(len(self.machine.links))
+    def _first(
+        self, way: Way, length: float, moving: NDArray[np.bool_]
+    ) -> tuple[float, int, NDArray[np.float64]]:
+        """As `first_meeting`; `moving`: the pairs whose links move against each other, shape (pairs,)."""
+        machine, pairs, skin = self.machine, self.pairs, self.pairs.skin
+        speeds = cluster_speeds(machine, skin, self.world_from_link, way)
+        by_link = np.zeros(len(machine.links))
         np.maximum.at(by_link, skin.link, speeds)
         closing = (speeds[pairs.cluster] + by_link[pairs.other][pairs.pair]) * moving[pairs.pair]
-        mover = Mover(self.machine.tree, self.machine.world_from_base, skin, way.course, closing)
+        mover = Mover(machine.tree, machine.world_from_base, skin, way.course, closing)
+        by_part = cluster_speeds(machine, parts_of(machine.shape), self.world_from_link, way)
+        parts = Travelling(machine.tree, machine.world_from_base, way.course, by_part)
         steps = Steps(STEP_IN_COVERS * skin.cover, TOGETHER)
-        travel, member, place = first_meeting(mover, pairs, length, self.gaps, self.least, steps)
-        return _Meets(travel, -1 if member < 0 else int(pairs.pair[member]), place)
+        found: tuple[float, int, NDArray[np.float64]] = first_meeting(
+            mover, parts, pairs, length, self.now, steps
+        )
+        return found
 
 
 def _moves_with(rates: NDArray[np.float64], parent: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -176,19 +176,24 @@ class Asked(NamedTuple):
 class Room(NamedTuple):
     """Room to work in: pairs of boxes, (DEPTH, 2), and when they are so near, (DEPTH,), a triangle, (3, 3).
 
-    `at` (4,) takes the nearest point of the first link, in the second's frame, and the distance there [m].
+    `at` (4,) takes the nearest point of the first link, in the second's frame, and the distance there [m]. `last` (4,):
+    the two triangles that came soonest when the same links were looked at last, and their parts; -1: they were not.
+    What came soonest mostly does so again: it is looked at first.
     """
 
     pairs: np.ndarray
     soon: np.ndarray
     triangle: np.ndarray
     at: np.ndarray
+    last: np.ndarray
 
 
 @njit
 def room():
     """Room for one thread."""
-    return Room(np.empty((DEPTH, 2), dtype=np.int64), np.empty(DEPTH), np.empty((3, 3)), np.zeros(4))
+    return Room(
+        np.empty((DEPTH, 2), dtype=np.int64), np.empty(DEPTH), np.empty((3, 3)), np.zeros(4), np.full(4, -1)
+    )
 
 
 @uncounted()
@@ -206,8 +211,14 @@ def soonest(boxes, rows, other_from_one, speeds, asked, room):
     Returns:
         Travel, at most `asked.within`; -1 where links are no farther apart than `asked.met` at what comes first.
     """
-    pairs, soon = room.pairs, room.soon
+    pairs, soon, last = room.pairs, room.soon, room.last
     best = asked.within
+    if last[0] >= 0:
+        speed = speeds[last[2]] + speeds[last[3]]
+        _put(boxes.triangles[last[0]], other_from_one, room.triangle)
+        best = _sooner(boxes, (last[0], last[1]), speed, asked, room, best)
+        if best < 0.0:
+            return best
     pairs[0, 0], pairs[0, 1], soon[0] = boxes.root[rows[0]], boxes.root[rows[1]], 0.0
     left = 1 if pairs[0, 0] >= 0 and pairs[0, 1] >= 0 else 0
     while left > 0:
@@ -245,23 +256,38 @@ def soonest(boxes, rows, other_from_one, speeds, asked, room):
 def _soonest_of_triangles(boxes, two, other_from_one, speeds, asked, room, best):
     """The same for the triangles of two boxes, where that is sooner than `best`; else `best`."""
     one, other = two
-    triangle, at = room.triangle, room.at
     speed = speeds[boxes.part[one]] + speeds[boxes.part[other]]
     for n in range(boxes.first[one], boxes.stop[one]):
-        for corner in range(3):
-            x, y, z = _corner(boxes.triangles[n], corner)
-            for axis in range(3):
-                triangle[corner, axis] = along(other_from_one, axis, x, y, z)
+        _put(boxes.triangles[n], other_from_one, room.triangle)
         for m in range(boxes.first[other], boxes.stop[other]):
-            away, place = of_triangles(triangle, boxes.triangles[m])
-            gap = max(away - asked.near, 0.0)
-            if gap < best * speed:
-                best = gap / speed
-                at[0], at[1], at[2] = place
-                at[3] = away
-                if away <= asked.met:
-                    return -1.0
+            before, best = best, _sooner(boxes, (n, m), speed, asked, room, best)
+            if best < before:
+                room.last[2], room.last[3] = boxes.part[one], boxes.part[other]
+            if best < 0.0:
+                return best
     return best
+
+
+@uncounted()
+def _put(triangle, other_from_one, moved):
+    """Fills a triangle in another link's frame."""
+    for corner in range(3):
+        x, y, z = _corner(triangle, corner)
+        for axis in range(3):
+            moved[corner, axis] = along(other_from_one, axis, x, y, z)
+
+
+@uncounted()
+def _sooner(boxes, two, speed, asked, room, best):
+    """The same for two triangles, the first of them in `room.triangle`."""
+    away, place = of_triangles(room.triangle, boxes.triangles[two[1]])
+    gap = max(away - asked.near, 0.0)
+    if gap >= best * speed:
+        return best
+    room.at[0], room.at[1], room.at[2] = place
+    room.at[3] = away
+    room.last[0], room.last[1] = two
+    return -1.0 if away <= asked.met else gap / speed
 
 
 @njit(cache=True, nogil=True)

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from elbowroom.geometry.kernels.rigid import moved
-from elbowroom.machine.kernels.apart import Asked, relate, room, soonest
+from elbowroom.machine.kernels.apart import Asked, Room, relate, room, soonest
 from elbowroom.machine.kernels.body import Tree
 from elbowroom.machine.kernels.boxes import Boxes
 from elbowroom.motion.kernels.mover import Course, place_at
@@ -53,55 +53,61 @@ def apart_now(bodies, placed, within, apart):
     for pair in range(apart.size):
         one, other = bodies.one[pair], bodies.other[pair]
         relate(placed, one, other, other_from_one)
+        work.last[0] = -1
         away = soonest(bodies.boxes, (one, other), other_from_one, speeds, Asked(0.0, 0.0, within), work)
         apart[pair] = 0.0 if away < 0.0 else away if away < within else math.inf
 
 
-@njit(cache=True, nogil=True)
-def first_touch(mover, bodies, length, apart, moving):
-    """The travel up to which no pair touches, the pair that touches after it or -1, and where, (3,) [m].
+class Space(NamedTuple):
+    """To work in: where links are, (1, links, 4, 4), a transform, (3, 4), and room for looks."""
 
-    A pair has met at `bodies.met` apart. Steps end where no more than half of that is left, so nothing meets between
-    two looks. A pair that is as near as that already has met at half of what it is apart.
+    placed: np.ndarray
+    other_from_one: np.ndarray
+    room: Room
+
+
+@njit
+def space(links):
+    """Space for one thread and so many links."""
+    return Space(np.empty((1, links, 4, 4)), np.empty((3, 4)), room())
+
+
+@njit
+def touch(mover, bodies, pair, met, span, work, place):
+    """The travel up to which a pair does not touch, -1 where it does not at all.
+
+    It has met at `met` apart. Steps end where no more than half of that is left, so nothing meets between two looks.
 
     Args:
         mover: what moves, and how (`Travelling`).
         bodies: what must not meet.
-        length: travel that is looked at, at most the course's.
-        apart: now, of `apart_now`; at 0 a pair touches already, and is none that is looked at here.
-        moving: whether the links of each pair move against each other.
+        pair: of them; it is apart where `span` begins.
+        met: how near [m].
+        span: travels between which it is looked at.
+        work: to work in (`Space`).
+        place: (3,), takes where they touch [m].
     """
-    place, found, limit = np.zeros(3), -1, length
-    placed, other_from_one, work = np.empty((1, mover.tree.parent.size, 4, 4)), np.empty((3, 4)), room()
-    start = np.empty_like(placed)
-    place_at(mover, 0.0, start)
-    for pair in range(apart.size):
-        if not moving[pair] or apart[pair] <= 0.0:
-            continue
-        rows = bodies.one[pair], bodies.other[pair]
-        met = min(bodies.met, apart[pair] / 2)
-        fastest = _fastest(mover.speeds, bodies.boxes, rows[0]) + _fastest(
-            mover.speeds, bodies.boxes, rows[1]
-        )
-        known, travel, here = 0.0, 0.0, start
-        while True:
-            relate(here[0], rows[0], rows[1], other_from_one)
-            asked = Asked(met / 2, met, limit - travel)
-            step = soonest(bodies.boxes, rows, other_from_one, mover.speeds, asked, work)
-            if step < 0.0:
-                found, limit = pair, known
-                x, y, z = moved(here[0, rows[1]], work.at[0], work.at[1], work.at[2])
-                place[0], place[1], place[2] = x, y, z
-                break
-            known = travel
-            travel += max(step, met / 4 / fastest) if fastest > 0.0 else limit
-            if not travel < limit:
-                break
-            here = placed
-            place_at(mover, travel, here)
-        if limit <= 0.0:
-            break
-    return limit, found, place
+    rows = bodies.one[pair], bodies.other[pair]
+    fastest = _fastest(mover.speeds, bodies.boxes, rows[0]) + _fastest(mover.speeds, bodies.boxes, rows[1])
+    travel, end = span
+    sure = travel
+    work.room.last[0] = -1
+    while travel < end:
+        place_at(mover, travel, work.placed)
+        here = work.placed[0]
+        relate(here, rows[0], rows[1], work.other_from_one)
+        asked = Asked(met / 2, met, end - travel)
+        step = soonest(bodies.boxes, rows, work.other_from_one, mover.speeds, asked, work.room)
+        if step < 0.0:
+            at = work.room.at
+            x, y, z = moved(here[rows[1]], at[0], at[1], at[2])
+            place[0], place[1], place[2] = x, y, z
+            return sure
+        least = met / 4 / fastest if fastest > 0.0 else end
+        # a step that its distance allows ends where links are apart
+        sure = travel if step < least else travel + step
+        travel += max(step, least)
+    return -1.0
 
 
 @njit
