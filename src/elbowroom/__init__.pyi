@@ -11,6 +11,7 @@ from elbowroom.machine import (
     Machine as Machine,
     Part as Part,
     Stand as Stand,
+    Zone as Zone,
 )
 from elbowroom.machine.c_arm import ceiling_c_arm as ceiling_c_arm
 from elbowroom.motion import (

@@ -9,6 +9,7 @@ from elbowroom.machine.machine import Machine
 from elbowroom.machine.part import Part
 from elbowroom.machine.samples import BodySamples, body_samples
 from elbowroom.machine.stand import Stand
+from elbowroom.machine.zone import Zone
 
 __all__ = [
     "BodySamples",
@@ -19,6 +20,7 @@ __all__ = [
     "Mimic",
     "Part",
     "Stand",
+    "Zone",
     "body_samples",
     "body_words",
     "ceiling_c_arm",

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry.kept import kept
+from elbowroom.geometry.parallel import spread
 from elbowroom.machine.kernels.boxes import Boxes, cut
 from elbowroom.machine.link import Link
 from elbowroom.machine.shape import Shape
@@ -13,14 +14,9 @@ PART_DEPTH = 4
 
 
 @kept
-def boxes_of(shape: Shape, most_m: float) -> Boxes:
-    """The triangles of all links in trees of boxes.
-
-    Args:
-        shape: the links.
-        most_m: how far a fine link's triangles may lie from its own [m]; they do by `shape.bound(most_m)`.
-    """
-    trees = [_tree(link) for link in shape.within(most_m)]
+def boxes_of(shape: Shape) -> Boxes:
+    """The triangles of all links of a shape in trees of boxes; of fine links, too, all of them."""
+    trees = spread(_tree, shape.links)
     boxes = np.cumsum([0, *(len(tree.centre) for tree in trees)])
     triangles = np.cumsum([0, *(len(tree.triangles) for tree in trees)])
     parts = np.cumsum([0, *(int(tree.part.max(initial=-1)) + 1 for tree in trees)])
@@ -36,7 +32,7 @@ def boxes_of(shape: Shape, most_m: float) -> Boxes:
         part=np.concatenate([tree.part + n for tree, n in zip(trees, parts, strict=False)]),
         link=np.repeat(np.arange(len(trees)), [len(tree.centre) for tree in trees]),
         root=np.array(
-            [n if len(tree.centre) else -1 for tree, n in zip(trees, boxes, strict=False)], dtype=np.int64
+            [n if len(tree.centre) else -1 for tree, n in zip(trees, boxes, strict=False)], dtype=np.int32
         ),
     )
 
@@ -48,7 +44,7 @@ def _tree(link: Link) -> Boxes:
     order = np.empty(count, dtype=np.int64)
     most = 2 * max(count, 1)
     centre, half = np.zeros((most, 3)), np.zeros((most, 3))
-    child, first, stop = (np.zeros(most, dtype=np.int64) for _ in range(3))
+    child, first, stop = (np.zeros(most, dtype=np.int32) for _ in range(3))
     triangles = np.ascontiguousarray(link.triangles)
     made = cut(triangles, order, centre, half, child, first, stop) if count else 0
     child = child[:made]
@@ -60,14 +56,14 @@ def _tree(link: Link) -> Boxes:
         first=first[:made],
         stop=stop[:made],
         part=_parts(child),
-        link=np.zeros(made, dtype=np.int64),
-        root=np.zeros(1 if made else 0, dtype=np.int64),
+        link=np.zeros(made, dtype=np.int32),
+        root=np.zeros(1 if made else 0, dtype=np.int32),
     )
 
 
-def _parts(child: NDArray[np.int64]) -> NDArray[np.int64]:
+def _parts(child: NDArray[np.int32]) -> NDArray[np.int32]:
     """The part of each box: that of the box at `PART_DEPTH` that it lies in; boxes above it are parts as well."""
-    part, depth = np.zeros(len(child), dtype=np.int64), np.zeros(len(child), dtype=np.int64)
+    part, depth = np.zeros(len(child), dtype=np.int32), np.zeros(len(child), dtype=np.int32)
     count = 1
     for box, begun in enumerate(child):
         if begun < 0:

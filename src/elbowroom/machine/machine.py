@@ -30,6 +30,7 @@ from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.part import Part
 from elbowroom.machine.shape import Shape
 from elbowroom.machine.stand import Stand
+from elbowroom.machine.zone import Zone
 
 QUIET = ("package", "limits", "axes", "larger")
 """Kinds of findings that are kept with the machine, and are no slip that a warning is due for."""
@@ -54,6 +55,7 @@ class Machine:
         allowed_contacts: pairs of names of links that may touch, besides neighbours; a name may hold wildcards ("*").
         own_links: pairs of links that are not compared, and the file that says so; None: none is named.
         stands: what some links may touch: a table, the floor.
+        zones: where a person says that links must not be, or that nobody watches.
         parts: names of the links that are carried (`with_part`).
         bodiless_links: links whose geometry was left out by somebody's word: they move without a body.
         tolerance: how far a position may lie beyond a limit, and a follower off its leader.
@@ -72,6 +74,7 @@ class Machine:
     allowed_contacts: tuple[tuple[str, str], ...] = ()
     own_links: OwnLinks | None = None
     stands: tuple[Stand, ...] = ()
+    zones: tuple[Zone, ...] = ()
     parts: tuple[str, ...] = ()
     bodiless_links: tuple[str, ...] = ()
     tolerance: JointTolerance = field(default_factory=JointTolerance)
@@ -95,6 +98,9 @@ class Machine:
         object.__setattr__(self, "stands", tuple(self.stands))
         for stand in self.stands:
             self._require_links("stands_on", stand.links)
+        object.__setattr__(self, "zones", tuple(self.zones))
+        for zone in self.zones:
+            self._require_links(f"zones: {zone.name}", zone.links)
         if self.own_links is not None:
             object.__setattr__(self, "own_links", self.own_links.among(self.link_names))
         for pair in self.allowed_contacts:
@@ -104,7 +110,10 @@ class Machine:
 
     def _all_but_place(self) -> tuple[Hashable, ...]:
         """What machines have in common that differ by their place alone."""
-        own = (tuple(map(id, values)) for values in (self.links, self.joints, self.stands, self.findings))
+        own = (
+            tuple(map(id, values))
+            for values in (self.links, self.joints, self.stands, self.zones, self.findings)
+        )
         named = self.unchecked_links, self.allowed_contacts, self.parts, self.bodiless_links
         return self.name, id(self.tree), id(self.own_links), *own, *named, self.tolerance
 
@@ -254,6 +263,18 @@ class Machine:
         """
         return replace(self, stands=(*self.stands, *stands))
 
+    def with_zones(self, *zones: Zone) -> "Machine":
+        """The machine with zones of the room that a person declares; those that it has stay.
+
+        Raises:
+            MachineError: a link that is named does not exist, or two zones of one name.
+        """
+        names = [zone.name for zone in (*self.zones, *zones)]
+        doubled = sorted({name for name in names if names.count(name) > 1})
+        if doubled:
+            raise MachineError(f"zones: {doubled[0]} is there more than once; each needs a name of its own")
+        return replace(self, zones=(*self.zones, *zones))
+
     def allowing(self, *contacts: tuple[str, str]) -> "Machine":
         """The machine with pairs of links that may touch; those that it has stay. Names may hold wildcards.
 
@@ -275,6 +296,7 @@ class Machine:
         """What somebody's word lets pass, a line each: every summary says it."""
         own = [pair for pair in self.allowed_contacts if not set(pair) & set(self.parts)]
         return (
+            *map(str, self.zones),
             *(f"Not stopped by anything there, by the site's word: {stand}" for stand in self.stands),
             *(f"May touch each other, by the site's word: {one} and {other}" for one, other in own),
             *(() if self.own_links is None else (self.own_links.said,)),

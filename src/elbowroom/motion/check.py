@@ -12,7 +12,7 @@ from elbowroom.geometry import bits, parallel
 from elbowroom.machine import Machine
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.course import Way, way_of
-from elbowroom.motion.ground import Ground, grounds_of
+from elbowroom.motion.ground import Ground, grounds_of, zone_of
 from elbowroom.motion.inside import blocks_inside
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.meeting import Meeting
@@ -118,6 +118,7 @@ def joint_motions(
 class _Scene:
     """What the motions of one check share."""
 
+    space: FreeSpace
     grounds: tuple[Ground, ...]
     machine: Machine
     skin: Skin
@@ -132,6 +133,7 @@ class _Scene:
         placed = machine.world_from_link_array(start[None])[0]
         grounds = grounds_of(space, machine)
         return cls(
+            space,
             grounds,
             machine,
             skin_of(machine, voxel_size_m),
@@ -157,6 +159,7 @@ class _Scene:
             )
         if block is None:
             return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE)
+        zone = zone_of(block, self.space, self.machine)
         return Verdict(
             motion,
             Level.at(block.travel, motion.braking_distance),
@@ -164,7 +167,8 @@ class _Scene:
             way.unit,
             self.machine.link_names[self.skin.link[block.cluster]],
             tuple(block.place_in_world.tolist()),
-            CAUSES[block.kind],
+            CAUSES[block.kind] if zone is None else Cause.KEPT_OUT,
+            zone=zone,
         )
 
     def _first_block(self, speeds: NDArray[np.float64], way: Way) -> Block | None:

@@ -27,13 +27,10 @@ COARSER = 1.5
 """A field is much coarser than another whose cells are smaller than its own by this factor."""
 POSES, ALWAYS = 40, 0.95
 """Links that touch in this share of so many poses, drawn from the joints' limits, are meant to."""
-MET_M = 1e-3
+MET_M = 5e-4
 """Links that are as near as this have met [m]."""
-FINE_M = 2.5e-4
-"""Fine meshes are compared with triangles that lie off them by this at most: steps leave half of `MET_M`, which
-is what two of them may be off [m]."""
 TOUCH_M = 1e-6
-"""Distances of less are rounding [m]."""
+"""Links touch that are no farther apart than this: rounding [m]."""
 
 
 @kept
@@ -71,9 +68,7 @@ def bodies_of(machine: Machine, rows: list[tuple[int, int]]) -> Bodies:
         rows: of the links of each pair.
     """
     one, other = np.array(rows, dtype=np.int64).reshape(-1, 2).T
-    return Bodies(
-        boxes_of(machine.shape, FINE_M), np.ascontiguousarray(one), np.ascontiguousarray(other), MET_M
-    )
+    return Bodies(boxes_of(machine.shape), np.ascontiguousarray(one), np.ascontiguousarray(other), MET_M)
 
 
 def touching(machine: Machine, bodies: Bodies, positions: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -84,16 +79,10 @@ def touching(machine: Machine, bodies: Bodies, positions: NDArray[np.float64]) -
         bodies: the pairs.
         positions: of its joints, shape (n, n_joints).
     """
-    within = touch_of(machine)
     apart = np.empty((len(positions), len(bodies.one)))
     for placed, away in zip(machine.world_from_link_array(positions), apart, strict=True):
-        apart_now(bodies, placed, 2 * within, away)
-    return apart <= within
-
-
-def touch_of(machine: Machine) -> float:
-    """Links touch that are told to be no farther apart than this: what triangles may be off, and rounding [m]."""
-    return TOUCH_M + 2 * machine.shape.bound(FINE_M)
+        apart_now(bodies, placed, 2 * TOUCH_M, away)
+    return apart <= TOUCH_M
 
 
 def _voxel_for(machine: Machine) -> float:
@@ -218,7 +207,7 @@ def random_poses(machine: Machine, count: int, seed: int = 0) -> NDArray[np.floa
 @kept
 def parts_of(shape: Shape) -> Skin:
     """The parts of all links, as `cluster_speeds` takes what moves: a ball for each."""
-    boxes = boxes_of(shape, FINE_M)
+    boxes = boxes_of(shape)
     _, first = np.unique(boxes.part, return_index=True)
     none = np.zeros(0, dtype=np.int64)
     return Skin(

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED
-from elbowroom.motion.contacts import pairs_of, parts_of, touch_of
+from elbowroom.motion.contacts import TOUCH_M, pairs_of, parts_of
 from elbowroom.motion.course import Way
 from elbowroom.motion.kernels.closing import Travelling, apart_now
 from elbowroom.motion.kernels.meeting import Now, Pairs, Steps, first_meeting, gaps_now
@@ -53,7 +53,7 @@ class Meeting:
         pairs = pairs_of(machine.anywhere)
         apart = np.empty(len(pairs.sampled))
         apart_now(pairs.bodies, world_from_link, pairs.bodies.met, apart)
-        apart[apart <= touch_of(machine)] = 0.0
+        apart[apart <= TOUCH_M] = 0.0
         gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
         gaps_now(pairs, world_from_link, gaps, least)
         return cls(machine, pairs, world_from_link, Now(apart, gaps, least))

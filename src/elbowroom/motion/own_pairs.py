@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from elbowroom.machine import Machine
-from elbowroom.motion.contacts import ALWAYS, bodies_of, can_move_apart, next_body, random_poses, touch_of
+from elbowroom.motion.contacts import ALWAYS, TOUCH_M, bodies_of, can_move_apart, next_body, random_poses
 from elbowroom.motion.kernels.closing import apart_now
 
 NEVER_M = 0.02
@@ -35,12 +35,12 @@ def found_pairs(
         if can_move_apart(machine, *pair)
     ]
     adjacent = [next_body(machine, b) == a for a, b in rows]
-    bodies, touch = bodies_of(machine, rows), touch_of(machine)
+    bodies = bodies_of(machine, rows)
     touched, nearest = np.zeros(len(rows)), np.full(len(rows), np.inf)
     apart = np.empty(len(rows))
     for count, placed in enumerate(machine.world_from_link_array(random_poses(machine, poses, seed))):
         apart_now(bodies, placed, NEVER_M, apart)
-        touched += apart <= touch
+        touched += apart <= TOUCH_M
         nearest = np.minimum(nearest, apart)
         if tell is not None:
             tell(count + 1)
@@ -57,7 +57,7 @@ def found_pairs(
             else "always"
             if touched[n] >= ALWAYS * poses
             else "default"
-            if apart[n] <= touch
+            if apart[n] <= TOUCH_M
             else "never"
             if nearest[n] > NEVER_M
             else None

@@ -139,7 +139,8 @@ def free_space_of(
         evidence = carve_images(grid, images, explained, terms, complete=terms.needs_counts, focus=focus)
     with stage("resolve"):
         space = decide(evidence, cameras, machine, fresh.joints_at_newest, terms)
-    return replace(space, source=ImageSource(images, explained.model_depth, terms, space.free_words, focus))
+    source = ImageSource(images, explained.model_depth, terms, space.free_words, focus)
+    return replace(space, source=source, looked_at=focus)
 
 
 @contextmanager
