@@ -8,6 +8,7 @@ from elbowroom.geometry import (
     VoxelGrid as VoxelGrid,
 )
 from elbowroom.machine import (
+    Contact as Contact,
     Machine as Machine,
     Part as Part,
     Stand as Stand,

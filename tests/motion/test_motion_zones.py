@@ -13,8 +13,8 @@ from elbowroom.geometry import bits
 from elbowroom.machine import Zone
 from elbowroom.machine.link import Surface
 from elbowroom.machine.ways import never_out_of, reach_m
+from elbowroom.machine.zone_words import zone_words
 from elbowroom.motion import Cause, Level, Motion, check_motion
-from elbowroom.motion.zones import zone_words
 from elbowroom.reconstruct.free_space import FreeSpace
 from reference import motion_machines as machines
 from reference.motion_machines import HOME, nothing_in, room, touched_by_box
@@ -72,7 +72,7 @@ def test_a_link_that_stands_in_a_zone_kept_out_goes_nowhere(arm):
 
 
 def test_what_nobody_saw_is_free_in_a_zone_not_watched_for_its_links_alone(arm):
-    unseen = touched_by_box(GRID, (0.75, -1, 0.6), (1.2, 1, 1.2))
+    unseen = touched_by_box(GRID, (0.75, -1, 0.605), (1.2, 1, 1.2))
     space = space_of(arm, unseen=unseen)
     assert check_motion(space, arm, HOME, SLIDE).cause is Cause.UNSEEN
     assert check_motion(space, arm.with_zones(high()), HOME, SLIDE).level is Level.CLEAR
@@ -85,7 +85,7 @@ def test_what_nobody_saw_is_free_in_a_zone_not_watched_for_its_links_alone(arm):
 
 @pytest.mark.parametrize("plane", ["surface_words", "blind_words", "disputed_words"])
 def test_what_any_camera_disputes_blocks_in_a_zone_not_watched(arm, plane):
-    unseen = touched_by_box(GRID, (0.75, -1, 0.6), (1.2, 1, 1.2))
+    unseen = touched_by_box(GRID, (0.75, -1, 0.605), (1.2, 1, 1.2))
     space = space_of(arm, unseen=unseen)
     space = replace(space, **{plane: getattr(space, plane) | bits.pack(unseen, GRID)})
     found = check_motion(space, arm.with_zones(high()), HOME, SLIDE)
@@ -93,7 +93,7 @@ def test_what_any_camera_disputes_blocks_in_a_zone_not_watched(arm, plane):
 
 
 def test_what_cameras_were_not_asked_of_stays_blocked_in_a_zone_not_watched(arm):
-    unseen = touched_by_box(GRID, (0.75, -1, 0.6), (1.2, 1, 1.2))
+    unseen = touched_by_box(GRID, (0.75, -1, 0.605), (1.2, 1, 1.2))
     space = space_of(arm, unseen=unseen)
     unasked = replace(space, looked_at=np.zeros(space.free_words.size, dtype=np.bool_))
     assert check_motion(unasked, arm.with_zones(high()), HOME, SLIDE).cause is Cause.UNSEEN

@@ -2,6 +2,7 @@
 
 from elbowroom.machine.body import body_words, default_growth
 from elbowroom.machine.c_arm import ceiling_c_arm
+from elbowroom.machine.contact import Contact
 from elbowroom.machine.explain import Explained, explain_frames
 from elbowroom.machine.joint import Joint, Mimic
 from elbowroom.machine.link import Link
@@ -13,6 +14,7 @@ from elbowroom.machine.zone import Zone
 
 __all__ = [
     "BodySamples",
+    "Contact",
     "Explained",
     "Joint",
     "Link",

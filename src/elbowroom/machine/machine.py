@@ -15,6 +15,7 @@ from elbowroom.choices import ExplainWith
 from elbowroom.errors import MachineError, MachineWarning
 from elbowroom.finding import Finding
 from elbowroom.geometry import nearest_rigid
+from elbowroom.machine.contact import Contact
 from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
 from elbowroom.machine.joint_state import (
@@ -55,6 +56,7 @@ class Machine:
         allowed_contacts: pairs of names of links that may touch, besides neighbours; a name may hold wildcards ("*").
         own_links: pairs of links that are not compared, and the file that says so; None: none is named.
         stands: what some links may touch: a table, the floor.
+        contacts: fixed things that some links may be near.
         zones: where a person says that links must not be, or that nobody watches.
         parts: names of the links that are carried (`with_part`).
         bodiless_links: links whose geometry was left out by somebody's word: they move without a body.
@@ -74,6 +76,7 @@ class Machine:
     allowed_contacts: tuple[tuple[str, str], ...] = ()
     own_links: OwnLinks | None = None
     stands: tuple[Stand, ...] = ()
+    contacts: tuple[Contact, ...] = ()
     zones: tuple[Zone, ...] = ()
     parts: tuple[str, ...] = ()
     bodiless_links: tuple[str, ...] = ()
@@ -98,6 +101,9 @@ class Machine:
         object.__setattr__(self, "stands", tuple(self.stands))
         for stand in self.stands:
             self._require_links("stands_on", stand.links)
+        object.__setattr__(self, "contacts", tuple(self.contacts))
+        for contact in self.contacts:
+            self._require_links(f"contacts: {contact.name}", contact.links)
         object.__setattr__(self, "zones", tuple(self.zones))
         for zone in self.zones:
             self._require_links(f"zones: {zone.name}", zone.links)
@@ -114,7 +120,9 @@ class Machine:
             tuple(map(id, values))
             for values in (self.links, self.joints, self.stands, self.zones, self.findings)
         )
-        named = self.unchecked_links, self.allowed_contacts, self.parts, self.bodiless_links
+        # things of contacts stand in the world, wherever the machine does
+        things = (*map(id, self.contacts), self.world_from_base.tobytes() if self.contacts else b"")
+        named = things, self.unchecked_links, self.allowed_contacts, self.parts, self.bodiless_links
         return self.name, id(self.tree), id(self.own_links), *own, *named, self.tolerance
 
     @property
@@ -263,6 +271,18 @@ class Machine:
         """
         return replace(self, stands=(*self.stands, *stands))
 
+    def near(self, *contacts: Contact) -> "Machine":
+        """The machine with fixed things of the room that some of its links may be near; those that it has stay.
+
+        Raises:
+            MachineError: a link that is named does not exist, or a thing of a name that is taken.
+        """
+        names = [contact.name for contact in (*self.contacts, *contacts)] + list(self.link_names)
+        doubled = sorted({name for name in names if names.count(name) > 1})
+        if doubled:
+            raise MachineError(f"contacts: the name {doubled[0]} is there more than once, or that of a link")
+        return replace(self, contacts=(*self.contacts, *contacts))
+
     def with_zones(self, *zones: Zone) -> "Machine":
         """The machine with zones of the room that a person declares; those that it has stay.
 
@@ -297,6 +317,7 @@ class Machine:
         own = [pair for pair in self.allowed_contacts if not set(pair) & set(self.parts)]
         return (
             *map(str, self.zones),
+            *map(str, self.contacts),
             *(f"Not stopped by anything there, by the site's word: {stand}" for stand in self.stands),
             *(f"May touch each other, by the site's word: {one} and {other}" for one, other in own),
             *(() if self.own_links is None else (self.own_links.said,)),

@@ -154,7 +154,7 @@ class _Scene:
                 way.unit,
                 met.link,
                 tuple(met.place_in_world.tolist()),
-                Cause.MACHINE,
+                Cause.MACHINE if met.other in self.machine.link_names else Cause.SURFACE,
                 met.other,
             )
         if block is None:

@@ -12,6 +12,8 @@ from elbowroom.machine.boxes import boxes_of
 from elbowroom.machine.kernels.samples import cluster
 from elbowroom.machine.samples import COVER_IN_VOXELS, ROUNDING_M, BodySamples, body_samples
 from elbowroom.machine.shape import Shape
+from elbowroom.machine.things import with_things
+from elbowroom.machine.ways import moves
 from elbowroom.motion.field import fields_of
 from elbowroom.motion.kernels.closing import Bodies, apart_now
 from elbowroom.motion.kernels.field import Fields, slack_of
@@ -37,6 +39,8 @@ TOUCH_M = 1e-6
 def pairs_of(machine: Machine) -> Pairs:
     """The pairs of a machine's links that must not meet; made once per machine, then kept.
 
+    And links with the things of the machine's contacts, which are links of `with_things`.
+
     Left out are links and the next one up the tree that has a body, those that the machine's `allowed_contacts` or
     `own_links` name, those that touch in all poses, and pairs of unchecked links.
 
@@ -46,11 +50,22 @@ def pairs_of(machine: Machine) -> Pairs:
     Raises:
         MachineError: as `body_samples`.
     """
-    rows = watched_rows(machine)
+    rows = [*watched_rows(machine), *_near_things(machine)]
     edge = _voxel_for(machine)
     skin, width = _skin(body_samples(machine, edge, unchecked=True))
-    fields = fields_of(machine.links, {row for pair in rows for row in pair}, FINEST * edge)
-    return _pairs(skin, width, fields, bodies_of(machine, rows))
+    whole = with_things(machine)
+    fields = fields_of(whole.links, {row for pair in rows for row in pair}, FINEST * edge)
+    return _pairs(skin, width, fields, bodies_of(whole, rows))
+
+
+def _near_things(machine: Machine) -> list[tuple[int, int]]:
+    """The rows of links that may be near things, and those of the things that they may not touch."""
+    return [
+        (row, len(machine.links) + n)
+        for n, contact in enumerate(machine.contacts)
+        for row, link in enumerate(machine.links)
+        if link.has_geometry and contact.names(link.name) and moves(machine, row) and not contact.may_touch
+    ]
 
 
 def watched_rows(machine: Machine) -> list[tuple[int, int]]:
@@ -151,14 +166,16 @@ def _stiff_with(machine: Machine, row: int) -> int:
 def _pairs(skin: Skin, width: NDArray[np.float64], fields: Fields, bodies: Bodies) -> Pairs:
     """The kernels' pairs: samples of the link farther from the base, of which each cluster has a speed of its own.
 
-    But where the other link's field is much coarser, it gives the samples.
+    But where the other link's field is much coarser, it gives the samples; things give none.
 
     Args:
         skin, width, fields, bodies: as of `Pairs`.
     """
     rows = list(zip(bodies.one.tolist(), bodies.other.tolist(), strict=True))
     clusters = {row: np.flatnonzero(skin.link == row) for pair in rows for row in pair}
-    by_side = [(b, a) if fields.edge[a] <= COARSER * fields.edge[b] else (a, b) for a, b in rows]
+    by_side = [
+        (b, a) if clusters[b].size and fields.edge[a] <= COARSER * fields.edge[b] else (a, b) for a, b in rows
+    ]
     members = [clusters[sampled] for sampled, _ in by_side]
     return Pairs(
         skin=skin,

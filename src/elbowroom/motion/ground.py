@@ -10,9 +10,9 @@ from elbowroom.geometry.bits import Words
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
 from elbowroom.machine.stand import ROUNDING_IN_VOXELS, Stand
+from elbowroom.machine.zone_words import zone_words
 from elbowroom.motion.kernels.volume import Volume
 from elbowroom.motion.sweep import Block, volume_of
-from elbowroom.motion.zones import zone_words
 from elbowroom.reconstruct.free_space import FreeSpace, Index
 from elbowroom.reconstruct.point_report import PointReport
 
@@ -43,12 +43,14 @@ def grounds_of(space: FreeSpace, machine: Machine) -> tuple[Ground, ...]:
     kept_out = _kept_out(machine, space.grid)
     grounds = []
     for own in sorted(set(spared)):
-        stands, unwatched = own
+        stands, unwatched, near = own
         free = space.free_words
         if stands:
             free = free | _words_in(machine.anywhere, space.grid, stands)
         if unwatched:
             free = free | _unwatched(machine, space, unwatched)
+        if near and space.declared:
+            free = np.bitwise_or.reduce([free, *(space.declared[n] for n in near)])
         there = _with(space, free, kept_out)
         grounds.append(Ground(there, volume_of(there), np.array([other == own for other in spared])))
     return tuple(grounds)
@@ -75,10 +77,11 @@ def zone_of(block: Block, space: FreeSpace, machine: Machine) -> str | None:
     return None
 
 
-def _spared(machine: Machine, link: str) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """The stands that a link may touch, and the zones that are not watched for it."""
+def _spared(machine: Machine, link: str) -> tuple[tuple[int, ...], ...]:
+    """The stands that a link may touch, the zones that are not watched for it, and the things that it may be near."""
     stands = tuple(n for n, stand in enumerate(machine.stands) if stand.names(link))
-    return stands, tuple(n for n, zone in enumerate(machine.zones) if zone.names(link))
+    zones = tuple(n for n, zone in enumerate(machine.zones) if zone.names(link))
+    return stands, zones, tuple(n for n, contact in enumerate(machine.contacts) if contact.names(link))
 
 
 def _kept_out(machine: Machine, grid: VoxelGrid) -> Words | None:

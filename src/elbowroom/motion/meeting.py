@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED
+from elbowroom.machine.things import with_things
 from elbowroom.motion.contacts import TOUCH_M, pairs_of, parts_of
 from elbowroom.motion.course import Way
 from elbowroom.motion.kernels.closing import Travelling, apart_now
@@ -36,7 +37,7 @@ class Meeting:
     """The links of a machine that must not meet, and how far apart they are now.
 
     Args:
-        machine: the machine.
+        machine: the machine, with things that stand still beside it.
         pairs: of its links.
         world_from_link: where they are, shape (n_links, 4, 4).
         now: how far apart they are there.
@@ -50,13 +51,15 @@ class Meeting:
     @classmethod
     def of(cls, machine: Machine, world_from_link: NDArray[np.float64]) -> Self:
         """At one place of the machine, whose links are there: shape (n_links, 4, 4)."""
-        pairs = pairs_of(machine.anywhere)
+        pairs, whole = pairs_of(machine.anywhere), with_things(machine)
+        things = np.tile(machine.world_from_base, (len(machine.contacts), 1, 1))
+        placed = np.concatenate([world_from_link, things]) if len(things) else world_from_link
         apart = np.empty(len(pairs.sampled))
-        apart_now(pairs.bodies, world_from_link, pairs.bodies.met, apart)
+        apart_now(pairs.bodies, placed, pairs.bodies.met, apart)
         apart[apart <= TOUCH_M] = 0.0
         gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
-        gaps_now(pairs, world_from_link, gaps, least)
-        return cls(machine, pairs, world_from_link, Now(apart, gaps, least))
+        gaps_now(pairs, placed, gaps, least)
+        return cls(whole, pairs, placed, Now(apart, gaps, least))
 
     def first(self, way: Way, length: float) -> Met | None:
         """Where two links first come so near that they may touch; None: nowhere.
@@ -81,7 +84,8 @@ class Meeting:
         if pair < 0:
             return None
         rows = sorted((bodies.one[pair], bodies.other[pair]), reverse=True)
-        rows.sort(key=lambda row: moves_with[row] == moves_with[0])
+        parent = self.machine.tree.parent
+        rows.sort(key=lambda row: parent[row] < 0 or moves_with[row] == moves_with[0])
         one, other = (self.machine.link_names[row] for row in rows)
         return Met(float(travel), one, other, place)
 

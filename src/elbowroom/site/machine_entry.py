@@ -17,7 +17,7 @@ from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.machine.joint_state import JointTolerance
 from elbowroom.machine.own_links import OwnLinks
 from elbowroom.motion import Motion, braking_distance
-from elbowroom.site.contact_entry import PartEntry, StandEntry
+from elbowroom.site.contact_entry import ContactEntry, PartEntry, StandEntry, require_protected
 from elbowroom.site.entry import Entry, Flag, Matrix, NotNegative, Number, Positive, Text
 from elbowroom.site.paths import existing_folder, expand
 from elbowroom.site.ranges import MILLIMETRES, MILLISECONDS, MM_A_SECOND, up_to
@@ -32,7 +32,7 @@ class MachineEntry(Entry):
     `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself, and
     `explain_with` says which geometry that model is. `allowed_contacts` are pairs of links that may touch; `own_links`
     or `srdf` is a file that names pairs that are not compared. `stands_on` are boxes of the room that some links may
-    touch, `carries` parts that it holds. `limit_tolerance_deg` and
+    touch, `contacts` fixed things that some may be near, `carries` parts that it holds. `limit_tolerance_deg` and
     `limit_tolerance_mm` are how far a joint may be said to be beyond a limit, `package_dirs` folders of packages,
     `without_body` links whose geometry is left out.
     On a `free_base` the machine drives or floats, and where it stands is among its joint positions.
@@ -48,6 +48,7 @@ class MachineEntry(Entry):
     own_links: Text | None = None
     srdf: Text | None = None
     stands_on: tuple[StandEntry, ...] = ()
+    contacts: tuple[ContactEntry, ...] = ()
     carries: tuple[PartEntry, ...] = ()
     free_base: Literal["planar", "floating"] | None = None
     package_dirs: tuple[Text, ...] = ()
@@ -89,9 +90,11 @@ class MachineEntry(Entry):
         machine = self._bare(beside).comparing(self._own_links(beside))
         for part in self.carries:
             machine = part.on(machine, beside)
-        return machine.allowing(*self.allowed_contacts).standing_on(
-            *(stand.build() for stand in self.stands_on)
-        )
+        machine = machine.allowing(*self.allowed_contacts)
+        machine = machine.standing_on(*(stand.build() for stand in self.stands_on))
+        machine = machine.near(*(contact.build(beside) for contact in self.contacts))
+        require_protected(machine)
+        return machine
 
     def _own_links(self, beside: Path) -> OwnLinks | None:
         if self.own_links is not None:
