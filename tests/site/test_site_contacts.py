@@ -76,3 +76,52 @@ def test_what_cannot_be_meant_is_refused_in_a_line(folder, plain, urdf, more, wo
     with pytest.raises((SiteError, MachineError), match=words) as error:
         site_of(folder, plain, urdf=urdf, **more).machine()
     assert "\n" not in str(error.value)
+
+
+HIGH = {
+    "name": "high",
+    "kind": "not_watched",
+    "lower_m": [-9, -9, 9],
+    "upper_m": [9, 9, 9.5],
+    "links": ["hand"],
+}
+
+
+def test_zones_are_read_and_said(folder, plain, urdf):
+    trimesh.creation.box((0.1, 0.2, 0.1)).export(folder.path / "bore.stl")
+    zones = [
+        {"name": "door", "kind": "kept_out", "lower_m": [-0.5, -0.5, 0], "upper_m": [0.5, 0.5, 0.5]},
+        {"name": "bore", "kind": "kept_out", "mesh": "bore.stl"},
+        {**HIGH, "reason": "no camera looks there"},
+    ]
+    site = Site.load(folder.write({**plain, "machine": {"urdf": urdf}, "zones": zones}))
+    assert [zone.name for zone in site.machine().zones] == ["door", "bore", "high"]
+    notes = "\n".join(notes_of(site))
+    assert "Kept out of, by the site's word: door, (-0.5, -0.5, 0) to (0.5, 0.5, 0.5) m" in notes
+    assert "Not watched for hand, by the site's word: high" in notes
+    assert "zone high lies outside the watched box: it changes nothing" in notes
+
+
+@pytest.mark.parametrize(
+    ("zone", "words"),
+    [
+        ({**HIGH}, "links and a reason"),
+        ({**HIGH, "reason": "why", "links": []}, "links and a reason"),
+        ({**HIGH, "kind": "kept_out", "reason": "why"}, "no links where all are kept out"),
+        ({**HIGH, "reason": "why", "upper_m": None}, "either lower_m and upper_m, or mesh"),
+        ({**HIGH, "reason": "why", "links": ["nobody"]}, "link 'nobody' does not exist"),
+        ({**HIGH, "reason": "why", "lower_m": [-9, -9, -9]}, "hand never leave it"),
+        ({"name": "a", "kind": "kept_out", "mesh": "none.stl"}, "no such file"),
+        ({"name": "a", "kind": "forbidden", "lower_m": [0, 0, 0], "upper_m": [1, 1, 1]}, "kind"),
+    ],
+)
+def test_a_zone_that_cannot_be_meant_is_refused_in_a_line(folder, plain, urdf, zone, words):
+    content = {key: value for key, value in zone.items() if value is not None}
+    with pytest.raises((SiteError, MachineError), match=words) as error:
+        Site.load(folder.write({**plain, "machine": {"urdf": urdf}, "zones": [content]})).machine()
+    assert "\n" not in str(error.value)
+
+
+def test_zones_need_a_machine(folder, plain):
+    with pytest.raises(SiteError, match="zones only with a machine"):
+        Site.load(folder.write({**plain, "zones": [{**HIGH, "reason": "why"}]}))

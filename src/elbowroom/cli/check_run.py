@@ -79,7 +79,8 @@ def ask(
     print(_travel(motion, verdict))
     if verdict.place_in_world is not None:
         x, y, z = verdict.place_in_world
-        what = verdict.cause.value + (f", {verdict.other_link}" if verdict.other_link else "")
+        met = verdict.other_link or verdict.zone
+        what = verdict.cause.value + (f", {met}" if met else "")
         print(f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
     if verdict.overridable:
         print("An operator who holds on may drive on at low speed, since nobody sees that space.")
@@ -129,6 +130,8 @@ def _reasons(found: Why, verdict: Verdict) -> list[str]:
             f"{verdict.link} and {verdict.other_link} may be meant to touch: then name both in the site's machine: "
             "allowed_contacts."
         ]
+    if verdict.cause is Cause.KEPT_OUT:
+        return [f"{verdict.zone} is a zone that the site keeps all links out of, whatever is seen there."]
     return [] if found.report is None else str(found.report).splitlines()
 
 

@@ -9,6 +9,7 @@ import typer
 from elbowroom.cli.options import JsonFile, SitePath
 from elbowroom.cli.site_mask import mask
 from elbowroom.cli.site_moment import pose_to_draw, tight_notes
+from elbowroom.cli.site_own_links import own_links
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
@@ -20,11 +21,12 @@ if TYPE_CHECKING:
     from elbowroom.site import Site
 
 site_app = typer.Typer(
-    help="Write a site file, check one, or find masks.",
+    help="Write a site file, check one, find masks, or links that never meet.",
     epilog="Begin with: elbowroom site new my_room.yaml",
     no_args_is_help=True,
 )
 site_app.command(epilog="Example: elbowroom site mask my_room.yaml --out masks")(mask)
+site_app.command(epilog="Example: elbowroom site own-links my_room.yaml --out own_links.yaml")(own_links)
 
 
 @site_app.command(epilog="Example: elbowroom site new my_room.yaml")

@@ -21,6 +21,7 @@ then the first. No verdict at all is an error, since nothing seen means stop.
 | WATCH              | no: what is known comes from a camera that is elsewhere    |
 | SURFACE            | no                                                         |
 | MACHINE            | no                                                         |
+| KEPT_OUT           | no: a person said so                                       |
 | BLIND              | no: losing evidence never makes a block overridable        |
 | OUTSIDE_GRID       | no                                                         |
 | UNSEEN             | yes                                                        |
@@ -70,6 +71,7 @@ class Cause(Enum):
     OUTSIDE_GRID = "the machine would leave the watched space"
     MACHINE = "another part of the machine"
     UNSEEN = "nobody sees that space"
+    KEPT_OUT = "a zone that the machine is kept out of"
     NONE = "nothing"
     FAULT = "this program failed, so nothing is known"
     STALE = "what was seen is too old by now"
@@ -99,6 +101,7 @@ class Verdict:
             and WATCH are no blocks: whatever the space is, nothing may move.
         other_link: the link of the machine that `link` meets, where that ends the travel; None: it is none.
         escapes: the motion leads out of blocked space that its links reach into where they stand, or along it.
+        zone: the zone that `link` is kept out of, where that ends the travel; None: it is none.
     """
 
     motion: Motion | JointPath
@@ -110,6 +113,7 @@ class Verdict:
     cause: Cause
     other_link: str | None = None
     escapes: bool = False
+    zone: str | None = None
 
     @classmethod
     def stop(cls, motion: Motion | JointPath, free_travel_unit: str, cause: Cause) -> Self:
@@ -154,6 +158,7 @@ class Verdict:
             "place_m": self.place_in_world,
             "other_link": self.other_link,
             "escapes": self.escapes,
+            "zone": self.zone,
         }
 
 

@@ -15,8 +15,9 @@ from elbowroom.errors import MachineWarning, SiteError
 from elbowroom.machine import Joint, Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.machine.joint_state import JointTolerance
+from elbowroom.machine.own_links import OwnLinks
 from elbowroom.motion import Motion, braking_distance
-from elbowroom.site.contact_entry import PartEntry, StandEntry
+from elbowroom.site.contact_entry import ContactEntry, PartEntry, StandEntry, require_protected
 from elbowroom.site.entry import Entry, Flag, Matrix, NotNegative, Number, Positive, Text
 from elbowroom.site.paths import existing_folder, expand
 from elbowroom.site.ranges import MILLIMETRES, MILLISECONDS, MM_A_SECOND, up_to
@@ -29,8 +30,9 @@ class MachineEntry(Entry):
     """The machine: one that ships with the package, or a URDF; where its base stands; links not to check.
 
     `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself, and
-    `explain_with` says which geometry that model is. `allowed_contacts` are pairs of links that may touch, `stands_on`
-    boxes of the room that some links may touch, `carries` parts that it holds. `limit_tolerance_deg` and
+    `explain_with` says which geometry that model is. `allowed_contacts` are pairs of links that may touch; `own_links`
+    or `srdf` is a file that names pairs that are not compared. `stands_on` are boxes of the room that some links may
+    touch, `contacts` fixed things that some may be near, `carries` parts that it holds. `limit_tolerance_deg` and
     `limit_tolerance_mm` are how far a joint may be said to be beyond a limit, `package_dirs` folders of packages,
     `without_body` links whose geometry is left out.
     On a `free_base` the machine drives or floats, and where it stands is among its joint positions.
@@ -43,7 +45,10 @@ class MachineEntry(Entry):
     explain_tolerance_m: Annotated[Positive, up_to(0.5, "m", MILLIMETRES)] | None = None
     explain_with: ExplainWith = "auto"
     allowed_contacts: tuple[tuple[Text, Text], ...] = ()
+    own_links: Text | None = None
+    srdf: Text | None = None
     stands_on: tuple[StandEntry, ...] = ()
+    contacts: tuple[ContactEntry, ...] = ()
     carries: tuple[PartEntry, ...] = ()
     free_base: Literal["planar", "floating"] | None = None
     package_dirs: tuple[Text, ...] = ()
@@ -60,6 +65,8 @@ class MachineEntry(Entry):
         own = sorted(self.model_fields_set & set(OF_A_URDF))
         if self.builtin is not None and own:
             raise ValueError(f"{own[0]} only with urdf")
+        if self.own_links is not None and self.srdf is not None:
+            raise ValueError("either own_links or srdf, not both")
         return self
 
     @property
@@ -80,12 +87,19 @@ class MachineEntry(Entry):
         Raises:
             SiteError, MachineError: a URDF, a link or a pose that is not usable.
         """
-        machine = self._bare(beside)
+        machine = self._bare(beside).comparing(self._own_links(beside))
         for part in self.carries:
             machine = part.on(machine, beside)
-        return machine.allowing(*self.allowed_contacts).standing_on(
-            *(stand.build() for stand in self.stands_on)
-        )
+        machine = machine.allowing(*self.allowed_contacts)
+        machine = machine.standing_on(*(stand.build() for stand in self.stands_on))
+        machine = machine.near(*(contact.build(beside) for contact in self.contacts))
+        require_protected(machine)
+        return machine
+
+    def _own_links(self, beside: Path) -> OwnLinks | None:
+        if self.own_links is not None:
+            return OwnLinks.from_yaml(expand(self.own_links, beside))
+        return None if self.srdf is None else OwnLinks.from_srdf(expand(self.srdf, beside))
 
     def _bare(self, beside: Path) -> Machine:
         base = None if self.world_from_base is None else np.array(self.world_from_base)

@@ -3,6 +3,7 @@
 from elbowroom.site.machine_notes import notes_of_machine
 from elbowroom.site.recording_entry import SevenScenes
 from elbowroom.site.site import Site
+from elbowroom.site.zone_notes import notes_of_zones
 
 
 def notes_of(site: Site) -> tuple[str, ...]:
@@ -32,6 +33,7 @@ def notes_of(site: Site) -> tuple[str, ...]:
             notes.append(f"links that are not checked: {', '.join(machine.unchecked_links)}")
         notes += notes_of_machine(machine, site)
         notes += machine.allowances
+        notes += notes_of_zones(machine, site.grid())
         if machine.as_seen is not machine:
             seen = ", ".join(link.name for link in machine.links if link.seen is not None)
             notes.append(

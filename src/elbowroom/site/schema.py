@@ -19,6 +19,7 @@ from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, sp
 from elbowroom.site.recording_entry import RecordingEntry, SevenScenes
 from elbowroom.site.room_entry import RoomEntry
 from elbowroom.site.watch_entry import WatchEntry
+from elbowroom.site.zone_entry import ZoneEntry
 
 LARGEST_ROOM_M = 500.0
 Fov = Annotated[Number, Field(gt=10, lt=170)]
@@ -120,6 +121,7 @@ class SiteEntry(Entry):
     cameras: tuple[CameraEntry, ...] = ()
     machine: MachineEntry | None = None
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
+    zones: tuple[ZoneEntry, ...] = ()
     rule: Rule = "three"
     detail: Detail = "pixel"
     witness_angle_deg: Annotated[Number, Field(ge=0, le=MOST_ANGLE_DEG)] = WITNESS_ANGLE_DEG
@@ -170,4 +172,6 @@ class SiteEntry(Entry):
             require_speed(self.people_speed_m_s, self.nothing_moves)
         except InputError as error:
             raise ValueError(str(error)) from None
+        if self.zones and self.machine is None:
+            raise ValueError("zones only with a machine: they say where its links may be")
         return self

@@ -26,6 +26,7 @@ from elbowroom.site.messages import one_line
 from elbowroom.site.paths import existing_folder
 from elbowroom.site.recording_entry import SevenScenes, StamplessFolder
 from elbowroom.site.schema import SimulatedEntry, SiteEntry
+from elbowroom.site.zone_entry import with_zones
 
 SIMULATED_ROOM = Path(__file__).with_name("simulated_room.yaml")
 """The site file of the simulated intervention room, shipped with the package."""
@@ -293,10 +294,11 @@ class Site:
         if given is None:
             return None
         machine = self._blame("machine", lambda: given.build(self.path.parent))
-        if given.free_base is None:
-            return machine
         kind = given.free_base
-        return self._blame("machine", lambda: machine.with_free_base(kind))
+        if kind is not None:
+            fixed = machine
+            machine = self._blame("machine", lambda: fixed.with_free_base(kind))
+        return self._blame(None, lambda: with_zones(machine, self.entry.zones, self.path.parent))
 
     def motions(self, machine: Machine) -> tuple[Motion, ...]:
         """Each joint that has a speed, in both directions, with its braking distance at full speed.

@@ -22,6 +22,7 @@ CAUSE_WORDS: dict[Cause, str] = {
     Cause.BLIND: "blind",
     Cause.OUTSIDE_GRID: "outside the grid",
     Cause.MACHINE: "itself",
+    Cause.KEPT_OUT: "kept out",
     Cause.UNSEEN: "unseen",
     Cause.NONE: "",
     Cause.FAULT: "fault",
