@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from elbowroom.evaluate.cell.cell import Cell, cell_of
-from elbowroom.evaluate.cell.scenes import Drawn, Kind, cell_scenes
+from elbowroom.evaluate.cell.scenes import Kind, cell_scenes
 from elbowroom.evaluate.due import Due, where
 from elbowroom.evaluate.rooms.exact import Contact, ExactTravel
 from elbowroom.evaluate.rooms.scene import Comparison, only, settings_of
@@ -13,10 +13,12 @@ from elbowroom.geometry.margin import Margin
 from elbowroom.motion import Cause, Level, check_motions
 from elbowroom.motion.contacts import pairs_of
 from elbowroom.reconstruct import reconstruct
-from elbowroom.simulate import render
+from elbowroom.simulate import Moment, render
 
 SHOULDER_AND_ELBOW = ("shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint")
 """Of the UR5: what moves its large links."""
+TOUCHING = 1e-6
+"""A pose from which no motion can go farther than this touches something, and is none [m or rad]."""
 COMPARED = (
     *("joint", "direction", "level", "cause", "link", "other_link", "free_travel", "free_travel_unit", "place_m"),
     *("true_level", "true_travel", "true_link", "true_solid", "truly_clear", "milder"),
@@ -60,11 +62,17 @@ def cell_rows(
         PackageError: coal, or the package with the UR5, is not installed.
         InputError: a site that is no cell; see `cell_of` and `cell_scenes`.
     """
-    cell = cell_of(site, voxel_size_m)
-    for number, drawn in enumerate(cell_scenes(cell, poses, seed, tuple(kinds))):
+    cell, done = cell_of(site, voxel_size_m), 0
+    for number, drawn in enumerate(cell_scenes(cell, seed, tuple(kinds))):
+        truths = _truths(cell, drawn.moment)
+        if any(truth.travel < TOUCHING for truth in truths):
+            continue
         said = {"kind": "verdict", "pose": number, "kind_of_pose": drawn.kind, **_settings(cell, noise, seed)}
-        for compared in _judged(cell, drawn, noise, seed + number):
+        for compared in _judged(cell, drawn.moment, truths, noise, seed + number):
             yield said | only(compared.row(), COMPARED)
+        done += 1
+        if done == poses:
+            return
 
 
 def _settings(cell: Cell, noise: bool, seed: int) -> dict[str, object]:
@@ -80,9 +88,23 @@ def _settings(cell: Cell, noise: bool, seed: int) -> dict[str, object]:
     }
 
 
-def _judged(cell: Cell, drawn: Drawn, noise: bool, seed: int) -> Iterator[Comparison]:
+def _truths(cell: Cell, moment: Moment) -> list[Contact]:
+    """How far each motion really can go."""
+    machine, joints = cell.machine, moment.joints
+    exact = ExactTravel(machine, moment.solids)
+    names, pairs = machine.link_names, pairs_of(machine.anywhere)
+    own = [(names[a], names[b]) for a, b in zip(pairs.sampled, pairs.other, strict=True)]
+    return [
+        _earlier(exact.until_contact(joints, motion), exact.until_own_contact(joints, motion, own))
+        for motion in cell.motions
+    ]
+
+
+def _judged(
+    cell: Cell, moment: Moment, truths: Sequence[Contact], noise: bool, seed: int
+) -> Iterator[Comparison]:
     """The verdicts of one moment beside the truth."""
-    moment, machine, terms = drawn.moment, cell.machine, cell.terms
+    machine, terms = cell.machine, cell.terms
     space = reconstruct(
         cell.grid,
         cell.cameras,
@@ -94,16 +116,9 @@ def _judged(cell: Cell, drawn: Drawn, noise: bool, seed: int) -> Iterator[Compar
         margin=terms.margin if noise else Margin(lateral_px=0.0),
         looks=False,
     )
-    truth = ExactTravel(machine, moment.solids)
-    names, pairs = machine.link_names, pairs_of(machine.anywhere)
-    own = [(names[a], names[b]) for a, b in zip(pairs.sampled, pairs.other, strict=True)]
     verdicts = check_motions(space, machine, moment.joints, cell.motions)
-    for motion, verdict in zip(cell.motions, verdicts, strict=True):
-        contacts = (
-            truth.until_contact(moment.joints, motion),
-            truth.until_own_contact(moment.joints, motion, own),
-        )
-        yield Comparison(motion, verdict, _earlier(*contacts))
+    for motion, verdict, truth in zip(cell.motions, verdicts, truths, strict=True):
+        yield Comparison(motion, verdict, truth)
 
 
 def _earlier(one: Contact, other: Contact) -> Contact:

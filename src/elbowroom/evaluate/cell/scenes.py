@@ -1,5 +1,6 @@
 """Moments of a cell: poses of its machine that touch nothing, drawn at random or at work, and a person beside it."""
 
+import itertools
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
@@ -38,12 +39,11 @@ class Drawn(NamedTuple):
     moment: Moment
 
 
-def cell_scenes(cell: Cell, count: int, seed: int, kinds: tuple[Kind, ...]) -> Iterator[Drawn]:
-    """Moments of a cell, kinds of poses in turn; the n-th is the same whatever the count.
+def cell_scenes(cell: Cell, seed: int, kinds: tuple[Kind, ...]) -> Iterator[Drawn]:
+    """Moments of a cell without end, kinds of poses in turn.
 
     Args:
         cell: what is measured.
-        count: how many.
         seed: of poses and people.
         kinds: of poses.
 
@@ -53,7 +53,7 @@ def cell_scenes(cell: Cell, count: int, seed: int, kinds: tuple[Kind, ...]) -> I
     fixed = cell.room.solids
     grid = fine_grid(cell.grid.lower_m, cell.grid.upper_m)
     postures = Postures(cell.machine, Taken.of(grid, fixed, cell.room.surfaces), cell.grid)
-    for number in range(count):
+    for number in itertools.count():
         rng, kind = np.random.default_rng([seed, number]), kinds[number % len(kinds)]
         joints = postures.drawn(rng) if kind == "random" else _at_work(postures, rng)
         links = link_solids(cell.machine, joints)
