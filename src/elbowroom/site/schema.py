@@ -73,7 +73,7 @@ class SimulatedEntry(Entry):
         tuple[Annotated[Number, Field(gt=0, le=2.9)], ...],
         BeforeValidator(lambda given: given if isinstance(given, list | tuple) else [given]),
         Field(min_length=1),
-    ] = (2.4,)
+    ] = (2.4, 0.4)
     resolution: Annotated[Text, Field(pattern=r"^[0-9]{1,5}x[0-9]{1,5}$")] = "640x480"
     field_of_view_deg: Fov = 90.0
     seed: Annotated[Whole, Field(ge=0)] = 1
