@@ -14,6 +14,7 @@ from elbowroom.simulate.solid import Solid
 
 CLEAR_M = 0.05
 """A camera that is moved out of a solid keeps so far from all others but walls, floor and ceiling [m]."""
+USUAL = Walls()
 STEPS = 400
 """Places along the walls that are tried, evenly round."""
 
@@ -69,7 +70,7 @@ def _solid_about(point_in_world: tuple[float, ...], solids: tuple[Solid, ...]) -
 
 
 def hung_clear(
-    cameras: Sequence[DepthCamera], solids: Sequence[Solid], walls: Walls = Walls()
+    cameras: Sequence[DepthCamera], solids: Sequence[Solid], walls: Walls = USUAL
 ) -> tuple[DepthCamera, ...]:
     """The cameras; those that would hang inside a solid, as a cabinet, hang beside it at the same height instead.
 
@@ -106,7 +107,10 @@ def _beside(camera: DepthCamera, solids: Sequence[Solid], walls: Walls) -> NDArr
 
 def _is_clear(place_in_world: NDArray[np.float64], solids: Sequence[Solid]) -> bool:
     """Whether a place is in no solid, and so far from each as a camera needs."""
-    around = [place_in_world, *(place_in_world + step for step in CLEAR_M * np.vstack([np.eye(3), -np.eye(3)]))]
+    around = [
+        place_in_world,
+        *(place_in_world + step for step in CLEAR_M * np.vstack([np.eye(3), -np.eye(3)])),
+    ]
     return all(solid_about(point, solids) is None for point in around)
 
 

@@ -56,7 +56,9 @@ def cell_of(path: Path | None = None, voxel_size_m: float | None = None) -> Cell
     if machine is None or not site.motions(machine):
         raise InputError(f"{site.path}: a cell needs a machine, and speeds of its joints")
     if room is None or site.simulated is not None:
-        raise InputError(f"{site.path}: room: missing; it says what stands in the cell, which is then known exactly")
+        raise InputError(
+            f"{site.path}: room: missing; it says what stands in the cell, which is then known exactly"
+        )
     grid = site.grid(voxel_size_m)
     return Cell(site, grid, cameras_of(site), machine, site.motions(machine), site.terms(), room)
 
@@ -69,7 +71,9 @@ def ur5_on_a_table() -> Site:
     """
     site = Site.load(UR5_ON_A_TABLE)
     assert site.entry.machine is not None
-    machine = site.entry.machine.model_copy(update={"urdf": str(published_urdf(str(site.entry.machine.urdf)))})
+    machine = site.entry.machine.model_copy(
+        update={"urdf": str(published_urdf(str(site.entry.machine.urdf)))}
+    )
     return Site(site.path, site.entry.model_copy(update={"machine": machine}))
 
 

@@ -20,7 +20,17 @@ SHOULDER_AND_ELBOW = ("shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint"
 TOUCHING = 1e-6
 """A pose from which no motion can go farther than this touches something, and is none [m or rad]."""
 COMPARED = (
-    *("joint", "direction", "level", "cause", "link", "other_link", "free_travel", "free_travel_unit", "place_m"),
+    *(
+        "joint",
+        "direction",
+        "level",
+        "cause",
+        "link",
+        "other_link",
+        "free_travel",
+        "free_travel_unit",
+        "place_m",
+    ),
     *("true_level", "true_travel", "true_link", "true_solid", "truly_clear", "milder"),
 )
 """What is kept of a comparison."""
@@ -134,7 +144,10 @@ def cell_summary(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     Args:
         rows: of `cell_rows`.
     """
-    groups = {"measured": _of_joints(rows, SHOULDER_AND_ELBOW), "others": _of_joints(rows, SHOULDER_AND_ELBOW, False)}
+    groups = {
+        "measured": _of_joints(rows, SHOULDER_AND_ELBOW),
+        "others": _of_joints(rows, SHOULDER_AND_ELBOW, False),
+    }
     if not groups["measured"]:
         groups = {}
     groups["all"] = list(rows)

@@ -58,7 +58,8 @@ def cell_scenes(cell: Cell, seed: int, kinds: tuple[Kind, ...]) -> Iterator[Draw
         joints = postures.drawn(rng) if kind == "random" else _at_work(postures, rng)
         links = link_solids(cell.machine, joints)
         yield Drawn(
-            kind, Moment(float(number), (*fixed, *cell.room.surfaces, *_person(cell, links, rng), *links), joints)
+            kind,
+            Moment(float(number), (*fixed, *cell.room.surfaces, *_person(cell, links, rng), *links), joints),
         )
 
 
@@ -79,7 +80,9 @@ def _at_work(postures: Postures, rng: np.random.Generator) -> dict[str, float]:
         joints = {name: float(value) for name, value in zip(names, (pan, lift, elbow, *wrist), strict=True)}
         if postures.trouble(joints) is None:
             return joints
-    raise InputError(f"cell: no pose at work of {postures.machine.name} that touches nothing in {TRIES} tries")
+    raise InputError(
+        f"cell: no pose at work of {postures.machine.name} that touches nothing in {TRIES} tries"
+    )
 
 
 def _person(cell: Cell, links: tuple[Solid, ...], rng: np.random.Generator) -> tuple[Solid, ...]:

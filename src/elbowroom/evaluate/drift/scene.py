@@ -72,7 +72,17 @@ def commissioned(
     """
     room = InterventionRoom(staff=staff)
     hung = wall_cameras(count, HEIGHTS_M, width, height, noise=NOISE_PRESETS.get(noise), optics=RANGE)
-    cameras = hung_clear(hung, room.solids)
+    return commissioned_by(hung_clear(hung, room.solids), room, noise)
+
+
+def commissioned_by(cameras: tuple[DepthCamera, ...], room: InterventionRoom, noise: str) -> Commissioned:
+    """The simulated room with these cameras, commissioned over 14 s.
+
+    Args:
+        cameras: with their noise.
+        room: with the people who walk.
+        noise: what it is called.
+    """
     commissioning = Commissioning(cameras, room.machine, COMMISSION_FRAMES)
     for number in range(COMMISSION_FRAMES):
         moment = room.at(200 + 0.7 * number)

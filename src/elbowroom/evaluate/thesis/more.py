@@ -17,7 +17,7 @@ from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.tables import table_of
 from elbowroom.evaluate.thesis.fig3 import fig3_picture
 from elbowroom.evaluate.thesis.part import Part, about
-from elbowroom.evaluate.thesis.thesis import HEIGHTS_M, c_arm, sensor_cameras
+from elbowroom.evaluate.thesis.thesis import c_arm, sensor_cameras
 from elbowroom.extras import package
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import reconstruct
