@@ -11,7 +11,7 @@ from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, WITNESS_ANGLE_DEG
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Number, Point, Positive, Text, Whole
-from elbowroom.site.machine_entry import JointEntry, MachineEntry
+from elbowroom.site.machine_entry import JointEntry, MachineEntry, OverrideEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.placement_entry import PlacementEntry
 from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, up_to
@@ -119,6 +119,7 @@ class SiteEntry(Entry):
     cameras: tuple[CameraEntry, ...] = ()
     machine: MachineEntry | None = None
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
+    override: OverrideEntry = OverrideEntry()
     rule: Rule = "three"
     detail: Detail = "pixel"
     witness_angle_deg: Annotated[Number, Field(ge=0, le=MOST_ANGLE_DEG)] = WITNESS_ANGLE_DEG
