@@ -41,8 +41,9 @@ def cell(
     from elbowroom.cli.evaluate.shown import as_table, text
     from elbowroom.evaluate.cell.rows import DUE, STOPPING, cell_rows, cell_summary
     from elbowroom.evaluate.due import sentence
+    from elbowroom.evaluate.tables import Cell
 
-    columns = {
+    columns: dict[str, Cell] = {
         "joints": "{joints}",
         "poses": "{kind_of_pose}",
         "motions": "{motions}",

@@ -40,7 +40,11 @@ def verify(
     out: Pictures = None,
     json: JsonFile = None,
 ) -> None:
-    """Say how many cameras see each point of the empty room, whether they are enough, and where they are not."""
+    """Say how many cameras see each point of the empty room, whether they are enough, and where they are not.
+
+    Where the site has a machine and speeds of its joints: also, by link, how much of
+    the space that the motions sweep no camera sees, as swept_z.png and swept_y.png too.
+    """
     from elbowroom.cli.placement.verify import run_verify
 
     required = Required(views=views, angle_deg=angle)

@@ -36,7 +36,7 @@ COMPARED = (
 """What is kept of a comparison."""
 STOPPING = (Cause.SURFACE, Cause.UNSEEN, Cause.BLIND, Cause.MACHINE, Cause.OUTSIDE_GRID)
 """What can end a motion in this experiment."""
-MEASURED = where(joints="measured", kind_of_pose="all")
+MEASURED = where(joints="shoulder and elbow", kind_of_pose="all")
 DUE = (
     Due("stop_where_clear_pct", "≤", 15.0, MEASURED, "of the truly clear motions of shoulder and elbow stop"),
     Due("milder_level", "≤", 0, words="milder than the truth"),
@@ -137,7 +137,7 @@ def _earlier(one: Contact, other: Contact) -> Contact:
 
 
 def cell_summary(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Rows of kind "summary": shoulder and elbow, the other joints, and all of them; by kind of pose, and of all poses.
+    """Rows of kind "summary": shoulder and elbow, the wrist, and all of them; by kind of pose, and of all poses.
 
     Of a machine that has no joints of these names there are rows for all joints alone.
 
@@ -145,10 +145,10 @@ def cell_summary(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
         rows: of `cell_rows`.
     """
     groups = {
-        "measured": _of_joints(rows, SHOULDER_AND_ELBOW),
-        "others": _of_joints(rows, SHOULDER_AND_ELBOW, False),
+        "shoulder and elbow": _of_joints(rows, SHOULDER_AND_ELBOW),
+        "wrist": _of_joints(rows, SHOULDER_AND_ELBOW, False),
     }
-    if not groups["measured"]:
+    if not groups["shoulder and elbow"]:
         groups = {}
     groups["all"] = list(rows)
     kinds = list(dict.fromkeys(row["kind_of_pose"] for row in rows))
