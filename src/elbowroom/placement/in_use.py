@@ -2,25 +2,33 @@
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
+from elbowroom.geometry.bits import Words
+from elbowroom.motion import blocks_in_reach
 from elbowroom.placement.candidates import Candidate
 from elbowroom.placement.coarse import with_joined_pixels
 from elbowroom.placement.optimisation import Goal, Search, free_candidates, named, places_of, step_rows
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera
 from elbowroom.placement.solver.run import Course, in_scenes
 from elbowroom.placement.solver.scene_layout import SceneModel
+from elbowroom.placement.swept.swept import swept_by_link
 from elbowroom.simulate import Moment, true_occupancy
 
 COARSE_VOXEL_M, COARSE_PX = 0.1, 96
 """Candidates are carved at no less than this edge, with pixels joined as long as so many stay across."""
+SWEPT_VOXEL_M = 0.05
+"""The same for what motions sweep: links are thinner than rooms."""
+NEAR_COUNTS = 3
+"""What a motion sweeps within its braking distance counts so many times: there it is stopped."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,6 +83,10 @@ def optimise_in_use(
     Every candidate is carved alone, coarsely; what several know together follows from their planes by rule `three`, as
     `merge` and `resolve` have it. Judge the result by `rehearse`, with other scenes and in full detail.
 
+    With `goal.by_motions`, what is counted is the truly free space that the motions sweep from the machine's pose in
+    each scene, as far as they are looked at; what they sweep within their braking distance counts `NEAR_COUNTS` times,
+    since it is there that a voxel which is not found free stops a motion for nothing.
+
     Args:
         candidates: what may be bought.
         scenes: moments of the room in use.
@@ -85,7 +97,8 @@ def optimise_in_use(
         progress: called with what is being done.
 
     Raises:
-        InputError: no candidates, no scenes, another rule, or a share that all candidates together do not find.
+        InputError: no candidates, no scenes, another rule, no motions to count by, or a share that all candidates
+            together do not find.
     """
     begun = time.perf_counter()
     if settings.terms.rule != "three":
@@ -94,6 +107,10 @@ def optimise_in_use(
         )
     if not scenes:
         raise InputError("placement: no scene, at least one is needed")
+    if goal.by_motions and (settings.machine is None or not settings.motions):
+        raise InputError(
+            "placement: no machine with speeds of its joints, so no motions to place cameras for"
+        )
     free = free_candidates(candidates, existing)
     model = _model(free, existing, scenes, settings, goal, search.seed, progress)
     share = None if goal.cameras is not None else goal.share_pct / 100
@@ -126,8 +143,9 @@ def _model(
     seed: int,
     progress: Progress,
 ) -> SceneModel:
+    finest = SWEPT_VOXEL_M if goal.by_motions else COARSE_VOXEL_M
     grid = VoxelGrid.covering(
-        settings.grid.lower_m, settings.grid.upper_m, max(COARSE_VOXEL_M, settings.grid.voxel_size_m)
+        settings.grid.lower_m, settings.grid.upper_m, max(finest, settings.grid.voxel_size_m)
     )
     coarse = replace(settings, grid=grid)
     everything = [*existing, *(candidate.camera for candidate in free)]
@@ -138,11 +156,13 @@ def _model(
     through, disputed, truly = [], [], []
     for number, moment in enumerate(scenes):
         progress(f"scene {number + 1} of {len(scenes)}: carving {len(cameras)} candidates")
-        parts = evidence_by_camera(cameras, moment, coarse, seed + number)
-        through.append(np.array([part.through[0] for part in parts]))
-        disputed.append(np.array([part.disputed for part in parts]))
-        truth = true_occupancy(grid, moment)
-        truly.append(bits.pack(~truth.occupied & ~truth.machine, grid))
+        planes, focus = _counted(moment, coarse, goal.by_motions)
+        parts = evidence_by_camera(cameras, moment, coarse, seed + number, focus)
+        for plane in planes:
+            words = np.flatnonzero(plane)
+            through.append(np.array([part.through[0][words] for part in parts]))
+            disputed.append(np.array([part.disputed[words] for part in parts]))
+            truly.append(plane[words])
     plane = np.concatenate(truly)
     return SceneModel(
         np.concatenate(through, axis=1),
@@ -153,3 +173,25 @@ def _model(
         np.array([*[0.0] * len(existing), *(c.price if goal.by_price else 1.0 for c in free)]),
         tuple(range(len(existing))),
     )
+
+
+def _counted(
+    moment: Moment, settings: Settings, by_motions: bool
+) -> tuple[list[Words], NDArray[np.bool_] | None]:
+    """Planes of the voxels of a scene that count, each once for every plane that it is in, and the blocks to ask."""
+    grid, machine = settings.grid, settings.machine
+    truth = true_occupancy(grid, moment)
+    free = bits.pack(~truth.occupied & ~truth.machine, grid)
+    if not by_motions or machine is None:
+        return [free], None
+    near = [replace(motion, reach=motion.braking_distance) for motion in settings.motions]
+    swept, close = (
+        bits.pack(_union(swept_by_link(grid, machine, moment.joints, motions), grid), grid)
+        for motions in (settings.motions, near)
+    )
+    focus = blocks_in_reach(grid, machine, moment.joints, settings.motions)
+    return [free & swept, *[free & close] * (NEAR_COUNTS - 1)], focus
+
+
+def _union(by_link: Mapping[str, NDArray[np.bool_]], grid: VoxelGrid) -> NDArray[np.bool_]:
+    return np.asarray(np.logical_or.reduce([np.zeros(grid.shape, dtype=np.bool_), *by_link.values()]))

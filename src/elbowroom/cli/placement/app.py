@@ -19,6 +19,9 @@ from elbowroom.cli.placement.options import (
     Views,
 )
 
+SWEPT_SCENES = 5
+"""By so many scenes `optimise --motions` judges unless it is told."""
+
 placement_app = typer.Typer(
     help="Where to put the cameras: verify a placement, sweep, optimise, simulate.",
     epilog="Begin with: elbowroom placement verify my_room.yaml --out pictures",
@@ -119,12 +122,26 @@ def optimise(
         bool, typer.Option("--price", help="The cheapest layout, not the one of fewest cameras.")
     ] = False,
     keep: Annotated[bool, typer.Option("--keep", help="Keep the site's cameras, and add to them.")] = False,
+    motions: Annotated[
+        bool,
+        typer.Option(
+            "--motions",
+            help="Place them for what the machine's motions sweep in random scenes, so that few stop for "
+            "nothing.",
+        ),
+    ] = False,
     scenes: Annotated[
         int,
         typer.Option(
-            min=0, metavar="COUNT", help="Judge by the free space found in so many random scenes instead."
+            min=0,
+            metavar="COUNT",
+            help="Judge by the free space found in so many random scenes instead. With --motions: 5 if not given.",
         ),
     ] = 0,
+    people: Annotated[
+        int, typer.Option(min=0, metavar="COUNT", help="In scenes of a room that is not the simulated one.")
+    ] = 3,
+    table: Annotated[bool, typer.Option(help="Whether such scenes get a table.")] = True,
     seconds: Annotated[float, typer.Option(metavar="SECONDS", help="How long to look.")] = 60.0,
     points: Annotated[
         int, typer.Option(min=1, metavar="COUNT", help="Points that the solver looks at.")
@@ -138,7 +155,13 @@ def optimise(
     out: Pictures = None,
     json: JsonFile = None,
 ) -> None:
-    """Find few or cheap cameras that see the empty room well enough, or the best places for a number of them."""
+    """Find few or cheap cameras that see the empty room well enough, or the best places for a number of them.
+
+    With --scenes: such that find most of the free space of random scenes. With
+    --motions: such that find what the machine's motions sweep there, most of all
+    within their braking distances, where a voxel that is not found stops them; it
+    says how many motions are stopped for nothing with them, and with the site's own.
+    """
     from elbowroom.cli.placement.in_use import run_in_use
     from elbowroom.cli.placement.optimise import run_optimise
 
@@ -148,7 +171,10 @@ def optimise(
         cameras=cameras,
         by_price=price,
         keep=keep,
-        scenes=scenes,
+        motions=motions,
+        scenes=scenes or (SWEPT_SCENES if motions else 0),
+        people=people,
+        table=table,
         seconds=seconds,
         points=points,
         required=Required(views=views, angle_deg=angle),
@@ -156,7 +182,7 @@ def optimise(
         write=write,
         out=out,
     )
-    (run_in_use if scenes else run_optimise)(options, json)
+    (run_in_use if options.scenes else run_optimise)(options, json)
 
 
 @placement_app.command(

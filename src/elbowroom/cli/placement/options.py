@@ -69,7 +69,10 @@ class OptimiseOptions:
     cameras: int | None
     by_price: bool
     keep: bool
+    motions: bool
     scenes: int
+    people: int
+    table: bool
     seconds: float
     points: int
     required: Required
