@@ -20,15 +20,16 @@ from elbowroom.placement.optimisation import Goal, Search, free_candidates, name
 from elbowroom.placement.rehearsal import Settings, evidence_by_camera
 from elbowroom.placement.solver.run import Course, in_scenes
 from elbowroom.placement.solver.scene_layout import SceneModel
+from elbowroom.placement.solver.swept_layout import SweptModel
 from elbowroom.placement.swept.swept import swept_by_link
 from elbowroom.simulate import Moment, true_occupancy
 
 COARSE_VOXEL_M, COARSE_PX = 0.1, 96
 """Candidates are carved at no less than this edge, with pixels joined as long as so many stay across."""
-SWEPT_VOXEL_M = 0.05
-"""The same for what motions sweep: links are thinner than rooms."""
-NEAR_COUNTS = 3
-"""What a motion sweeps within its braking distance counts so many times: there it is stopped."""
+SWEPT_PX = 200
+"""For what motions sweep, candidates are carved in the site's own voxels, with so many pixels across at least."""
+WHOLE_WAY = 0.25
+"""A motion's whole way is worth this share of what its braking distance is worth: only there it is stopped."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,9 +84,10 @@ def optimise_in_use(
     Every candidate is carved alone, coarsely; what several know together follows from their planes by rule `three`, as
     `merge` and `resolve` have it. Judge the result by `rehearse`, with other scenes and in full detail.
 
-    With `goal.by_motions`, what is counted is the truly free space that the motions sweep from the machine's pose in
-    each scene, as far as they are looked at; what they sweep within their braking distance counts `NEAR_COUNTS` times,
-    since it is there that a voxel which is not found free stops a motion for nothing.
+    With `goal.by_motions`, motions count instead, from the machine's pose in each scene: each is worth 1 if all of the
+    truly free space that it sweeps within its braking distance is found, a half if `FEW` voxels of it are not, and so
+    on down: a voxel that is not found there stops it for nothing. Its whole way counts in the same manner, `WHOLE_WAY`
+    times as much. Candidates are carved in the site's own voxels then, where motions can go.
 
     Args:
         candidates: what may be bought.
@@ -143,14 +145,10 @@ def _model(
     seed: int,
     progress: Progress,
 ) -> SceneModel:
-    finest = SWEPT_VOXEL_M if goal.by_motions else COARSE_VOXEL_M
-    grid = VoxelGrid.covering(
-        settings.grid.lower_m, settings.grid.upper_m, max(finest, settings.grid.voxel_size_m)
-    )
-    coarse = replace(settings, grid=grid)
+    coarse, least_px = (settings, SWEPT_PX) if goal.by_motions else (_coarse(settings), COARSE_PX)
     everything = [*existing, *(candidate.camera for candidate in free)]
     cameras = [
-        replace(with_joined_pixels(camera, COARSE_PX), name=f"{number}")
+        replace(with_joined_pixels(camera, least_px), name=f"{number}")
         for number, camera in enumerate(everything)
     ]
     through, disputed, truly = [], [], []
@@ -159,12 +157,12 @@ def _model(
         planes, focus = _counted(moment, coarse, goal.by_motions)
         parts = evidence_by_camera(cameras, moment, coarse, seed + number, focus)
         for plane in planes:
-            words = np.flatnonzero(plane)
+            words = np.flatnonzero(plane) if goal.by_motions else np.arange(len(plane))
             through.append(np.array([part.through[0][words] for part in parts]))
             disputed.append(np.array([part.disputed[words] for part in parts]))
             truly.append(plane[words])
     plane = np.concatenate(truly)
-    return SceneModel(
+    common = (
         np.concatenate(through, axis=1),
         np.concatenate(disputed, axis=1),
         plane,
@@ -173,24 +171,34 @@ def _model(
         np.array([*[0.0] * len(existing), *(c.price if goal.by_price else 1.0 for c in free)]),
         tuple(range(len(existing))),
     )
+    if not goal.by_motions:
+        return SceneModel(*common)
+    start = np.concatenate([[0], np.cumsum([len(words) for words in truly])]).astype(np.int64)
+    return SweptModel(*common, start, np.tile([1.0, WHOLE_WAY], len(truly) // 2))
+
+
+def _coarse(settings: Settings) -> Settings:
+    """The settings with voxels of `COARSE_VOXEL_M` at least."""
+    grid = settings.grid
+    edge = max(COARSE_VOXEL_M, grid.voxel_size_m)
+    return replace(settings, grid=VoxelGrid.covering(grid.lower_m, grid.upper_m, edge))
 
 
 def _counted(
     moment: Moment, settings: Settings, by_motions: bool
 ) -> tuple[list[Words], NDArray[np.bool_] | None]:
-    """Planes of the voxels of a scene that count, each once for every plane that it is in, and the blocks to ask."""
+    """Planes of the truly free voxels that count, and the blocks to ask: of each motion its braking distance, its way."""
     grid, machine = settings.grid, settings.machine
     truth = true_occupancy(grid, moment)
     free = bits.pack(~truth.occupied & ~truth.machine, grid)
     if not by_motions or machine is None:
         return [free], None
-    near = [replace(motion, reach=motion.braking_distance) for motion in settings.motions]
-    swept, close = (
-        bits.pack(_union(swept_by_link(grid, machine, moment.joints, motions), grid), grid)
-        for motions in (settings.motions, near)
-    )
-    focus = blocks_in_reach(grid, machine, moment.joints, settings.motions)
-    return [free & swept, *[free & close] * (NEAR_COUNTS - 1)], focus
+    planes = []
+    for motion in settings.motions:
+        for each in (replace(motion, reach=motion.braking_distance), motion):
+            swept = swept_by_link(grid, machine, moment.joints, [each])
+            planes.append(free & bits.pack(_union(swept, grid), grid))
+    return planes, blocks_in_reach(grid, machine, moment.joints, settings.motions)
 
 
 def _union(by_link: Mapping[str, NDArray[np.bool_]], grid: VoxelGrid) -> NDArray[np.bool_]:

@@ -9,17 +9,21 @@ from elbowroom.cli.options import JsonFile, SitePath, VoxelSize
 from elbowroom.cli.placement.options import (
     Angle,
     CapabilityOptions,
+    Motions,
     OptimiseOptions,
     OptionalSite,
+    People,
     Pictures,
     Required,
+    Scenes,
     SimulateOptions,
     SweepOptions,
     VerifyOptions,
     Views,
+    WithTable,
 )
 
-SWEPT_SCENES = 5
+SWEPT_SCENES = 8
 """By so many scenes `optimise --motions` judges unless it is told."""
 
 placement_app = typer.Typer(
@@ -122,26 +126,10 @@ def optimise(
         bool, typer.Option("--price", help="The cheapest layout, not the one of fewest cameras.")
     ] = False,
     keep: Annotated[bool, typer.Option("--keep", help="Keep the site's cameras, and add to them.")] = False,
-    motions: Annotated[
-        bool,
-        typer.Option(
-            "--motions",
-            help="Place them for what the machine's motions sweep in random scenes, so that few stop for "
-            "nothing.",
-        ),
-    ] = False,
-    scenes: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            metavar="COUNT",
-            help="Judge by the free space found in so many random scenes instead. With --motions: 5 if not given.",
-        ),
-    ] = 0,
-    people: Annotated[
-        int, typer.Option(min=0, metavar="COUNT", help="In scenes of a room that is not the simulated one.")
-    ] = 3,
-    table: Annotated[bool, typer.Option(help="Whether such scenes get a table.")] = True,
+    motions: Motions = False,
+    scenes: Scenes = 0,
+    people: People = 3,
+    table: WithTable = True,
     seconds: Annotated[float, typer.Option(metavar="SECONDS", help="How long to look.")] = 60.0,
     points: Annotated[
         int, typer.Option(min=1, metavar="COUNT", help="Points that the solver looks at.")
@@ -194,10 +182,8 @@ def simulate(
         typer.Argument(metavar="SITE", help="A site file (YAML). Default: the simulated room."),
     ] = None,
     scenes: Annotated[int, typer.Option(min=1, metavar="COUNT", help="How many random scenes.")] = 10,
-    people: Annotated[
-        int, typer.Option(min=0, metavar="COUNT", help="In a room that is not the simulated one.")
-    ] = 3,
-    table: Annotated[bool, typer.Option(help="Whether such a room gets a table.")] = True,
+    people: People = 3,
+    table: WithTable = True,
     voxel_size: VoxelSize = None,
     by_camera: Annotated[bool, typer.Option(help="Also what each camera contributes.")] = True,
     seed: Annotated[int, typer.Option(min=0, help="Of scenes and noise.")] = 1,
