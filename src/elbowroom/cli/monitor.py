@@ -65,8 +65,8 @@ def monitor(
     """Watch a room and say, per joint and direction, how far the machine may go.
 
     Without SITE: a simulated intervention room, where people walk and a C-arm
-    moves, before perfect cameras; --noise tof --resolution 640x480 shows it with
-    real ones. A site with a recording plays it once. Without a machine, or without
+    moves, before 21 small time-of-flight cameras at 2.4 and 0.4 m in turn; --noise
+    exact shows it before perfect ones. A site with a recording plays it once. Without a machine, or without
     speeds of its joints, it says what is free. Ctrl-C ends with a summary.
 
     Cameras that were commissioned (`elbowroom calibrate commission`) are watched:

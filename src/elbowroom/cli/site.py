@@ -10,6 +10,7 @@ from elbowroom.cli.options import JsonFile, SitePath
 from elbowroom.cli.site_mask import mask
 from elbowroom.cli.site_moment import pose_to_draw, tight_notes
 from elbowroom.cli.site_own_links import own_links
+from elbowroom.cli.swept import say_swept, swept_row
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
@@ -69,6 +70,9 @@ def check(
     A recording that is not there yet is a note. Where there is one, or a key room,
     the motions are tried at its first moment: a link beside which a surface lies
     within the cameras' own margins is named, since it would be stopped for ever.
+
+    Of the space that the motions sweep it is said, by link, how much no camera sees,
+    whether all images end below or above it, and where one more camera would help.
     """
     from elbowroom.site import Site
 
@@ -135,6 +139,7 @@ def _findings(site: "Site") -> dict[str, Any]:
         "images": images,
         "times": times,
         **memory_of(grid, cameras).row(),
+        **swept_row(site)[1],
         "notes": notes,
         "findings": [asdict(finding) for finding in (*found, *_of_the_model(site, found))],
     }
@@ -190,6 +195,7 @@ def _say(row: dict[str, Any]) -> None:
         print(f"{key:9} {text}")
         if key == "recording" and row["times"] is not None:
             print("".join(f"times     {span}\n" for span in row["times"]["spans"]), end="")
+    say_swept(row)
     for note in row["notes"]:
         print(f"note      {note}")
     for finding in row["findings"]:

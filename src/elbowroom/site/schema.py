@@ -12,7 +12,7 @@ from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, PEOPLE_SPEED_M_S, WITNES
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text, Whole
-from elbowroom.site.machine_entry import JointEntry, MachineEntry
+from elbowroom.site.machine_entry import JointEntry, MachineEntry, OverrideEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.placement_entry import PlacementEntry
 from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, speed_of_people, up_to
@@ -75,7 +75,7 @@ class SimulatedEntry(Entry):
         tuple[Annotated[Number, Field(gt=0, le=2.9)], ...],
         BeforeValidator(lambda given: given if isinstance(given, list | tuple) else [given]),
         Field(min_length=1),
-    ] = (2.4,)
+    ] = (2.4, 0.4)
     resolution: Annotated[Text, Field(pattern=r"^[0-9]{1,5}x[0-9]{1,5}$")] = "640x480"
     field_of_view_deg: Fov = 90.0
     seed: Annotated[Whole, Field(ge=0)] = 1
@@ -122,6 +122,7 @@ class SiteEntry(Entry):
     machine: MachineEntry | None = None
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
     zones: tuple[ZoneEntry, ...] = ()
+    override: OverrideEntry = OverrideEntry()
     rule: Rule = "three"
     detail: Detail = "pixel"
     witness_angle_deg: Annotated[Number, Field(ge=0, le=MOST_ANGLE_DEG)] = WITNESS_ANGLE_DEG

@@ -16,7 +16,7 @@ from elbowroom.errors import CameraError, GridError, InputError, PoseWarning, Si
 from elbowroom.files.yaml_file import read_yaml
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
-from elbowroom.motion import Motion
+from elbowroom.motion import Motion, Override
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.sensing import Margin
 from elbowroom.site import seven_scenes
@@ -311,6 +311,19 @@ class Site:
                 joint.
         """
         return self._blame(None, lambda: motions_of(machine, self.entry.joints))
+
+    def override(self, machine: Machine) -> Override:
+        """How fast an operator who holds on may creep where nobody sees.
+
+        Args:
+            machine: the machine of this site.
+
+        Raises:
+            SiteError: as `motions`.
+        """
+        joints = self.entry.joints
+        speeds = {name: joints[name].speed_of(machine.joint(name)) for name in joints}
+        return self.entry.override.build(speeds)
 
     def recording_folder(self) -> Path:
         """The folder of the recording.

@@ -41,7 +41,7 @@ def poses_rows(
         voxel_size_m: edge of a voxel [m].
         poses: how many moments, each with the machine in a random pose that touches nothing.
         cameras, size, heights_m: along the walls, at these heights in turn [m]. From 2.4 m alone no camera sees what
-            lies under the machine's own overhangs. Those that would hang inside a cabinet hang highest.
+            lies under the machine's own overhangs. Those that would hang inside a cabinet hang beside it.
         detail: of the carve.
         seed: of moments and poses.
 
@@ -53,7 +53,7 @@ def poses_rows(
     """
     room = InterventionRoom()
     motions = room_motions(room.machine)
-    views = hung_clear(wall_cameras(cameras, heights_m, size=size), room.at(0.0).solids, max(heights_m))
+    views = hung_clear(wall_cameras(cameras, heights_m, size=size), room.at(0.0).static_solids)
     grid = room_grid(voxel_size_m)
     rng = np.random.default_rng(seed)
     said = {"voxel_size_m": voxel_size_m, "detail": detail, "seed": seed, **cameras_row(views)}

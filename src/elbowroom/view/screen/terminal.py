@@ -18,10 +18,10 @@ from elbowroom.sources import Room
 from elbowroom.view.screen.run_log import RunLog
 from elbowroom.view.screen.watched import Watched, watched_of
 from elbowroom.view.screen.words import (
-    CAUSE_WORDS,
     LEVEL_WORDS,
     MARKS,
     NOT_CERTIFIED,
+    cause_text,
     counts_text,
     health_text,
     place_first,
@@ -238,7 +238,7 @@ class TerminalView:
         return [
             *cells,
             Text.assemble((filled, BAR_STYLES[level]), (rest, "dim")),
-            Text("joint limit" if at_limit else CAUSE_WORDS[verdict.cause]),
+            Text("joint limit" if at_limit else cause_text(verdict)),
             Text(place_text(verdict) if wide else place_first(verdict), "dim"),
         ]
 
