@@ -23,7 +23,6 @@ def looks_tables(rows: Sequence[Row]) -> list[str]:
                 "refused": of("refused", due=LOOKS),
                 "warned of": of("warned"),
                 "warned of [%]": of("warned_pct", 2, due=LOOKS),
-                "a camera takes, median ms": of("median_ms_a_camera", 2),
             },
         ),
         "",
@@ -68,7 +67,6 @@ def contradiction_tables(rows: Sequence[Row]) -> list[str]:
                 "refused": of("stopped", due=CONTRADICTIONS["right"]),
                 "warned of": of("warned"),
                 "warned of [%]": of("warned_pct", 2, due=CONTRADICTIONS["right"]),
-                "the first look, median ms": of("first_median_ms", 1),
             },
         ),
     ]

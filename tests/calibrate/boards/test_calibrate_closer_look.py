@@ -1,15 +1,20 @@
 """Images that do not show the board as it is described: what is believed of them instead."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from elbowroom.calibrate import Board
 from elbowroom.calibrate.boards.closer_look import Looks, closer_look
 from elbowroom.calibrate.boards.trouble import Fault, Trouble
+from elbowroom.geometry import DepthCamera, Intrinsics
+from elbowroom.sources.layouts.image import Image
 
 BOARD = Board(5, 4, 0.18, "cut_out", 0.04, marked=True)
-WORK = [(SimpleNamespace(camera=SimpleNamespace(name="a"), scale_m=0.001), pose) for pose in range(40)]
+CAMERA = DepthCamera("a", 64, 48, np.eye(4), Intrinsics(32.0, 32.0, 31.5, 23.5))
+WORK = [(Image(CAMERA, None, Path("none.png"), 0.001), pose) for pose in range(40)]
 
 
 def looks(counts, poses):
@@ -36,5 +41,5 @@ def test_other_counts_are_said_where_the_images_show_them():
 
 @pytest.mark.parametrize(("share", "is_said"), [(0.0, True), (0.2, False), (0.5, False)])
 def test_a_few_misread_images_say_nothing_where_the_board_is_seen_as_described_elsewhere(share, is_said):
-    said = closer_look(BOARD, WORK, looks((6, 3), (0, 10)), others_see_it=False, seen_share=share)
+    said = closer_look(BOARD, WORK, looks((6, 3), (0, 39)), others_see_it=False, seen_share=share)
     assert bool(said) == is_said
