@@ -9,8 +9,10 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid, bits, parallel
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.noise import NoiseModel
-from elbowroom.reconstruct import LAWFUL, carve, merge, reconstruct
+from elbowroom.reconstruct import LAWFUL, merge, reconstruct
 from elbowroom.reconstruct.ages import aged_m
+from elbowroom.reconstruct.carve import carve_aged
+from elbowroom.reconstruct.point_report import Sight
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.sensing import DepthFrame, Snapshot
 from reference import reconstruct_scenes as scenes
@@ -53,7 +55,7 @@ def test_an_aged_claim_is_each_grown_voxel_against_all_pixels(seed):
     images = images_of(grid, cameras, frames, margin)
     through = 0
     for camera, image, frame, far_m in zip(cameras, images, frames, (0.004, 0.03, 0.15), strict=True):
-        aged = carve(grid, [camera], [frame], margin=margin, aged_m={camera.name: far_m})
+        aged = carve_aged(grid, [camera], [frame], {camera.name: far_m}, margin=margin)
         says = says_of(
             grid, [image], lambda im, centre, edge, far_m=far_m: sees_through_grown(im, centre, edge, far_m)
         )[0].astype(bool)
@@ -69,7 +71,7 @@ def test_what_still_counts_as_seen_through_is_clear_of_all_that_may_have_come(de
     """By brute force: points of the voxel grown by the ball, each against the pixel that it falls into."""
     rng, grid, cameras, frames = a_room(seed)
     image = images_of(grid, cameras[:1], frames[:1], Margin(lateral_px=0.0))[0]
-    aged = carve(
+    aged = carve_aged(
         grid,
         cameras[:1],
         frames[:1],
@@ -88,7 +90,7 @@ def test_little_more_than_what_must_be_lost_is_lost():
     for seed in range(30):
         _, grid, cameras, frames = a_room(2 * seed, kind="planar")
         (image,) = images_of(grid, cameras[:1], frames[:1], Margin(lateral_px=0.0))
-        aged = carve(
+        aged = carve_aged(
             grid, cameras[:1], frames[:1], margin=Margin(lateral_px=0.0), aged_m={cameras[0].name: 0.1}
         )
         seen = bits.unpack(aged.through[0], grid)
@@ -113,8 +115,10 @@ def test_an_older_frame_only_frees_less(detail, rule, seed, ages, more):
     after = reconstruct(grid, cameras, old(frames, older), **same)
     assert not (after.free & ~before.free).any()
     # who disputes still does
-    np.testing.assert_array_equal(after.disputed_words | ~after.blocked_words | before.free_words,
-                                  before.disputed_words | ~after.blocked_words | before.free_words)
+    np.testing.assert_array_equal(
+        after.disputed_words | ~after.blocked_words | before.free_words,
+        before.disputed_words | ~after.blocked_words | before.free_words,
+    )
 
 
 @pytest.mark.parametrize("detail", ["footprint", "pixel"])
@@ -124,9 +128,7 @@ def test_what_is_free_with_ages_is_free_without(detail, seed, ages):
     _, grid, cameras, frames = a_room(seed)
     same = {"detail": detail, "now_ns": NOW, "looks": False}
     aged = reconstruct(grid, cameras, old(frames, ages), **same)
-    still = reconstruct(
-        grid, cameras, old(frames, ages), people_speed_m_s=0.0, nothing_moves=True, **same
-    )
+    still = reconstruct(grid, cameras, old(frames, ages), people_speed_m_s=0.0, nothing_moves=True, **same)
     of_the_moment = reconstruct(grid, cameras, old(frames, [0] * 6), **same)
     assert not (aged.free & ~still.free).any()
     np.testing.assert_array_equal(still.free_words, of_the_moment.free_words)
@@ -134,20 +136,22 @@ def test_what_is_free_with_ages_is_free_without(detail, seed, ages):
 
 
 @FEW
-@given(seed=rooms, ages=ages_ms, detail=st.sampled_from(["footprint", "pixel", "point"]), complete=st.booleans())
+@given(
+    seed=rooms, ages=ages_ms, detail=st.sampled_from(["footprint", "pixel", "point"]), complete=st.booleans()
+)
 def test_ages_in_any_order_and_grouping_leave_the_same_bits(seed, ages, detail, complete):
     rng, grid, cameras, frames = a_room(seed)
     far = {camera.name: SPEED * age / 1e3 for camera, age in zip(cameras, ages, strict=False)}
     same = {"detail": detail, "complete": complete, "aged_m": far}
     with parallel.threads(1):
-        whole = carve(grid, cameras, frames, **same)
+        whole = carve_aged(grid, cameras, frames, **same)
     order = rng.permutation(len(cameras))
     split = int(rng.integers(len(cameras) + 1))
     with parallel.threads(3):
-        again = carve(grid, [cameras[n] for n in order], frames[::-1], **same)
+        again = carve_aged(grid, [cameras[n] for n in order], frames[::-1], **same)
     groups = [order[:split], order[split:]]
     merged = merge(
-        [carve(grid, [cameras[n] for n in g], [frames[n] for n in g], **same) for g in groups if len(g)]
+        [carve_aged(grid, [cameras[n] for n in g], [frames[n] for n in g], **same) for g in groups if len(g)]
     )
     for other in (again, merged):
         np.testing.assert_array_equal(other.planes, whole.planes)
@@ -189,7 +193,7 @@ def test_what_pixel_detail_sees_of_the_moment_is_the_limit_of_what_it_sees_a_lit
     frames = [scenes.frame_of(cameras[0], scenes.Scene(balls=np.array([[0.8, 0.0, 0.0, 0.15]])))]
     images = images_of(grid, cameras, frames, Margin())
     says = says_of(grid, images, say_of_voxel)[0] & THROUGH
-    barely = carve(grid, cameras[:1], frames[:1], aged_m={cameras[0].name: 1e-9})
+    barely = carve_aged(grid, cameras[:1], frames[:1], aged_m={cameras[0].name: 1e-9})
     np.testing.assert_array_equal(bits.unpack(barely.through[0], grid), says.astype(bool))
     assert says.any()
 
@@ -205,7 +209,9 @@ def test_the_age_counts_from_exposure_to_the_end_of_the_pass_with_the_clocks_bou
 
 
 def test_without_the_time_now_the_newest_frame_is_the_moment():
-    frames = [DepthFrame(name, stamp, np.ones((4, 4), np.float32)) for name, stamp in (("a", 0), ("b", 10**7))]
+    frames = [
+        DepthFrame(name, stamp, np.ones((4, 4), np.float32)) for name, stamp in (("a", 0), ("b", 10**7))
+    ]
     assert aged_m([], Snapshot(tuple(frames)), Terms()) == {"a": pytest.approx(0.016), "b": 0.0}
     stampless = DepthFrame("a", None, np.ones((4, 4), np.float32))
     assert aged_m([], Snapshot((stampless,)), Terms()) == {"a": 0.0}
@@ -224,3 +230,13 @@ def test_without_the_time_now_the_newest_frame_is_the_moment():
 def test_a_speed_of_nobody_needs_somebodys_word(more, match):
     with pytest.raises(InputError, match=match):
         Terms(**more)
+
+
+def test_a_voxel_that_was_seen_through_too_long_ago_is_explained_so():
+    grid = VoxelGrid((0.5, -0.2, -0.2), (4, 4, 4), 0.1)
+    camera = scenes.camera_at("c", (-0.4, 0.0, 0.0), (1, 0, 0))
+    frame = scenes.frame_of(camera, scenes.Scene(boxes=np.array([[0.95, -1, -1, 1.2, 1, 1]])), NOW)
+    place = grid.centre_of((3, 1, 1))
+    (now,) = reconstruct(grid, [camera], [frame], now_ns=NOW, looks=False).explain(place).cameras
+    (later,) = reconstruct(grid, [camera], [frame], now_ns=NOW + 10**8, looks=False).explain(place).cameras
+    assert (now.sight, later.sight) == (Sight.THROUGH, Sight.AGED)

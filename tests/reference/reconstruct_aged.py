@@ -50,7 +50,7 @@ def sees_through_grown(image, centre, edge, far_m):
 
 
 def within_rims(in_camera, pixels, wide, grown):
-    """Which pixels, widened, are on the inner side of all planes through the camera and an edge that bounds the voxel."""
+    """Which pixels, widened, are within all planes through the camera and an edge that bounds the voxel."""
     (u, v), (wide_m, lens) = pixels, grown
     meets = np.ones(u.shape, dtype=bool)
     x, y = (u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy

@@ -64,7 +64,7 @@ class Cycle:
         """Judges all motions, from where the joints are now, by the newest frames.
 
         It does not raise: a fault of any kind is a stop for every motion, with the reason beside it. So is a pass at
-        whose end a frame that it used is past its age.
+        whose end a frame that it used is past its age, and one that took longer than `Terms.pass_ns`.
 
         Args:
             snapshot: what came.
@@ -105,7 +105,7 @@ class Cycle:
 
     def _late(self, snapshot: Snapshot, begun_ns: int) -> str | None:
         """What is said where a frame that was used has come of age since its pass began."""
-        return lateness(snapshot, self.terms.max_age_ns, (self.clock_ns() - begun_ns) / 1e6)
+        return lateness(snapshot, self.terms, (self.clock_ns() - begun_ns) / 1e6)
 
     def _space_of(self, snapshot: Snapshot, stage_ms: dict[str, float]) -> FreeSpace:
         reach = None
@@ -160,14 +160,18 @@ def failure(
     return CycleResult(sequence, now_ns, None, verdicts, stage_ms or {}, oldest_ms, fault)
 
 
-def lateness(snapshot: Snapshot, limit_ns: int | None, took_ms: float) -> str | None:
-    """What is said where a frame that was used has come of age since its pass began; None: none has.
+def lateness(snapshot: Snapshot, terms: Terms, took_ms: float) -> str | None:
+    """What is said where a frame that was used has come of age since its pass began, or the pass took longer than was
+    assumed to; None: neither.
 
     Args:
         snapshot: of the pass.
-        limit_ns: from which age on a frame counts no more [ns]; None: there is no limit.
+        terms: by which it was judged.
         took_ms: how long the pass took [ms].
     """
+    if terms.pass_ns and took_ms > terms.pass_ns / 1e6:
+        return f"the pass took {took_ms:.0f} ms, and space was judged for {terms.pass_ns / 1e6:g} ms (pass_time_ms)"
+    limit_ns = terms.max_age_ns
     if limit_ns is None:
         return None
     age_ms = snapshot.fresh(limit_ns).oldest_age_ms

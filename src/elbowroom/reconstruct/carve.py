@@ -35,7 +35,6 @@ def carve(
     complete: bool = False,
     model_depth: Mapping[str, NDArray[np.float32]] | None = None,
     unexplained: Words | None = None,
-    aged_m: Mapping[str, float] | None = None,
 ) -> Evidence:
     """What cameras know of each voxel by one frame each. A camera without a frame disputes all that it looks at.
 
@@ -52,8 +51,6 @@ def carve(
         complete: ask all cameras of every voxel and count them, as rules other than `three` need.
         model_depth: by camera, up to where the machine explains each pixel [m], 0: not explained (`machine.explain`).
         unexplained: plane of voxels in which returns lie that the machine does not explain.
-        aged_m: by camera, how far anything may have moved since its frame: only what was seen through so far about a
-            voxel still is [m]; None: frames are of the moment.
 
     Raises:
         InputError: an unknown detail.
@@ -62,7 +59,32 @@ def carve(
     """
     terms = Terms(detail=detail, margin=margin or Margin())
     explained = Explained(dict(model_depth or {}), unexplained)
-    return carve_images(grid, room_images(cameras, frames, aged_m), explained, terms, complete=complete)
+    return carve_images(grid, room_images(cameras, frames), explained, terms, complete=complete)
+
+
+def carve_aged(
+    grid: VoxelGrid,
+    cameras: Sequence[DepthCamera],
+    frames: Sequence[DepthFrame],
+    aged_m: Mapping[str, float],
+    *,
+    detail: Detail = "pixel",
+    margin: Margin | None = None,
+    complete: bool = False,
+) -> Evidence:
+    """As `carve`, of frames since which things may have moved: a voxel is through if it is, grown by so much.
+
+    Args:
+        grid, cameras, frames: as of `carve`.
+        aged_m: by camera, how far anything may have moved since its frame [m]; one that is missing: not at all.
+        detail, margin, complete: as of `carve`.
+
+    Raises:
+        InputError, CameraError, FrameError: as `carve`.
+    """
+    terms = Terms(detail=detail, margin=margin or Margin())
+    images = room_images(cameras, frames, aged_m)
+    return carve_images(grid, images, Explained({}, None), terms, complete=complete)
 
 
 def carve_images(

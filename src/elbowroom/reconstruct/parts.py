@@ -159,7 +159,12 @@ def _parts_seen(
     if nearest <= NEAREST_M:
         return np.zeros(len(STEPS), dtype=np.bool_)
     # as far as the growth reaches in the image, wherever in it the voxel is
-    grown_px = parts.aged_m / nearest * max(camera.intrinsics.fx, camera.intrinsics.fy) / float(record["least_cosine"])
+    grown_px = (
+        parts.aged_m
+        / nearest
+        * max(camera.intrinsics.fx, camera.intrinsics.fy)
+        / float(record["least_cosine"])
+    )
     window = _window(camera, float(record["lateral_px"]) + SPARE_PX + grown_px, corners)
     part = cut_out(record, *window)
     part["aged_m"] = parts.aged_m

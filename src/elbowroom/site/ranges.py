@@ -65,7 +65,9 @@ def speed_of_people(value: float) -> float:
     """
     if value == 0:
         return value
-    return _checked(LEAST_SPEED_M_S, LARGEST_SPEED_M_S, "m/s", (MM_A_SECOND, KM_AN_HOUR), LEAST_SPEED_M_S)(value)
+    return _checked(LEAST_SPEED_M_S, LARGEST_SPEED_M_S, "m/s", (MM_A_SECOND, KM_AN_HOUR), LEAST_SPEED_M_S)(
+        value
+    )
 
 
 LARGEST_UNIT_M, LEAST_UNIT_M = 0.01, 1.5e-6

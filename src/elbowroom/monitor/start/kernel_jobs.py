@@ -103,7 +103,7 @@ def _watch() -> None:
 
 
 def _simulated_cameras() -> None:
-    from elbowroom.geometry import NoiseModel
+    from elbowroom.geometry.noise import NoiseModel
     from elbowroom.simulate import InterventionRoom, render, wall_cameras
 
     for noise in (NoiseModel(constant_m=0.001), None):

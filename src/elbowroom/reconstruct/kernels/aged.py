@@ -1,8 +1,8 @@
 """What a camera saw some time ago, and what of it still holds: an object may have moved since, in any direction.
 
-A voxel is free *now* of all that one camera would have seen, if the voxel grown by a ball, by how far anything may have
-moved since, was seen through *then*: what touches the voxel now was within the ball at the time. So the voxel's faces move
-outwards by the ball's radius, and its outline in the image by that radius at the voxel's nearest depth.
+A voxel is free *now* of all that one camera would have seen, if the voxel grown by a ball, by how far anything may
+have moved since, was seen through *then*: what touches the voxel now was within the ball at the time. So the voxel's
+faces move outwards by the ball's radius, and its outline in the image by that radius at the voxel's nearest depth.
 """
 
 import numpy as np

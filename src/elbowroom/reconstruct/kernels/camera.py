@@ -79,8 +79,8 @@ class Texels(NamedTuple):
 class Views(NamedTuple):
     """All cameras of a carve: records, their texels, and windows over what pixels free (`kernels.pyramid`).
 
-    aged: the same records with boxes grown by what anything may have moved since; order: in which cameras are asked, the
-    newest first, which saves asking and leaves the same bits.
+    aged: the same records with boxes grown by what anything may have moved since; order: in which cameras are asked,
+    the newest first, which saves asking and leaves the same bits.
     """
 
     cameras: np.ndarray
