@@ -117,6 +117,19 @@ since its own returns lie in its model ([why](safety.md#own-body)).
         tables.hand_tables,
     ),
     Section(
+        "escape.json",
+        "Close beside an object",
+        """
+Random poses, from which one joint was driven on until 0.3 to 20 mm were left to an object: the C-arm in the six setups,
+and the arm of `examples/arm_on_a_table` among things in six places. Space is the truth in voxels of 2 cm: blocked is
+each voxel that an object touches, within the machine as well. *lead away*: within S no link comes nearer to anything
+that is less than a voxel's diagonal away, and at S nothing is that near any more that was at the start
+([how](safety.md#close-beside-something)).
+""",
+        "elbowroom evaluate escape",
+        tables.escape_tables,
+    ),
+    Section(
         "evaluate_poses.json",
         "Verdicts beside exact geometry",
         """

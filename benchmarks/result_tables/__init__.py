@@ -8,7 +8,7 @@ from result_tables.placement import placement_tables, sweep_tables
 from result_tables.robots import robot_tables
 from result_tables.space import room_tables, sevenscenes_tables
 from result_tables.speed import bench_tables, machine_tables, start_tables
-from result_tables.verdicts import alone_tables, hand_tables, poses_tables, travel_tables
+from result_tables.verdicts import alone_tables, escape_tables, hand_tables, poses_tables, travel_tables
 
 __all__ = [
     "Row",
@@ -18,6 +18,7 @@ __all__ = [
     "calibration_tables",
     "contradiction_tables",
     "drift_tables",
+    "escape_tables",
     "hand_tables",
     "looks_tables",
     "machine_tables",

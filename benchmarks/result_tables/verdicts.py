@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from elbowroom.evaluate.escape import escape
 from elbowroom.evaluate.hand import hand
 from elbowroom.evaluate.rooms import alone, poses, travel
 from result_tables.cells import Row, centimetres, of, same, table
@@ -34,6 +35,23 @@ def hand_tables(rows: Sequence[Row]) -> list[str]:
             **same("stop", "decelerate", "inform"),
             "clear": of("clear", due=hand.DUE),
             "machine alone, stop %": of("alone_stop_pct", 1, due=hand.DUE),
+        },
+    )
+
+
+def escape_tables(rows: Sequence[Row]) -> list[str]:
+    """Motions beside an object: refused, or let go too far, by machine."""
+    return table(
+        _summaries(rows),
+        {
+            **same("machine", "poses", "motions"),
+            "least gap [mm]": of("least_gap_mm", 2),
+            "lead away": of("leads_away"),
+            "of these stop": of("refused"),
+            "%": of("refused_pct", 1, due=escape.DUE),
+            "escape": of("escapes"),
+            "beyond the truth": of("beyond", due=escape.DUE),
+            "contact on the way": of("touching", due=escape.DUE),
         },
     )
 

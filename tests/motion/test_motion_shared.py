@@ -43,7 +43,7 @@ def test_covered_cells_are_those_near_the_surface_or_within(arm, place, seed, re
     on = arm.links[row].triangles[rng.integers(len(arm.links[row].faces))].T @ rng.dirichlet((1, 1, 1))
     corner = at[row][:3, :3] @ on + at[row][:3, 3] - rng.uniform(0, 0.05, 3)
     found, links = np.zeros((16, 16, 16), dtype=np.uint8), np.zeros(len(arm.links), dtype=np.bool_)
-    cover(_pieces(arm.shape, arm, 0.05), at, np.append(corner, 0.05), (reach, reach), found, links)
+    cover(_pieces(arm, 0.05), at, np.append(corner, 0.05), (reach, reach), found, links)
     some = rng.integers(16, size=(60, 3))
     away, within = naive.distance(arm, at, naive.middles(corner, 0.05)[tuple(some.T)])
     is_sure = abs(away - reach) > 1e-7
@@ -87,7 +87,9 @@ def test_what_leads_away_from_a_wall_goes_and_what_leads_into_it_does_not(block,
 
 def test_what_slides_along_a_wall_is_let_go_as_far_as_its_own_voxels(block):
     wall = touched_by_box(GRID, (-0.12, 0.205, 0.3), (0.12, 0.3, 0.5))
-    verdict = check_motion(FreeSpace.from_occupied(GRID, wall), block, {"slide": 0.0}, Motion("slide", 1, 0.06))
+    verdict = check_motion(
+        FreeSpace.from_occupied(GRID, wall), block, {"slide": 0.0}, Motion("slide", 1, 0.06)
+    )
     assert verdict.escapes and verdict.level is Level.CLEAR
 
 
@@ -168,7 +170,8 @@ def test_more_blocked_voxels_never_let_a_motion_go_farther(arm, place, seed):
         more[tuple(index)] = True
     motions = joint_motions(arm, SPEEDS, 0.4)
     before, after = (
-        check_motions(FreeSpace.from_occupied(GRID, blocked), arm, joints, motions) for blocked in (some, more)
+        check_motions(FreeSpace.from_occupied(GRID, blocked), arm, joints, motions)
+        for blocked in (some, more)
     )
     for one, other in zip(before, after, strict=True):
         assert other.free_travel <= one.free_travel

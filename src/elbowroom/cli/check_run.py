@@ -86,6 +86,8 @@ def ask(
         print(f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
     if verdict.creep is not None:
         print(_creeping(verdict, verdict.creep))
+    if verdict.escapes:
+        print("It leads out of blocked space that the machine stands in or close beside.")
     for line in [*reasons, *_numbers(found), *map(_sentence, found.advice)]:
         print(line)
     if pictures:

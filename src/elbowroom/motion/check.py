@@ -35,11 +35,12 @@ def check_motion(
     """How far a motion may go until the swept body meets what is not free.
 
     The swept body is that of the checked links which the motion moves. The machine's own voxels should have
-    been taken out of the space (`reconstruct` does it; `FreeSpace.without`); a body that stands in blocked
-    space, or about it, has a free travel of 0. What lies outside the grid is blocked. Where a link would meet another
-    one that must not (`Machine.allowed_contacts`), that ends the travel as well. Joint limits cap the free travel, not
-    the level. A voxel in the way that is unseen, because no one camera sees all of it, is looked at again in parts if
-    the space still has what it was made of (`FreeSpace.is_free_in_parts`).
+    been taken out of the space (`reconstruct` does it; `FreeSpace.without`). Of a blocked voxel that a link reaches
+    into where it stands, what the body does not cover there blocks it (`motion.shared`), so what leads away goes; about
+    a blocked voxel that lies in it a link has a free travel of 0. What lies outside the grid is blocked. Where a link
+    would meet another one that must not (`Machine.allowed_contacts`), that ends the travel as well. Joint limits cap
+    the free travel, not the level. A voxel in the way that is unseen, because no one camera sees all of it, is looked
+    at again in parts if the space still has what it was made of (`FreeSpace.is_free_in_parts`).
 
     Args:
         space: the free space.
@@ -160,9 +161,7 @@ class _Scene:
                 reaches and met.travel > 0,
             )
         if block is None:
-            return Verdict(
-                motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE, escapes=reaches
-            )
+            return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE, escapes=reaches)
         zone = zone_of(block, self.space, self.machine)
         return Verdict(
             motion,

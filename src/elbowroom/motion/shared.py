@@ -1,16 +1,16 @@
 """Blocked voxels that the machine reaches into where it stands: what leads out of them is let go.
 
-Something stands within a voxel of the body, and so the voxel is blocked as a whole, and the body is in it. Were a motion
-stopped wherever the body meets it, all motions would stop, those that lead away as well. So of such a voxel only that part
-blocks which the body does not cover at the start:
+Something stands within a voxel of the body, and so the voxel is blocked as a whole, and the body is in it. Were a
+motion stopped wherever the body meets it, all motions would stop, those that lead away as well. So of such a voxel only
+that part blocks which the body does not cover at the start:
 
     B' = B \\ cells( M(0) grown by g0 )             cells: sixteenths of a voxel's edge
     eps = g0 + sqrt(3) h / 16                      how far a cell that is taken out may reach from the body
 
 with the blocked space B, the solid body M(t) after travel t, the voxel's edge h. No object lies in M(0), so what stands
 farther than eps from it lies in B', and the surface of M passes it before M covers it. What stands nearer is pressed by
-eps at most; so a motion that ends at a voxel within eps of the link that meets it ends earlier, by as much travel as the
-slowest part that may come there needs for 2 eps. Less evidence leaves more of B, so more of B'.
+eps at most; so a motion that ends at a voxel within eps of the link that meets it ends earlier, by as much travel as
+the slowest part that may come there needs for 2 eps. Less evidence leaves more of B, so more of B'.
 """
 
 from dataclasses import dataclass, replace
@@ -21,12 +21,13 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import bits
 from elbowroom.geometry.kept import kept
+from elbowroom.geometry.kernels.bits import Lattice
 from elbowroom.machine import Machine, body_samples
 from elbowroom.machine.shape import Shape
 from elbowroom.motion.course import Way
 from elbowroom.motion.ground import Ground
 from elbowroom.motion.kernels.covered import COVERED, Pieces, cover, reached
-from elbowroom.motion.kernels.mover import ROUNDING_M, Skin
+from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.shared import CELLS, WORDS, Shared
 from elbowroom.motion.kernels.volume import Volume
 from elbowroom.motion.skin import skin_of
@@ -78,10 +79,9 @@ class Start:
 
     def _with(self, shared: Shared) -> Self:
         """The same with the shared voxels that its space still blocks."""
-        lattice, words = self.ground.volume.lattice, self.ground.volume.words
-        ij, k = np.divmod(shared.numbers, lattice.nz)
-        i, j = np.divmod(ij, lattice.ny)
-        places = [bits.place_of(index, self.ground.space.grid) for index in zip(i.tolist(), j.tolist(), k.tolist())]
+        volume, words = self.ground.volume, self.ground.volume.words
+        grid = self.ground.space.grid
+        places = [bits.place_of(index, grid) for index in _indices(shared, volume.lattice)]
         blocked = np.array([bool(words[word] & bit) for word, bit in places], dtype=np.bool_)
         if not blocked.any():
             return replace(self, within=None)
@@ -98,8 +98,8 @@ class Start:
         others = own._replace(cells=np.zeros_like(own.cells), others=True)
         return replace(
             self,
-            ground=replace(self.ground, volume=self.ground.volume._replace(shared=others)),
-            within=marked(self.ground.volume._replace(words=plane, shared=own)),
+            ground=replace(self.ground, volume=volume._replace(shared=others)),
+            within=marked(volume._replace(words=plane, shared=own)),
         )
 
     def with_space(self, space: FreeSpace) -> Self:
@@ -145,9 +145,7 @@ class Start:
     def _back(self, skin: Skin, speeds: NDArray[np.float64], way: Way, within: Volume) -> float:
         """How much travel the slowest part that may come to the shared voxels needs for 2 eps."""
         lattice = within.lattice
-        ij, k = np.divmod(within.shared.numbers, lattice.nz)
-        index = np.stack([*np.divmod(ij, lattice.ny), k], axis=1)
-        centres = (index + 0.5) * lattice.edge + (lattice.x0, lattice.y0, lattice.z0)
+        centres = _corners(within.shared, lattice) + lattice.edge / 2
         rows = np.flatnonzero(speeds * way.length >= self.near_m / 2)
         pose = self.placed[skin.link[rows]]
         middles = np.einsum("nij,nj->ni", pose[:, :3, :3], skin.centre[rows]) + pose[:, :3, 3]
@@ -155,6 +153,21 @@ class Start:
         reach = skin.radius[rows] + skin.cover + skin.off + speeds[rows] * way.length
         may = rows[away <= reach + HALF_DIAGONAL * lattice.edge]
         return float(2 * self.near_m / speeds[may].min()) if len(may) else 0.0
+
+
+def _indices(shared: Shared, lattice: Lattice) -> list[tuple[int, int, int]]:
+    """Of the shared voxels."""
+    return [
+        (n // lattice.nz // lattice.ny, n // lattice.nz % lattice.ny, n % lattice.nz)
+        for n in shared.numbers.tolist()
+    ]
+
+
+def _corners(shared: Shared, lattice: Lattice) -> NDArray[np.float64]:
+    """The least corners of the shared voxels, shape (n, 3) [m]."""
+    index = np.array(_indices(shared, lattice)).reshape(-1, 3)
+    corners: NDArray[np.float64] = index * lattice.edge + (lattice.x0, lattice.y0, lattice.z0)
+    return corners
 
 
 def _shared(
@@ -170,34 +183,47 @@ def _shared(
             it is so near [m].
     """
     skin, lattice = skin_of(machine, volume.lattice.edge), volume.lattice
-    none = volume.shared
     finds = np.empty(ROOM_FOR, dtype=np.int64)
     count = reached(placed, skin, skin.cover + reach_m[1], volume, finds)
-    if not 0 < count <= ROOM_FOR:
-        return none
-    numbers = np.unique(finds[:count])
-    if len(numbers) > MOST_SHARED:
-        return none
-    of = _pieces(machine.shape, machine, volume.lattice.edge)
-    seen = machine.as_seen
-    of_seen = None if seen is machine else _pieces(seen.shape, seen, volume.lattice.edge)
+    numbers = np.unique(finds[: min(count, ROOM_FOR)])
+    if not 0 < count <= ROOM_FOR or len(numbers) > MOST_SHARED:
+        return volume.shared
     links = np.zeros((len(numbers), len(machine.links)), dtype=np.bool_)
     cells = np.zeros((len(numbers), WORDS), dtype=np.uint64)
+    found = Shared(numbers, links, cells, False)
     is_shared = np.zeros(len(numbers), dtype=np.bool_)
-    covered, truly = (np.empty((CELLS,) * 3, dtype=np.uint8) for _ in range(2))
-    for row, number in enumerate(numbers.tolist()):
-        ij, k = divmod(number, lattice.nz)
-        corner = np.array([*divmod(ij, lattice.ny), k]) * lattice.edge + (lattice.x0, lattice.y0, lattice.z0)
-        voxel = np.append(corner, lattice.edge)
-        cover(of, placed, voxel, reach_m, covered, links[row])
-        if of_seen is not None:
-            # in what is swept and is not there, something else may be
-            cover(of_seen, placed, voxel, reach_m, truly, np.zeros_like(links[row]))
-            if ((covered == COVERED) & (truly != COVERED)).any():
-                continue
-        is_shared[row] = links[row].any()
-        cells[row] = _words(covered != COVERED)
+    for row, corner in enumerate(_corners(found, lattice)):
+        open_cells = _open_cells(machine, placed, np.append(corner, lattice.edge), reach_m, links[row])
+        if open_cells is not None:
+            is_shared[row], cells[row] = links[row].any(), _words(open_cells)
     return Shared(numbers[is_shared], links[is_shared], cells[is_shared], False)
+
+
+def _open_cells(
+    machine: Machine,
+    placed: NDArray[np.float64],
+    voxel: NDArray[np.float64],
+    reach_m: tuple[float, float],
+    links: NDArray[np.bool_],
+) -> NDArray[np.bool_] | None:
+    """Of one voxel, the cells that the machine does not cover, shape (16, 16, 16).
+
+    None: some are covered by what is swept, and not by what is there; so something else may be.
+
+    Args:
+        machine, placed, reach_m: as of `_shared`.
+        voxel: its least corner and its edge, shape (4,) [m].
+        links: set for those that are near, shape (n_links,).
+    """
+    covered = np.empty((CELLS,) * 3, dtype=np.uint8)
+    cover(_pieces(machine, float(voxel[3])), placed, voxel, reach_m, covered, links)
+    seen = machine.as_seen
+    if seen is not machine:
+        truly = np.empty_like(covered)
+        cover(_pieces(seen, float(voxel[3])), placed, voxel, reach_m, truly, np.zeros_like(links))
+        if ((covered == COVERED) & (truly != COVERED)).any():
+            return None
+    return covered != COVERED
 
 
 def _words(cells: NDArray[np.bool_]) -> NDArray[np.uint64]:
@@ -206,11 +232,11 @@ def _words(cells: NDArray[np.bool_]) -> NDArray[np.uint64]:
     return np.packbits(blocks, bitorder="little").view(np.uint64)
 
 
-def _pieces(shape: Shape, machine: Machine, voxel_size_m: float) -> Pieces:
+def _pieces(machine: Machine, voxel_size_m: float) -> Pieces:
     """The surface of a machine's checked links in pieces, as coarse as it is swept."""
     names = machine.checked_links
     rows = tuple(row for row, link in enumerate(machine.links) if link.name in names and link.has_geometry)
-    return _pieces_of(shape, rows, body_samples(machine, voxel_size_m).bound_m)
+    return _pieces_of(machine.shape, rows, body_samples(machine, voxel_size_m).bound_m)
 
 
 @kept

@@ -1,4 +1,4 @@
-"""Poses a few millimetres beside an object: which motions are refused although they lead away, and is any let go too far?
+"""Poses a few millimetres beside an object: which motions are refused although they lead away, which go too far?
 
 Space is the truth in voxels: blocked is each voxel that an object touches, within the machine as well. So this asks the
 swept check alone, without cameras. *Leads away*: within S no link comes nearer to anything that is less than a voxel's
@@ -54,9 +54,7 @@ def escape_rows(poses: int = 300, *, voxel_size_m: float = 0.02, seed: int = 5) 
                 yield {**said, **_judged(scene, joints, motion, verdict)}
 
 
-def _judged(
-    scene: Scene, joints: Mapping[str, float], motion: Motion, verdict: Verdict
-) -> dict[str, Any]:
+def _judged(scene: Scene, joints: Mapping[str, float], motion: Motion, verdict: Verdict) -> dict[str, Any]:
     contact = scene.truth.until_contact(joints, motion)
     announced = np.linspace(0.0, verdict.free_travel, STEPS + 2)[1:-1]
     return {

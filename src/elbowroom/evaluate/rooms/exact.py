@@ -82,9 +82,7 @@ class ExactTravel:
                     least = min(least, self._distance(body, placed[name], obstacle)[0])
         return least
 
-    def gaps(
-        self, joints: Mapping[str, float], joint: str, below_m: float
-    ) -> dict[tuple[str, str], float]:
+    def gaps(self, joints: Mapping[str, float], joint: str, below_m: float) -> dict[tuple[str, str], float]:
         """Distances of links that a joint moves from solids, by link and solid, those that are small alone [m].
 
         Args:

@@ -86,8 +86,8 @@ def reached(placed, skin, reach, volume, numbers):
 def cover(pieces, placed, voxel, reach, covered, links):
     """Which cells of a voxel a body covers: those that come within reach of its surface, or lie within it.
 
-    Cells that are not near the surface hang together in rooms; a room lies within the body if any of its cells does, and
-    that is asked of one.
+    Cells that are not near the surface hang together in rooms; a room lies within the body if any of its cells does,
+    and that is asked of one.
 
     Args:
         pieces: of the body.

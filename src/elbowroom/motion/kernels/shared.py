@@ -1,6 +1,7 @@
 """Voxels that links reach into where they stand, cell by cell.
 
-A cell is a part of a voxel, `CELLS` along each axis; a voxel's cells are one cube of 64 words (`geometry.kernels.bits`).
+A cell is a part of a voxel, `CELLS` along each axis; a voxel's cells are one cube of 64 words
+(`geometry.kernels.bits`).
 """
 
 from typing import NamedTuple

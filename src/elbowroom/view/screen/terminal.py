@@ -238,9 +238,14 @@ class TerminalView:
         return [
             *cells,
             Text.assemble((filled, BAR_STYLES[level]), (rest, "dim")),
-            Text("joint limit" if at_limit else cause_text(verdict)),
+            Text("joint limit" if at_limit else _why(verdict)),
             Text(place_text(verdict) if wide else place_first(verdict), "dim"),
         ]
+
+
+def _why(verdict: Verdict) -> str:
+    """What ends it; of one that nothing ends, whether it leads out of what the machine stands close beside."""
+    return "leads away" if verdict.escapes and verdict.cause is Cause.NONE else cause_text(verdict)
 
 
 def _stops(result: CycleResult) -> list[str]:

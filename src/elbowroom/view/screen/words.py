@@ -105,7 +105,7 @@ def plain_line(verdict: Verdict) -> str:
     """One verdict in a few plain words: "larm + STOP 3.1° (surface, detector)"."""
     line = f"{verdict.motion.name} {LEVEL_WORDS[verdict.level]}"
     if verdict.level is Level.CLEAR:
-        return line
+        return f"{line} (leads away)" if verdict.escapes else line
     why = ", ".join(word for word in (cause_text(verdict), verdict.link) if word)
     return f"{line} {travel_text(verdict.free_travel, verdict.free_travel_unit)}" + (
         f" ({why})" if why else ""
