@@ -19,6 +19,9 @@ CARRIED = {
 }
 
 
+TABLE = {"name": "table", "links": ["hand"], "lower_m": [-1, -1, -0.1], "upper_m": [9, 9, 9]}
+
+
 @pytest.fixture
 def urdf(arm_urdf):
     return str(arm_urdf)
@@ -70,6 +73,20 @@ def test_contacts_stands_and_parts_are_read(folder, plain, urdf):
             "mesh_scale only with mesh",
         ),
         ({"explain_with": "both"}, "explain_with"),
+        (
+            {"stands_on": [{"links": ["hand"], "lower_m": [-9, -9, -9], "upper_m": [9, 9, 9]}]},
+            "whole way of hand",
+        ),
+        ({"contacts": [{**TABLE, "lower_m": [-9, -9, -9]}]}, "whole way of hand"),
+        ({"contacts": [{**TABLE, "links": []}]}, "links"),
+        ({"contacts": [{**TABLE, "links": ["nobody"]}]}, "link 'nobody' does not exist"),
+        ({"contacts": [{**TABLE, "name": "hand"}]}, "that of a link"),
+        ({"contacts": [{**TABLE, "near_m": 100}]}, "near_m"),
+        ({"contacts": [{**TABLE, "mesh": "a.stl"}]}, "either lower_m and upper_m, or mesh"),
+        ({"contacts": [{"name": "t", "links": ["hand"], "mesh": "none.stl"}]}, "no such file"),
+        ({"own_links": "none.yaml"}, "no such file"),
+        ({"srdf": "none.srdf"}, "no such file"),
+        ({"srdf": "none.srdf", "own_links": "none.yaml"}, "either own_links or srdf"),
     ],
 )
 def test_what_cannot_be_meant_is_refused_in_a_line(folder, plain, urdf, more, words):
@@ -120,6 +137,40 @@ def test_a_zone_that_cannot_be_meant_is_refused_in_a_line(folder, plain, urdf, z
     with pytest.raises((SiteError, MachineError), match=words) as error:
         Site.load(folder.write({**plain, "machine": {"urdf": urdf}, "zones": [content]})).machine()
     assert "\n" not in str(error.value)
+
+
+def test_contacts_are_read_and_said(folder, plain, urdf):
+    trimesh.creation.box((1, 1, 0.1)).export(folder.path / "table.stl")
+    up = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 2], [0, 0, 0, 1]]
+    site = site_of(
+        folder,
+        plain,
+        urdf=urdf,
+        contacts=[
+            {
+                **TABLE,
+                "upper_m": [1, 1, 0],
+                "near_m": 0.05,
+                "zone": {"lower_m": [0, 0, 0], "upper_m": [1, 1, 1]},
+            },
+            {
+                "name": "shelf",
+                "links": ["base"],
+                "mesh": "table.stl",
+                "world_from_mesh": up,
+                "may_touch": True,
+            },
+        ],
+    )
+    table, shelf = site.machine().contacts
+    assert (table.near_m, table.may_touch, shelf.may_touch) == (0.05, False, True)
+    assert 1.94 < shelf.surface.vertices[:, 2].min() < 1.96
+    notes = "\n".join(notes_of(site))
+    assert (
+        "May be near table, (-1, -1, -0.1) to (1, 1, 0) m, by the site's word: hand, within 50 mm, in a part"
+        in notes
+    )
+    assert "May touch shelf" in notes
 
 
 def test_zones_need_a_machine(folder, plain):
