@@ -176,3 +176,40 @@ def test_contacts_are_read_and_said(folder, plain, urdf):
 def test_zones_need_a_machine(folder, plain):
     with pytest.raises(SiteError, match="zones only with a machine"):
         Site.load(folder.write({**plain, "zones": [{**HIGH, "reason": "why"}]}))
+
+
+def shifted(x):
+    return [[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+
+
+def test_several_machines_are_one_to_all_that_asks(folder, plain, urdf):
+    machines = [
+        {"name": "left", "urdf": urdf, "joint_prefix": "left_", "stands_on": [CARRIED | {"links": ["base"]}]},
+        {"name": "right", "urdf": urdf, "world_from_base": shifted(1.0)},
+    ]
+    content = {key: value for key, value in plain.items() if key not in ("machine", "joints")}
+    machine = Site.load(folder.write({**content, "machines": machines})).machine()
+    assert {name.split("/")[0] for name in machine.link_names} == {"room", "left", "right"}
+    assert len(set(machine.joint_names)) == len(machine.joint_names)
+    assert machine.stands[0].links == ("left/base",)
+    placed = machine.world_from_links(machine.nearest_to_zero())
+    assert placed["right/base"][0, 3] - placed["left/base"][0, 3] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"machines": [{"name": "a", "urdf": "U"}, {"name": "b", "urdf": "U"}]}, "a and b both have a joint"),
+        ({"machines": [{"name": "a", "urdf": "U"}, {"name": "a", "urdf": "U"}]}, "a is there more than once"),
+        ({"machines": [{"urdf": "U"}]}, "name"),
+        ({"machines": [{"name": "a/b", "urdf": "U"}]}, "name"),
+        ({"machines": [{"name": "a", "urdf": "U"}], "machine": {"urdf": "U"}}, "either machine or machines"),
+    ],
+)
+def test_machines_that_cannot_be_told_apart_are_refused(folder, plain, urdf, more, words):
+    content = {key: value for key, value in plain.items() if key not in ("machine", "joints")} | more
+    for entry in (*content["machines"], *([content["machine"]] if "machine" in content else [])):
+        entry["urdf"] = urdf
+    with pytest.raises((SiteError, MachineError), match=words) as error:
+        Site.load(folder.write(content)).machine()
+    assert "\n" not in str(error.value)
