@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.choices import ExplainWith
 from elbowroom.errors import MachineError, MachineWarning
 from elbowroom.finding import Finding
-from elbowroom.geometry import nearest_rigid
+from elbowroom.geometry import invert_rigid, nearest_rigid
 from elbowroom.machine.contact import Contact
 from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
@@ -27,8 +27,10 @@ from elbowroom.machine.joint_state import (
 )
 from elbowroom.machine.kernels.body import FIXED, Tree, place_links
 from elbowroom.machine.link import Link
+from elbowroom.machine.overlap import POSES, always_touching, is_within
 from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.part import Part
+from elbowroom.machine.poses import random_poses
 from elbowroom.machine.shape import Shape
 from elbowroom.machine.stand import Stand
 from elbowroom.machine.zone import Zone
@@ -334,7 +336,8 @@ class Machine:
             link_from_part: where the part is on it, shape (4, 4), rigid; None: frames are one.
 
         Raises:
-            MachineError: no such link, a link of the part's name, or a pose that is not rigid.
+            MachineError: no such link, a link of the part's name, a pose that is not rigid, or a part that lies in
+                links that do not carry it.
         """
         self._require_links("part " + part.name, [link])
         if part.name in self.link_names:
@@ -353,13 +356,62 @@ class Machine:
         )
         carried = Link(part.name, part.surface.vertices, part.surface.faces.astype(np.int32))
         touched = [(part.name, self.link_names[other]) for other in self._held_with(row)]
-        return replace(
+        holding = replace(
             self,
             links=(*self.links, carried),
             tree=grown,
             allowed_contacts=(*self.allowed_contacts, *touched),
             parts=(*self.parts, part.name),
         )
+        holding._require_beside(part.name, [self.link_names.index(name) for _, name in touched])
+        return holding
+
+    def _require_beside(self, part: str, held_with: Sequence[int]) -> None:
+        """Refuses a part that lies in links in nearly all poses which do not carry it.
+
+        Args:
+            part: its name; it is the last link.
+            held_with: rows of the links that it may touch.
+        """
+        last = len(self.links) - 1
+        rows = [
+            (row, last)
+            for row, link in enumerate(self.links[:-1])
+            if link.has_geometry and row not in held_with
+        ]
+        poses = self.random_places(POSES)
+        always = always_touching(self.shape, rows, poses)
+        within = [
+            self.link_names[row]
+            for (row, _), touch in zip(rows, always, strict=True)
+            if touch or all(self._holds(last, row, placed) for placed in poses[:3])
+        ]
+        if within:
+            raise MachineError(
+                f"machine {self.name}: part {part} lies in {', '.join(within)} in all poses, which do not carry it: "
+                "give its place (link_from_part), a smaller shape, or the link that does carry it"
+            )
+
+    def _holds(self, part: int, row: int, placed: NDArray[np.float64]) -> bool:
+        """Whether one of a part and another link lies wholly in the other.
+
+        Args:
+            part, row: rows of the two.
+            placed: where links are, shape (n_links, 4, 4).
+        """
+        part_from_link = invert_rigid(placed[part]) @ placed[row]
+        return is_within(self.links[row], self.links[part], part_from_link) or is_within(
+            self.links[part], self.links[row], invert_rigid(part_from_link)
+        )
+
+    def random_places(self, count: int, seed: int = 0) -> NDArray[np.float64]:
+        """Where links are in poses drawn from the joints' limits, shape (count, n_links, 4, 4).
+
+        Args:
+            count: how many.
+            seed: of the draw.
+        """
+        return self.world_from_link_array(random_poses(self._commanded, count, seed))
 
     def without_part(self, name: str) -> "Machine":
         """The machine without a part that it was given, and without those that hang on it.

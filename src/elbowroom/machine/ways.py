@@ -25,11 +25,7 @@ def never_out_of(machine: Machine, inside: Inside, links: Callable[[str], bool])
         inside: which points the volume holds; where it holds the corners of a link's triangles it holds the link.
         links: which links are asked for, by name.
     """
-    random = np.random.default_rng(0)
-    joints = [machine.joint(name) for name in machine.joint_names]
-    lower = np.array([max(joint.lower, -np.pi) for joint in joints])
-    upper = np.array([min(joint.upper, np.pi) for joint in joints])
-    placed = machine.world_from_link_array(random.uniform(lower, upper, (POSES, len(joints))))
+    placed = machine.random_places(POSES)
     bodies = machine.shape.within(COARSE_M)
     covered = []
     for row, link in enumerate(machine.links):

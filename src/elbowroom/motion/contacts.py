@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
 from elbowroom.machine.boxes import boxes_of
+from elbowroom.machine.kernels.apart import Bodies
 from elbowroom.machine.kernels.samples import cluster
+from elbowroom.machine.overlap import POSES, always_touching, bodies_of
 from elbowroom.machine.samples import COVER_IN_VOXELS, ROUNDING_M, BodySamples, body_samples
 from elbowroom.machine.shape import Shape
 from elbowroom.machine.things import with_things
 from elbowroom.machine.ways import moves
 from elbowroom.motion.field import fields_of
-from elbowroom.motion.kernels.closing import Bodies, apart_now
 from elbowroom.motion.kernels.field import Fields, slack_of
 from elbowroom.motion.kernels.meeting import RUN, Pairs
 from elbowroom.motion.kernels.mover import Skin
@@ -27,12 +28,6 @@ FINEST = 1 / 8
 """A field's cells are no smaller than this share of the voxels that the samples would do for."""
 COARSER = 1.5
 """A field is much coarser than another whose cells are smaller than its own by this factor."""
-POSES, ALWAYS = 40, 0.95
-"""Links that touch in this share of so many poses, drawn from the joints' limits, are meant to."""
-MET_M = 5e-4
-"""Links that are as near as this have met [m]."""
-TOUCH_M = 1e-6
-"""Links touch that are no farther apart than this: rounding [m]."""
 
 
 @kept
@@ -55,7 +50,7 @@ def pairs_of(machine: Machine) -> Pairs:
     skin, width = _skin(body_samples(machine, edge, unchecked=True))
     whole = with_things(machine)
     fields = fields_of(whole.links, {row for pair in rows for row in pair}, FINEST * edge)
-    return _pairs(skin, width, fields, bodies_of(whole, rows))
+    return _pairs(skin, width, fields, bodies_of(whole.shape, rows))
 
 
 def _near_things(machine: Machine) -> list[tuple[int, int]]:
@@ -71,33 +66,8 @@ def _near_things(machine: Machine) -> list[tuple[int, int]]:
 def watched_rows(machine: Machine) -> list[tuple[int, int]]:
     """The rows of the links of each pair that must not meet."""
     rows = [pair for pair in _may_not_touch(machine) if can_move_apart(machine, *pair)]
-    touch = touching(machine, bodies_of(machine, rows), random_poses(machine, POSES)).mean(axis=0)
-    return [pair for pair, share in zip(rows, touch, strict=True) if share < ALWAYS]
-
-
-def bodies_of(machine: Machine, rows: list[tuple[int, int]]) -> Bodies:
-    """Pairs of links as triangles.
-
-    Args:
-        machine: whose links.
-        rows: of the links of each pair.
-    """
-    one, other = np.array(rows, dtype=np.int64).reshape(-1, 2).T
-    return Bodies(boxes_of(machine.shape), np.ascontiguousarray(one), np.ascontiguousarray(other), MET_M)
-
-
-def touching(machine: Machine, bodies: Bodies, positions: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether pairs of links touch, shape (n, pairs).
-
-    Args:
-        machine: whose links.
-        bodies: the pairs.
-        positions: of its joints, shape (n, n_joints).
-    """
-    apart = np.empty((len(positions), len(bodies.one)))
-    for placed, away in zip(machine.world_from_link_array(positions), apart, strict=True):
-        apart_now(bodies, placed, 2 * TOUCH_M, away)
-    return apart <= TOUCH_M
+    always = always_touching(machine.shape, rows, machine.random_places(POSES))
+    return [pair for pair, touch in zip(rows, always, strict=True) if not touch]
 
 
 def _voxel_for(machine: Machine) -> float:
@@ -204,21 +174,6 @@ def _skin(samples: BodySamples) -> tuple[Skin, NDArray[np.float64]]:
     width = np.zeros(len(points))
     np.maximum.at(width, first, np.linalg.norm(points - points[first], axis=1) + ROUNDING_M)
     return bare_skin(samples, points), width
-
-
-def random_poses(machine: Machine, count: int, seed: int = 0) -> NDArray[np.float64]:
-    """Poses drawn from the joints' limits, shape (count, n_joints).
-
-    Args:
-        machine: whose joints.
-        count: how many.
-        seed: of the draw.
-    """
-    rng = np.random.default_rng(seed)
-    joints = [machine.joint(name) for name in machine.joint_names]
-    lower = np.array([max(joint.lower, -np.pi) for joint in joints])
-    upper = np.array([min(joint.upper, np.pi) for joint in joints])
-    return rng.uniform(lower, upper, (count, len(joints)))
 
 
 @kept

@@ -46,7 +46,7 @@ def grounds_of(space: FreeSpace, machine: Machine) -> tuple[Ground, ...]:
         stands, unwatched, near = own
         free = space.free_words
         if stands:
-            free = free | _words_in(machine.anywhere, space.grid, stands)
+            free = free | _stood_on(machine, space, stands)
         if unwatched:
             free = free | _unwatched(machine, space, unwatched)
         if near and space.declared:
@@ -129,13 +129,54 @@ class _AskedOf:
         return self.space.is_free_in_parts(index)
 
 
-@kept
-def _words_in(machine: Machine, grid: VoxelGrid, stands: tuple[int, ...]) -> Words:
-    """The plane of the voxels that lie wholly in one of some of a machine's stands."""
-    mask = np.zeros(grid.shape, dtype=np.bool_)
+def _stood_on(machine: Machine, space: FreeSpace, stands: tuple[int, ...]) -> Words:
+    """The plane of the voxels that lie wholly in one of some stands, but for columns of which something stands out.
+
+    What stands on a table stands out of the box at its top, where no link is. There whatever is seen or disputed in the
+    voxel above blocks the column beneath, and those beside it: less evidence gives none back.
+    """
+    grid, planes = space.grid, []
+    known = space.surface_words | space.blind_words | space.disputed_words
     for n in stands:
-        mask[_voxels_in(machine.stands[n], grid)] = True
+        words = _words_in(machine.anywhere, grid, n)
+        i, j, k = _voxels_in(machine.stands[n], grid)
+        if i.stop > i.start and j.stop > j.start and 0 < k.stop < grid.shape[2]:
+            a, b = np.nonzero(_beside(_layer(known, grid, i, j, k.stop)))
+            heights = np.arange(k.start, k.stop)
+            columns = np.repeat(a + i.start, heights.size), np.repeat(b + j.start, heights.size)
+            word, bit = bits.places_of(*columns, np.tile(heights, a.size), grid)
+            words = words.copy()
+            np.bitwise_and.at(words, word, ~bit)
+        planes.append(words)
+    return np.bitwise_or.reduce(planes)
+
+
+@kept
+def _words_in(machine: Machine, grid: VoxelGrid, stand: int) -> Words:
+    """The plane of the voxels that lie wholly in one of a machine's stands."""
+    mask = np.zeros(grid.shape, dtype=np.bool_)
+    mask[_voxels_in(machine.stands[stand], grid)] = True
     return bits.pack(mask, grid)
+
+
+def _layer(words: Words, grid: VoxelGrid, i: slice, j: slice, k: int) -> NDArray[np.bool_]:
+    """The bits of one layer of voxels.
+
+    Args:
+        words: a plane.
+        grid: its grid.
+        i, j, k: which voxels.
+    """
+    a, b = np.meshgrid(np.arange(i.start, i.stop), np.arange(j.start, j.stop), indexing="ij")
+    word, bit = bits.places_of(a, b, np.full_like(a, k), grid)
+    return np.asarray((words[word] & bit) != 0)
+
+
+def _beside(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """What is set, and its eight neighbours, shape (n, m)."""
+    padded = np.pad(mask, 1)
+    sides = [padded[a : a + mask.shape[0], b : b + mask.shape[1]] for a in range(3) for b in range(3)]
+    return np.asarray(np.logical_or.reduce(sides))
 
 
 def _voxels_in(stand: Stand, grid: VoxelGrid) -> tuple[slice, ...]:

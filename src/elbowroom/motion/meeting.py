@@ -7,11 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.machine import Machine
+from elbowroom.machine.kernels.apart import apart_now
 from elbowroom.machine.kernels.body import FIXED
+from elbowroom.machine.overlap import TOUCH_M
 from elbowroom.machine.things import with_things
-from elbowroom.motion.contacts import TOUCH_M, pairs_of, parts_of
+from elbowroom.motion.contacts import pairs_of, parts_of
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels.closing import Travelling, apart_now
+from elbowroom.motion.kernels.closing import Travelling
 from elbowroom.motion.kernels.meeting import Now, Pairs, Steps, first_meeting, gaps_now
 from elbowroom.motion.kernels.mover import Mover
 from elbowroom.motion.sweep import cluster_speeds

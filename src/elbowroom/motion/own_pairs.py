@@ -6,8 +6,9 @@ from itertools import combinations
 import numpy as np
 
 from elbowroom.machine import Machine
-from elbowroom.motion.contacts import ALWAYS, TOUCH_M, bodies_of, can_move_apart, next_body, random_poses
-from elbowroom.motion.kernels.closing import apart_now
+from elbowroom.machine.kernels.apart import apart_now
+from elbowroom.machine.overlap import ALWAYS, TOUCH_M, bodies_of
+from elbowroom.motion.contacts import can_move_apart, next_body
 
 NEVER_M = 0.02
 """Links that came no nearer than this in any pose never meet [m]."""
@@ -35,10 +36,10 @@ def found_pairs(
         if can_move_apart(machine, *pair)
     ]
     adjacent = [next_body(machine, b) == a for a, b in rows]
-    bodies = bodies_of(machine, rows)
+    bodies = bodies_of(machine.shape, rows)
     touched, nearest = np.zeros(len(rows)), np.full(len(rows), np.inf)
     apart = np.empty(len(rows))
-    for count, placed in enumerate(machine.world_from_link_array(random_poses(machine, poses, seed))):
+    for count, placed in enumerate(machine.random_places(poses, seed)):
         apart_now(bodies, placed, NEVER_M, apart)
         touched += apart <= TOUCH_M
         nearest = np.minimum(nearest, apart)

@@ -16,6 +16,7 @@ from elbowroom.machine import Joint, Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.machine.joint_state import JointTolerance
 from elbowroom.machine.own_links import OwnLinks
+from elbowroom.machine.together import Member
 from elbowroom.motion import Motion, Override, braking_distance
 from elbowroom.motion.creep import REDUCED_SPEED_M_S, SHARE_OF_FULL_SPEED
 from elbowroom.site.contact_entry import ContactEntry, PartEntry, StandEntry, require_protected
@@ -97,6 +98,18 @@ class MachineEntry(Entry):
         require_protected(machine)
         return machine
 
+    def standing(self, beside: Path) -> Machine:
+        """The machine at its place, on its free base if it has one.
+
+        Args:
+            beside: the site file's folder.
+
+        Raises:
+            SiteError, MachineError: as `build`.
+        """
+        machine = self.build(beside)
+        return machine if self.free_base is None else machine.with_free_base(self.free_base)
+
     def _own_links(self, beside: Path) -> OwnLinks | None:
         if self.own_links is not None:
             return OwnLinks.from_yaml(expand(self.own_links, beside))
@@ -121,6 +134,24 @@ class MachineEntry(Entry):
                 explain_with=self.explain_with,
             )
         return replace(machine, tolerance=self.tolerance)
+
+
+class MemberEntry(MachineEntry):
+    """One of several machines: its name stands before its links', its `joint_prefix` before its joints'."""
+
+    name: Annotated[Text, Field(pattern=r"^[^/*?\[\]]+$")]
+    joint_prefix: Annotated[str, Field(max_length=1000)] = ""
+
+    def member(self, beside: Path) -> Member:
+        """The machine at its place, with its name.
+
+        Args:
+            beside: the site file's folder.
+
+        Raises:
+            SiteError, MachineError: as `build`.
+        """
+        return Member(self.name, self.standing(beside), self.joint_prefix)
 
 
 def _as_xacro(value: str | float | bool) -> str:

@@ -12,7 +12,7 @@ from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, PEOPLE_SPEED_M_S, WITNES
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text, Whole
-from elbowroom.site.machine_entry import JointEntry, MachineEntry, OverrideEntry
+from elbowroom.site.machine_entry import JointEntry, MachineEntry, MemberEntry, OverrideEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.placement_entry import PlacementEntry
 from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, speed_of_people, up_to
@@ -120,6 +120,7 @@ class SiteEntry(Entry):
     camera_defaults: CameraSettings = CameraSettings()
     cameras: tuple[CameraEntry, ...] = ()
     machine: MachineEntry | None = None
+    machines: tuple[MemberEntry, ...] = ()
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
     zones: tuple[ZoneEntry, ...] = ()
     override: OverrideEntry = OverrideEntry()
@@ -137,6 +138,11 @@ class SiteEntry(Entry):
     placement: PlacementEntry | None = None
     watch: WatchEntry | None = None
     calibration: CalibrationEntry | None = None
+
+    @property
+    def has_machine(self) -> bool:
+        """Whether there is a machine, or several."""
+        return self.machine is not None or bool(self.machines)
 
     @model_validator(mode="after")
     def _fits_together(self) -> "SiteEntry":
@@ -167,12 +173,14 @@ class SiteEntry(Entry):
                 )
         if self.watch is not None and isinstance(self.recording, SevenScenes):
             raise ValueError("no key watch where layout seven_scenes makes a camera of each frame")
-        if self.joints and self.machine is None:
+        if self.machine is not None and self.machines:
+            raise ValueError("either machine or machines, not both")
+        if self.joints and not self.has_machine:
             raise ValueError("joints only with a machine")
         try:
             require_speed(self.people_speed_m_s, self.nothing_moves)
         except InputError as error:
             raise ValueError(str(error)) from None
-        if self.zones and self.machine is None:
+        if self.zones and not self.has_machine:
             raise ValueError("zones only with a machine: they say where its links may be")
         return self

@@ -16,6 +16,7 @@ from elbowroom.errors import CameraError, GridError, InputError, PoseWarning, Si
 from elbowroom.files.yaml_file import read_yaml
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
+from elbowroom.machine.together import together
 from elbowroom.motion import Motion, Override
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.sensing import Margin
@@ -110,8 +111,9 @@ class Site:
     @property
     def explain_tolerance_m(self) -> float:
         """How far from the machine's model a measured point may lie and still be the machine [m]."""
-        machine = self.entry.machine
-        given = machine.explain_tolerance_m if machine else None
+        alone = () if self.entry.machine is None else (self.entry.machine,)
+        said = [machine.explain_tolerance_m for machine in (*alone, *self.entry.machines)]
+        given = min((value for value in said if value is not None), default=None)
         return DEFAULT_EXPLAIN_TOLERANCE_M if given is None else given
 
     def terms(self, rule: Rule | None = None, detail: Detail | None = None) -> Terms:
@@ -290,14 +292,18 @@ class Site:
 
     @cached_property
     def _machine(self) -> Machine | None:
-        given = self.entry.machine
-        if given is None:
+        given, beside = self.entry.machine, self.path.parent
+        if given is not None:
+            alone = given
+            machine = self._blame("machine", lambda: alone.standing(beside))
+        elif self.entry.machines:
+            members = [
+                self._blame(f"machines[{n}] ({entry.name})", lambda entry=entry: entry.member(beside))  # type: ignore[misc]
+                for n, entry in enumerate(self.entry.machines)
+            ]
+            machine = self._blame(None, lambda: together(members))
+        else:
             return None
-        machine = self._blame("machine", lambda: given.build(self.path.parent))
-        kind = given.free_base
-        if kind is not None:
-            fixed = machine
-            machine = self._blame("machine", lambda: fixed.with_free_base(kind))
         return self._blame(None, lambda: with_zones(machine, self.entry.zones, self.path.parent))
 
     def motions(self, machine: Machine) -> tuple[Motion, ...]:

@@ -8,6 +8,7 @@ from numba import njit
 
 from elbowroom.geometry.kernels.bits import uncounted
 from elbowroom.geometry.kernels.rigid import along
+from elbowroom.machine.kernels.boxes import Boxes
 
 PARALLEL = 1e-12
 """Edges are parallel whose angle has a sine squared of less than this."""
@@ -299,3 +300,38 @@ def relate(placed, one, other, other_from_one):
             other_from_one[i, j] = b[0, i] * a[0, j] + b[1, i] * a[1, j] + b[2, i] * a[2, j]
         x, y, z = a[0, 3] - b[0, 3], a[1, 3] - b[1, 3], a[2, 3] - b[2, 3]
         other_from_one[i, 3] = b[0, i] * x + b[1, i] * y + b[2, i] * z
+
+
+class Bodies(NamedTuple):
+    """Links that must not meet, as triangles.
+
+    Fields:
+        boxes: of all links.
+        one, other: rows of the links of each pair, (pairs,).
+        met: links that are as near as that have met [m].
+    """
+
+    boxes: Boxes
+    one: np.ndarray
+    other: np.ndarray
+    met: float
+
+
+@njit(cache=True, nogil=True)
+def apart_now(bodies, placed, within, apart):
+    """Fills the distance of each pair, (pairs,) [m]; infinity: more than `within`.
+
+    Args:
+        bodies: what must not meet.
+        placed: where links are, (links, 4, 4).
+        within: what is farther apart does not matter [m].
+        apart: takes the distances.
+    """
+    other_from_one, work = np.empty((3, 4)), room()
+    speeds = np.full(bodies.boxes.part.max() + 1, 0.5)
+    for pair in range(apart.size):
+        one, other = bodies.one[pair], bodies.other[pair]
+        relate(placed, one, other, other_from_one)
+        work.last[0] = -1
+        away = soonest(bodies.boxes, (one, other), other_from_one, speeds, Asked(0.0, 0.0, within), work)
+        apart[pair] = 0.0 if away < 0.0 else away if away < within else math.inf

@@ -1,6 +1,5 @@
 """When links that are apart come to touch: exact distances, steps as long as they allow (conservative advancement)."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -9,23 +8,7 @@ from numba import njit
 from elbowroom.geometry.kernels.rigid import moved
 from elbowroom.machine.kernels.apart import Asked, Room, relate, room, soonest
 from elbowroom.machine.kernels.body import Tree
-from elbowroom.machine.kernels.boxes import Boxes
 from elbowroom.motion.kernels.mover import Course, place_at
-
-
-class Bodies(NamedTuple):
-    """Links that must not meet, as triangles.
-
-    Fields:
-        boxes: of all links.
-        one, other: rows of the links of each pair, (pairs,).
-        met: links that are as near as that have met [m].
-    """
-
-    boxes: Boxes
-    one: np.ndarray
-    other: np.ndarray
-    met: float
 
 
 class Travelling(NamedTuple):
@@ -36,26 +19,6 @@ class Travelling(NamedTuple):
     world_from_base: np.ndarray
     course: Course
     speeds: np.ndarray
-
-
-@njit(cache=True, nogil=True)
-def apart_now(bodies, placed, within, apart):
-    """Fills the distance of each pair, (pairs,) [m]; infinity: more than `within`.
-
-    Args:
-        bodies: what must not meet.
-        placed: where links are, (links, 4, 4).
-        within: what is farther apart does not matter [m].
-        apart: takes the distances.
-    """
-    other_from_one, work = np.empty((3, 4)), room()
-    speeds = np.full(bodies.boxes.part.max() + 1, 0.5)
-    for pair in range(apart.size):
-        one, other = bodies.one[pair], bodies.other[pair]
-        relate(placed, one, other, other_from_one)
-        work.last[0] = -1
-        away = soonest(bodies.boxes, (one, other), other_from_one, speeds, Asked(0.0, 0.0, within), work)
-        apart[pair] = 0.0 if away < 0.0 else away if away < within else math.inf
 
 
 class Space(NamedTuple):

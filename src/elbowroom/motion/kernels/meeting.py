@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.machine.kernels.apart import relate
-from elbowroom.motion.kernels.closing import Bodies, space, touch
+from elbowroom.machine.kernels.apart import Bodies, relate
+from elbowroom.motion.kernels.closing import space, touch
 from elbowroom.motion.kernels.field import Fields, at_least
 from elbowroom.motion.kernels.mover import Skin, carried, place_at
 
