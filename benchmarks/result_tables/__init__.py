@@ -7,7 +7,7 @@ from result_tables.placement import placement_tables, sweep_tables
 from result_tables.robots import robot_tables
 from result_tables.space import room_tables, sevenscenes_tables
 from result_tables.speed import bench_tables, start_tables
-from result_tables.verdicts import alone_tables, hand_tables, poses_tables, travel_tables
+from result_tables.verdicts import alone_tables, cell_tables, hand_tables, poses_tables, travel_tables
 
 __all__ = [
     "Row",
@@ -15,6 +15,7 @@ __all__ = [
     "any_tables",
     "bench_tables",
     "calibration_tables",
+    "cell_tables",
     "drift_tables",
     "hand_tables",
     "placement_tables",
