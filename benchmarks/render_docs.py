@@ -130,11 +130,25 @@ that is less than a voxel's diagonal away, and at S nothing is that near any mor
         tables.escape_tables,
     ),
     Section(
+        "cell.json",
+        "An arm on a table",
+        """
+A UR5 (package example-robot-data) on a table with a bin, a person beside it, six cameras of 424x240 with the noise of a
+RealSense D435, voxels of 2 cm, poses at random and at work (the tool down over the table) in turn. Of the motions of
+shoulder and elbow whose way is clear over the whole reach by exact geometry (coal), the share that stops, by what stops
+it. *milder*: levels milder than the truth, where the way ends at something of the room; *of its own links*: where it
+ends at another link. *declared*: the site lets shoulder and upper arm be near the table
+([safety](safety.md#what-it-touches-and-carries)); *none*: it does not.
+""",
+        "elbowroom evaluate cell",
+        tables.cell_tables,
+    ),
+    Section(
         "evaluate_poses.json",
         "Verdicts beside exact geometry",
         """
 The whole room at random moments and poses; each verdict beside what the distance of meshes says (coal).
-Exact images, cameras at 2.4 and 0.4 m in turn (at 2.4 m where a cabinet stands), which are where they are said to be:
+Exact images, cameras at 2.4 and 0.4 m in turn (beside a cabinet where one stands), which are where they are said to be:
 margins without a lateral error.
 """,
         "elbowroom evaluate poses",

@@ -187,7 +187,7 @@ def _coarse(settings: Settings) -> Settings:
 def _counted(
     moment: Moment, settings: Settings, by_motions: bool
 ) -> tuple[list[Words], NDArray[np.bool_] | None]:
-    """Planes of the truly free voxels that count, and the blocks to ask: of each motion its braking distance, its way."""
+    """Planes of the truly free voxels that count, two of each motion: braking distance, whole way; and what to ask."""
     grid, machine = settings.grid, settings.machine
     truth = true_occupancy(grid, moment)
     free = bits.pack(~truth.occupied & ~truth.machine, grid)

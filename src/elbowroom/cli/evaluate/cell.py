@@ -44,10 +44,12 @@ def cell(
     from elbowroom.evaluate.tables import Cell
 
     columns: dict[str, Cell] = {
+        "table": "{contact}",
         "joints": "{joints}",
         "poses": "{kind_of_pose}",
         "motions": "{motions}",
         "milder": "{milder_level}",
+        "own links": "{milder_own}",
         "truly clear": "{truly_clear}",
         "of these stop": text("{:.1f} %", "stop_where_clear_pct"),
         **{f"by {c.name.lower()}": f"{{stopped_by_{c.name.lower()}}}" for c in STOPPING},

@@ -1,6 +1,7 @@
 """Verdicts of a cell's motions beside exact geometry, pose by pose, and what they come to by cause."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,9 +11,10 @@ from elbowroom.evaluate.due import Due, where
 from elbowroom.evaluate.rooms.exact import Contact, ExactTravel
 from elbowroom.evaluate.rooms.scene import Comparison, only, settings_of
 from elbowroom.geometry.margin import Margin
+from elbowroom.machine import Machine
 from elbowroom.motion import Cause, Level, check_motions
 from elbowroom.motion.contacts import pairs_of
-from elbowroom.reconstruct import reconstruct
+from elbowroom.reconstruct import FreeSpace, reconstruct
 from elbowroom.simulate import Moment, render
 
 SHOULDER_AND_ELBOW = ("shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint")
@@ -36,10 +38,10 @@ COMPARED = (
 """What is kept of a comparison."""
 STOPPING = (Cause.SURFACE, Cause.UNSEEN, Cause.BLIND, Cause.MACHINE, Cause.OUTSIDE_GRID)
 """What can end a motion in this experiment."""
-MEASURED = where(joints="shoulder and elbow", kind_of_pose="all")
+MEASURED = where(joints="shoulder and elbow", kind_of_pose="all", contact="declared")
 DUE = (
     Due("stop_where_clear_pct", "≤", 15.0, MEASURED, "of the truly clear motions of shoulder and elbow stop"),
-    Due("milder_level", "≤", 0, words="milder than the truth"),
+    Due("milder_level", "≤", 0, words="milder than the truth of the room"),
 )
 
 
@@ -77,9 +79,13 @@ def cell_rows(
         truths = _truths(cell, drawn.moment)
         if any(truth.travel < TOUCHING for truth in truths):
             continue
+        space = _space_of(cell, drawn.moment, noise, seed + number)
         said = {"kind": "verdict", "pose": number, "kind_of_pose": drawn.kind, **_settings(cell, noise, seed)}
-        for compared in _judged(cell, drawn.moment, truths, noise, seed + number):
-            yield said | only(compared.row(), COMPARED)
+        for contact, machine in _machines(cell).items():
+            verdicts = check_motions(space, machine, drawn.moment.joints, cell.motions)
+            for motion, verdict, truth in zip(cell.motions, verdicts, truths, strict=True):
+                row = only(Comparison(motion, verdict, truth).row(), COMPARED)
+                yield said | row | {"contact": contact, "true_own": truth.solid in machine.link_names}
         done += 1
         if done == poses:
             return
@@ -110,25 +116,28 @@ def _truths(cell: Cell, moment: Moment) -> list[Contact]:
     ]
 
 
-def _judged(
-    cell: Cell, moment: Moment, truths: Sequence[Contact], noise: bool, seed: int
-) -> Iterator[Comparison]:
-    """The verdicts of one moment beside the truth."""
-    machine, terms = cell.machine, cell.terms
-    space = reconstruct(
+def _machines(cell: Cell) -> dict[str, Machine]:
+    """As the site declares what links may be near, and without a word of it, where it declares anything."""
+    machine = cell.machine
+    if not machine.stands:
+        return {"none": machine}
+    return {"declared": machine, "none": replace(machine, stands=())}
+
+
+def _space_of(cell: Cell, moment: Moment, noise: bool, seed: int) -> FreeSpace:
+    """The free space of a moment, from its images."""
+    terms = cell.terms
+    return reconstruct(
         cell.grid,
         cell.cameras,
         render(cell.cameras, moment, noise=noise, seed=seed),
-        machine,
+        cell.machine,
         moment.joints,
         rule=terms.rule,
         detail=terms.detail,
         margin=terms.margin if noise else Margin(lateral_px=0.0),
         looks=False,
     )
-    verdicts = check_motions(space, machine, moment.joints, cell.motions)
-    for motion, verdict, truth in zip(cell.motions, verdicts, truths, strict=True):
-        yield Comparison(motion, verdict, truth)
 
 
 def _earlier(one: Contact, other: Contact) -> Contact:
@@ -144,19 +153,21 @@ def cell_summary(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     Args:
         rows: of `cell_rows`.
     """
-    groups = {
-        "shoulder and elbow": _of_joints(rows, SHOULDER_AND_ELBOW),
-        "wrist": _of_joints(rows, SHOULDER_AND_ELBOW, False),
-    }
-    if not groups["shoulder and elbow"]:
-        groups = {}
-    groups["all"] = list(rows)
-    kinds = list(dict.fromkeys(row["kind_of_pose"] for row in rows))
     found = []
-    for joints, of in groups.items():
-        for kind in ["all", *(kinds if len(kinds) > 1 else ())]:
-            some = [row for row in of if kind in ("all", row["kind_of_pose"])]
-            found.append(_summed(some, joints, kind))
+    for contact in dict.fromkeys(row["contact"] for row in rows):
+        same = [row for row in rows if row["contact"] == contact]
+        groups = {
+            "shoulder and elbow": _of_joints(same, SHOULDER_AND_ELBOW),
+            "wrist": _of_joints(same, SHOULDER_AND_ELBOW, False),
+        }
+        if not groups["shoulder and elbow"]:
+            groups = {}
+        groups["all"] = same
+        kinds = list(dict.fromkeys(row["kind_of_pose"] for row in rows))
+        for joints, of in groups.items():
+            for kind in ["all", *(kinds if len(kinds) > 1 else ())]:
+                some = [row for row in of if kind in ("all", row["kind_of_pose"])]
+                found.append(_summed(some, joints, kind) | {"contact": contact})
     return found
 
 
@@ -167,9 +178,14 @@ def _of_joints(
 
 
 def _summed(rows: Sequence[Mapping[str, Any]], joints: str, kind: str) -> dict[str, Any]:
-    """One row: how many motions are truly clear, how many of these stop, and what stops them."""
+    """One row: how many motions are truly clear, how many of these stop, and what stops them.
+
+    `milder_level` counts levels milder than the truth where the link meets something of the room, `milder_own` where it
+    meets another link.
+    """
     ranks = {level.name.lower(): level.rank for level in Level}
     clear = [row for row in rows if row["truly_clear"]]
+    milder = [row for row in rows if ranks[row["level"]] > ranks[row["true_level"]]]
     stopped = [row for row in clear if row["level"] == "stop"]
     return {
         **settings_of(rows),
@@ -178,7 +194,8 @@ def _summed(rows: Sequence[Mapping[str, Any]], joints: str, kind: str) -> dict[s
         "kind_of_pose": kind,
         "poses": len({row["pose"] for row in rows}),
         "motions": len(rows),
-        "milder_level": sum(ranks[row["level"]] > ranks[row["true_level"]] for row in rows),
+        "milder_level": sum(not row["true_own"] for row in milder),
+        "milder_own": sum(row["true_own"] for row in milder),
         "more_travel": sum(row["milder"] for row in rows),
         "same_level_pct": _share(sum(row["level"] == row["true_level"] for row in rows), len(rows)),
         "truly_clear": len(clear),

@@ -68,7 +68,7 @@ class SweptLayout(SceneLayout):
         return self.valid / float(self.model.weight.sum())
 
     def gains(self) -> NDArray[np.float64]:
-        """How much more the motions would be worth with each candidate, shape (candidates,); -1 where its place is taken."""
+        """How much more the motions are worth with each candidate, shape (candidates,); -1 where its place is taken."""
         model = self.model
         values = np.zeros(model.candidates)
         kernels.values_with_each(

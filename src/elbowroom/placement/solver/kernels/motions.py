@@ -1,4 +1,4 @@
-"""What motions sweep, motion by motion, in planes of bits: how many of its voxels are not found, and what that is worth."""
+"""What motions sweep, one by one, in planes of bits: how many voxels are not found, and what that is worth."""
 
 from numba import njit
 
