@@ -64,8 +64,8 @@ earlier commit, 6c252c1, in turns in the same run; a third of it is due.
         "Fine meshes",
         """
 A robot of 20,000 and of 400,000 triangles before 21 cameras of 160x120: *explain*, drawing it into all images;
-*first samples*, of its body for the swept check, once a machine; *another base*, the machine at another place. Meshes are
-simplified outward to what a pixel or a voxel can tell, so they are drawn with fewer.
+*first samples*, of its body for the swept check, once a machine; *another base*, the machine at another place.
+Meshes are simplified outward to what a pixel or a voxel can tell, so they are drawn with fewer.
 """,
         "elbowroom bench machine",
         tables.machine_tables,
@@ -284,8 +284,9 @@ moments boxes were moved, played again and again; its first camera's reference i
         "Values that are looked at",
         """
 Right: moments of the recordings, of the package's rooms and of random simulated sites; anything that is said of
-them is a false alarm. Wrong: random sites, each made wrong in each kind ([what is looked for](safety.md#values-are-looked-at)).
-The poses of `kinect_board_2cam` are guesses by eye, as its site file says: its warning is right.
+them is a false alarm. Wrong: random sites, each made wrong in each kind
+([what is looked for](safety.md#values-are-looked-at)). The poses of `kinect_board_2cam` are guesses by eye:
+its warning is right.
 """,
         "elbowroom evaluate looks",
         tables.looks_tables,
@@ -294,8 +295,9 @@ The poses of `kinect_board_2cam` are guesses by eye, as its site file says: its 
         "contradictions.json",
         "Cameras that contradict each other",
         """
-Random sites of 3 to 21 cameras, described wrongly in each of 20 ways; *named*: of the cameras that are wrong, all, and no
-others. The recordings, the simulated room and random sites, described rightly ([how](safety.md#cameras-that-contradict-each-other)).
+Random sites of 3 to 21 cameras, described wrongly in each of 20 ways; *named*: of the cameras that are wrong, all,
+and no others. The recordings, the simulated room and random sites, described rightly
+([how](safety.md#cameras-that-contradict-each-other)).
 """,
         "elbowroom evaluate contradictions",
         tables.contradiction_tables,

@@ -43,7 +43,7 @@ TYPED_ALONE = {
 
 SMALLER = {
     "calibrate simulate board --out capture": "--cameras 4 --poses 10 --seed 2 --size qqvga --noise exact",
-    "calibrate simulate board --near --lens --focal 2 --out near": "--cameras 1 --poses 8 --size qqvga --noise exact",
+    "calibrate simulate board --near --lens --focal 2 --out near": "--cameras 1 --poses 5 --size qqvga --noise exact",
     "monitor calibrated.yaml": "--voxel-size 0.2 --seconds 0.5",
     "calibrate simulate machine --out moving": "--cameras 3 --poses 5 --size qqvga",
     "calibrate commission my_room.yaml --out my_room_watched.yaml": "--frames 5",
