@@ -8,6 +8,7 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 from elbowroom.site.site import Site
+from elbowroom.sources.layouts.bag import BagFrames
 from elbowroom.sources.layouts.folder import Folder
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
@@ -117,7 +118,7 @@ def times_of(site: Site) -> Meeting | None:
         SiteError, FrameError: as `moments`.
     """
     layout = layout_of(site) if site.entry.recording is not None else None
-    return layout.meeting if isinstance(layout, Folder) else None
+    return layout.meeting if isinstance(layout, Folder | BagFrames) else None
 
 
 def time_findings(site: Site) -> tuple[Finding, ...]:
@@ -129,12 +130,13 @@ def time_findings(site: Site) -> tuple[Finding, ...]:
     layout = layout_of(site) if site.entry.recording is not None else None
     if isinstance(layout, Stampless):
         return padding_findings({name: [i.path for i in row] for name, row in layout.by_camera().items()})
-    if not isinstance(layout, Folder):
+    if not isinstance(layout, Folder | BagFrames):
         return ()
     layout.moments()
     record = layout.joints() if site.entry.machine is not None and layout.joints_path.exists() else None
     joints = () if record is None else joint_findings(layout.joints_path, record, layout.meeting)
-    return (*findings_of(layout.meeting), *joints)
+    notes = layout.notes if isinstance(layout, BagFrames) else ()
+    return (*(Finding("bag", (), note, False) for note in notes), *findings_of(layout.meeting), *joints)
 
 
 def excluded_frames(site: Site) -> tuple[tuple[DepthCamera, DepthFrame], ...]:
