@@ -91,7 +91,12 @@ def camera_info(camera, stamp_ns, frame="", **more):
 
 def region(x, y, width, height):
     return made(
-        "sensor_msgs/msg/RegionOfInterest", x_offset=x, y_offset=y, height=height, width=width, do_rectify=False
+        "sensor_msgs/msg/RegionOfInterest",
+        x_offset=x,
+        y_offset=y,
+        height=height,
+        width=width,
+        do_rectify=False,
     )
 
 
@@ -116,7 +121,10 @@ def transform(parent, child, pose, stamp_ns=T0):
         child_frame_id=child,
         transform=made(
             "geometry_msgs/msg/Transform",
-            translation=made("geometry_msgs/msg/Vector3", **dict(zip("xyz", map(float, np.asarray(pose)[:3, 3]), strict=True))),
+            translation=made(
+                "geometry_msgs/msg/Vector3",
+                **dict(zip("xyz", map(float, np.asarray(pose)[:3, 3]), strict=True)),
+            ),
             rotation=made("geometry_msgs/msg/Quaternion", x=x, y=y, z=z, w=w),
         ),
     )

@@ -1,4 +1,4 @@
-"""`elbowroom site new` and `elbowroom site check`."""
+"""`elbowroom site new` and `elbowroom site check`, and the others of `elbowroom site`."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from elbowroom.cli.options import JsonFile, SitePath
+from elbowroom.cli.site_bag import from_bag, topics
 from elbowroom.cli.site_mask import mask
 from elbowroom.cli.site_moment import pose_to_draw, tight_notes
 from elbowroom.errors import SiteError
@@ -20,11 +21,13 @@ if TYPE_CHECKING:
     from elbowroom.site import Site
 
 site_app = typer.Typer(
-    help="Write a site file, check one, or find masks.",
+    help="Write a site file, also by a bag of ROS 2; check one; find masks.",
     epilog="Begin with: elbowroom site new my_room.yaml",
     no_args_is_help=True,
 )
 site_app.command(epilog="Example: elbowroom site mask my_room.yaml --out masks")(mask)
+site_app.command("from-bag", epilog="Example: elbowroom site from-bag my_bag --out my_room.yaml")(from_bag)
+site_app.command(epilog="Example: elbowroom site topics my_bag")(topics)
 
 
 @site_app.command(epilog="Example: elbowroom site new my_room.yaml")

@@ -88,6 +88,10 @@ class Bag:
         stored = [message for part in self._parts for message in part.messages(topic)]
         return sorted(stored, key=lambda message: message.received_ns)
 
+    def count(self, topic: str) -> int:
+        """How many messages a topic has, however they are written."""
+        return sum(len(part.messages(topic)) for part in self._parts)
+
     def read(self, stored: Stored) -> bytes:
         """The bytes of a message.
 

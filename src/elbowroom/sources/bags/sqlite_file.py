@@ -18,6 +18,8 @@ COLUMNS = {
     "messages": {"id", "topic_id", "timestamp", "data"},
 }
 MOST_TOPICS = 10_000
+FAULTS = sqlite3.Error, UnicodeDecodeError
+"""Of a damaged file; the second where the fault's own text quotes what is no UTF-8."""
 
 
 class SqliteFile:
@@ -41,7 +43,7 @@ class SqliteFile:
             self._require_tables()
             self._names = self._read_topics()
             self._look_through()
-        except sqlite3.Error as error:
+        except FAULTS as error:
             self.close()
             raise BagError(f"{path}: a database that cannot be read ({error}){_hint(error)}") from None
         except BaseException:
@@ -63,7 +65,7 @@ class SqliteFile:
         try:
             with self._lock, closing(self._blob(stored.place)) as blob:
                 data = blob.read()
-        except sqlite3.Error as error:
+        except FAULTS as error:
             raise BagError(f"{what}: cannot be read ({error})") from None
         return unpacked(data, "zstd", LARGEST_MESSAGE, what) if is_zstd(data) else data
 
@@ -99,7 +101,7 @@ class SqliteFile:
                 if topic is not None and 0 <= received < 2**63 and 0 < size <= LARGEST_MESSAGE:
                     stamp = self._stamp(number, size)
                     self._stored[topic.name].append(Stored(received, stamp, size, self.part, number, 0))
-        except sqlite3.Error as error:
+        except FAULTS as error:
             self.notes.append(f"{self.path}: cut off or damaged ({error}); it is read up to there")
 
     def _rows(self) -> Iterator[tuple[int, int, int, int]]:
@@ -128,12 +130,12 @@ def _opened(path: Path) -> sqlite3.Connection:
         base.execute("pragma trusted_schema = off")
         base.execute("pragma cell_size_check = on")
         base.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_MESSAGE)
-    except sqlite3.Error as error:
+    except FAULTS as error:
         raise BagError(f"{path}: cannot be opened ({error}){_hint(error)}") from None
     return base
 
 
-def _hint(error: sqlite3.Error) -> str:
+def _hint(error: Exception) -> str:
     text = str(error)
     if "malformed" in text or "not a database" in text:
         return "; it is cut off or damaged: `sqlite3 FILE .recover` saves what is whole"
