@@ -3,6 +3,7 @@
 from elbowroom.sources.cameras import cameras_of
 from elbowroom.sources.depth_png import read_depth_png
 from elbowroom.sources.looked import dark_note, looked_at
+from elbowroom.sources.played import Played
 from elbowroom.sources.recorded import (
     Recorded,
     check_images,
@@ -12,10 +13,11 @@ from elbowroom.sources.recorded import (
     time_findings,
     times_of,
 )
-from elbowroom.sources.room import Room, open_room
+from elbowroom.sources.room import Room, live, open_room
 from elbowroom.sources.source import Source
 
 __all__ = [
+    "Played",
     "Recorded",
     "Room",
     "Source",
@@ -23,6 +25,7 @@ __all__ = [
     "check_images",
     "dark_note",
     "excluded_frames",
+    "live",
     "looked_at",
     "moments",
     "open_room",

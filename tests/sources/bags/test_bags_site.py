@@ -275,3 +275,19 @@ def test_lenses_that_are_not_read(told, fields):
 )
 def test_cameras_are_named_by_their_topics(topic, camera):
     assert camera_name(topic) == camera
+
+
+def test_monitor_plays_a_bag_and_tells_of_its_clocks(tmp_path, run):
+    room = bag_room()
+    bag = bags.written(tmp_path / "run", room.messages(), "sqlite3")
+    site = room.site(tmp_path / "room.yaml", room.recording(bag), max_frame_age_ms=500)
+    code, told = run("monitor", str(site), "--json", str(tmp_path / "out.json"))
+    assert code == 0 and "playing" in told
+    rows = json.loads((tmp_path / "out.json").read_text())["rows"]
+    cycles = [row for row in rows if row["kind"] == "cycle"]
+    assert cycles and all(row["fault"] is None and row["skew_ms"] == 0 for row in cycles)
+    # 12 ms on the way, and what the clock may be off
+    assert all(row["oldest_age_ms"] > 16 for row in cycles)
+    clocks = {row["camera"]: row for row in rows if row["kind"] == "clock"}
+    assert set(clocks) == {camera.name for camera in room.cameras}
+    assert all(row["offset_ms"] == 12 and 4 < row["bound_ms"] < 5 for row in clocks.values())

@@ -1,5 +1,6 @@
 """The model of a camera's clock: what it says beside the clock that made the stamps."""
 
+import itertools
 import random
 
 import pytest
@@ -121,5 +122,5 @@ def test_the_hull_lies_below_all_points_and_touches_them(heights):
     points = list(enumerate(heights))
     hull = lower_hull(points)
     assert hull[0] == points[0] and hull[-1] == points[-1] and set(hull) <= set(points)
-    for (ax, ay), (bx, by) in zip(hull, hull[1:], strict=False):
+    for (ax, ay), (bx, by) in itertools.pairwise(hull):
         assert all((y - ay) * (bx - ax) >= (by - ay) * (x - ax) for x, y in points if ax <= x <= bx)

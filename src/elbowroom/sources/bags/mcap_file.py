@@ -23,6 +23,8 @@ KEPT = 1 << 26
 """Of unpacked chunks the newest are kept, up to so many bytes together, and one at least."""
 RECORD, CHUNK_HEAD = struct.Struct("<BQ"), struct.Struct("<QQQI")
 MESSAGE_HEAD = struct.Struct("<HIQQ")
+HEAD_SIZE = MESSAGE_HEAD.size + 12
+"""Of a message so much is looked at: with the time in its header [bytes]."""
 SCHEMA, CHANNEL, MESSAGE, CHUNK, FOOTER, DATA_END = 3, 4, 5, 6, 2, 15
 ALONE = -1
 """The chunk of a message that lies in none."""
@@ -104,7 +106,7 @@ class McapFile:
             if record.kind == CHUNK:
                 self._look_into(record)
             elif record.kind == MESSAGE:
-                head = self._at(record.begin, min(record.size, MESSAGE_HEAD.size + 12))
+                head = self._at(record.begin, min(record.size, HEAD_SIZE))
                 self._add_message(head, record.begin, record.size, ALONE)
             elif record.kind in (SCHEMA, CHANNEL):
                 self._define(record.kind, self._bounded(record))
@@ -155,7 +157,8 @@ class McapFile:
             if at > len(content):
                 break
             if kind == MESSAGE:
-                self._add_message(content[begin : begin + MESSAGE_HEAD.size + 12], begin, size, number)
+                head = content[begin : begin + min(size, HEAD_SIZE)]
+                self._add_message(head, begin, size, number)
             elif kind in (SCHEMA, CHANNEL):
                 self._define(kind, content[begin:at])
 

@@ -4,6 +4,7 @@ import difflib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +67,18 @@ class Message:
         return depth_of(self.bag.topics[self.topic].type, self.content(), self.name, size)
 
 
+class Arrival(NamedTuple):
+    """An image, and when the recorder got it.
+
+    Args:
+        received_ns: [ns, the recorder's clock].
+        image: not read yet.
+    """
+
+    received_ns: int
+    image: Image
+
+
 @dataclass(frozen=True, eq=False)
 class BagFrames:
     """A recording of this layout (`Layout`).
@@ -100,6 +113,20 @@ class BagFrames:
     def by_camera(self) -> dict[str, list[Image]]:
         """Each camera's images by rising time. Raises as `moments`."""
         return dict(self._rows)
+
+    def arrivals(self) -> list[Arrival]:
+        """All images by the time at which the recorder got them. Raises as `moments`."""
+        found = [
+            Arrival(image.stored.stored.received_ns, image)
+            for row in self._rows.values()
+            for image in row
+            if isinstance(image.stored, Message)
+        ]
+        return sorted(found, key=lambda arrival: arrival.received_ns)
+
+    def by_header(self, camera: str) -> bool:
+        """Whether a camera's times are those of exposure; otherwise, of receipt."""
+        return self._times[camera].by_header
 
     @property
     def joints_path(self) -> Path:

@@ -6,6 +6,7 @@ line below all differences, as high as it goes, is what the clocks are apart wit
 Towsley 1999; Zhang, Liu and Xia 2002). What the least delay is no stamp can say.
 """
 
+import itertools
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -132,5 +133,5 @@ def _slope(hull: Sequence[tuple[int, int]]) -> float:
     if len(hull) < 2:
         return 0.0
     middle = (hull[0][0] + hull[-1][0]) / 2
-    left, right = next((a, b) for a, b in zip(hull, hull[1:], strict=False) if b[0] >= middle)
+    left, right = next((a, b) for a, b in itertools.pairwise(hull) if b[0] >= middle)
     return (right[1] - left[1]) / (right[0] - left[0])
