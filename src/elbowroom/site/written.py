@@ -206,7 +206,8 @@ def moved(value: Any, old: Path, new: Path) -> Any:
             if key in PATH_KEYS
             and isinstance(item, str)
             and not (key == "mesh" and SHIPPED_ROOM.fullmatch(item))
-            else moved(item, old, new)
+            # topics of a bag look like paths and are none
+            else (item if key == "topics" else moved(item, old, new))
             for key, item in value.items()
         }
     return [moved(item, old, new) for item in value] if isinstance(value, list) else value

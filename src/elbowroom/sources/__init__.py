@@ -7,6 +7,7 @@ from elbowroom.sources.played import Played
 from elbowroom.sources.recorded import (
     Recorded,
     check_images,
+    clocks_of,
     excluded_frames,
     moments,
     silent_cameras,
@@ -23,6 +24,7 @@ __all__ = [
     "Source",
     "cameras_of",
     "check_images",
+    "clocks_of",
     "dark_note",
     "excluded_frames",
     "live",

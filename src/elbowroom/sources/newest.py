@@ -7,7 +7,7 @@ from typing import NamedTuple
 from elbowroom.errors import BagError, FrameError
 from elbowroom.finding import Finding
 from elbowroom.sensing import DepthFrame
-from elbowroom.sources.layouts.bag import Arrival
+from elbowroom.sources.layouts.bag_image import Arrival
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.room_clock import RoomClock
 from elbowroom.sources.times.series import length_text

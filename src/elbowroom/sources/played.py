@@ -11,7 +11,8 @@ from elbowroom.finding import Finding
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 from elbowroom.site.recording_entry import BagRecording
 from elbowroom.site.site import Site
-from elbowroom.sources.layouts.bag import Arrival, BagFrames
+from elbowroom.sources.layouts.bag import BagFrames
+from elbowroom.sources.layouts.bag_image import Arrival
 from elbowroom.sources.newest import Newest
 from elbowroom.sources.recorded import Joints
 from elbowroom.sources.room_clock import RoomClock

@@ -14,6 +14,8 @@ from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
 from elbowroom.sources.layouts.seven_scenes import SevenScenesFrames
 from elbowroom.sources.layouts.stampless import Stampless
+from elbowroom.sources.room_clock import clock_text
+from elbowroom.sources.times.clock import ClockEstimate
 from elbowroom.sources.times.company import require_company
 from elbowroom.sources.times.joints import joint_findings
 from elbowroom.sources.times.meeting import Meeting
@@ -121,6 +123,16 @@ def times_of(site: Site) -> Meeting | None:
     return layout.meeting if isinstance(layout, Folder | BagFrames) else None
 
 
+def clocks_of(site: Site) -> Mapping[str, ClockEstimate]:
+    """What a bag says of its cameras' clocks beside the recorder's, at its end; of no other recording anything.
+
+    Raises:
+        SiteError, BagError, FrameError: as `moments`.
+    """
+    layout = layout_of(site) if site.entry.recording is not None else None
+    return layout.clocks() if isinstance(layout, BagFrames) else {}
+
+
 def time_findings(site: Site) -> tuple[Finding, ...]:
     """What is odd about the times of a recording, though each moment can be judged.
 
@@ -136,7 +148,13 @@ def time_findings(site: Site) -> tuple[Finding, ...]:
     record = layout.joints() if site.entry.machine is not None and layout.joints_path.exists() else None
     joints = () if record is None else joint_findings(layout.joints_path, record, layout.meeting)
     notes = layout.notes if isinstance(layout, BagFrames) else ()
-    return (*(Finding("bag", (), note, False) for note in notes), *findings_of(layout.meeting), *joints)
+    clocks = layout.clocks() if isinstance(layout, BagFrames) else {}
+    told = [text for name, clock in clocks.items() if (text := clock_text(name, clock)) is not None]
+    return (
+        *(Finding("bag", (), text, False) for text in (*notes, *told)),
+        *findings_of(layout.meeting),
+        *joints,
+    )
 
 
 def excluded_frames(site: Site) -> tuple[tuple[DepthCamera, DepthFrame], ...]:

@@ -321,3 +321,25 @@ def test_missing_packages_and_files_are_said(tmp_path, monkeypatch):
     (bag / "metadata.yaml").write_text("rosbag2_bagfile_information: {relative_file_paths: [a.mcap]}")
     with pytest.raises(BagError, match=r"named in metadata\.yaml, and not there"):
         Bag(bag)
+
+
+@pytest.mark.parametrize("storage", ("mcap", "sqlite3"))
+def test_a_file_that_was_compressed_and_cut_off(storage, tmp_path):
+    # zstd gives what it has block by block, of 128 kB
+    noise = [
+        ("/noise", bags.T0 + n * 20 * bags.MS, ("std_msgs/msg/String", random.Random(n).randbytes(60_000)))
+        for n in range(15)
+    ]
+    found = sorted([*bag_room().messages(), *noise], key=lambda message: message[1])
+    (whole,) = bags.written(tmp_path / "bag", found, storage, "file").glob("*.zstd")
+    data, cut = whole.read_bytes(), tmp_path / f"cut.{storage}.zstd"
+    found.clear()
+    for size in sorted(random.Random(4).sample(range(4, len(data)), 20)):
+        cut.write_bytes(data[:size])
+        try:
+            with Bag(cut) as bag:
+                found.append(sum(map(bag.count, bag.topics)))
+                assert bag.notes
+        except BagError as error:
+            assert "\n" not in str(error)
+    assert storage == "sqlite3" or (found == sorted(found) and found[-1] > 0)

@@ -5,7 +5,7 @@ import pytest
 from mcap.writer import CompressionType
 
 from elbowroom.site import Site
-from elbowroom.sources import check_images, moments, open_room, time_findings, times_of
+from elbowroom.sources import check_images, clocks_of, moments, open_room, time_findings, times_of
 from reference import bag_files as bags
 from reference.bag_room import bag_room
 
@@ -136,3 +136,54 @@ def test_images_without_a_stamp_among_others_are_left_out_and_said(tmp_path):
     assert [f.text for f in time_findings(site)] == [
         "/cam00/depth/image_raw: 1 messages without a stamp are left out"
     ]
+
+
+def test_chunks_that_rosbags_compresses(in_folder, tmp_path):
+    bag = bags.written(tmp_path / "bag", bag_room().messages(), "mcap", "storage")
+    same(list(moments(site_of(tmp_path, bag))), in_folder[1])
+
+
+def test_another_lens_than_the_bags_is_said(tmp_path):
+    bag = bags.written(tmp_path / "bag", bag_room().messages())
+    site = site_of(tmp_path, bag)
+    other = site.entry.cameras[1].model_copy(update={"fx": site.entry.cameras[1].fx * 1.1})
+    entry = site.entry.model_copy(update={"cameras": (site.entry.cameras[0], other, *site.entry.cameras[2:])})
+    (said,) = time_findings(Site(site.path, entry))
+    assert "camera cam01: the bag's CameraInfo says fx 24," in said.text and not said.stops
+
+
+def test_clocks_are_told_by_site_check(tmp_path):
+    messages = []
+    for topic, at, message in bag_room().messages():
+        if topic == "/cam02/depth/image_raw":
+            message = bags.image(bag_room().raw["cam02"][at - 12 * bags.MS], at + 88 * bags.MS, "x")
+        messages.append((topic, at, message))
+    site = site_of(tmp_path, bags.written(tmp_path / "bag", messages), max_skew_ms=150)
+    clocks = clocks_of(site)
+    assert (clocks["cam02"].offset_ns, clocks["cam01"].offset_ns) == (-88 * bags.MS, 12 * bags.MS)
+    texts = [finding.text for finding in time_findings(site)]
+    assert any("camera cam02: its stamps are 88 ms ahead of when its images come" in text for text in texts)
+
+
+def test_boards_are_looked_for_in_bags_too(in_folder, tmp_path):
+    from elbowroom.calibrate.boards.capture import images_by_pose
+
+    site = site_of(tmp_path, bags.written(tmp_path / "bag", bag_room().messages()))
+    poses, others = images_by_pose(site), images_by_pose(in_folder[0])
+    for images, theirs in zip(poses, others, strict=True):
+        assert [(i.camera.name, i.stamp_ns, i.path.name) for i in images] == [
+            (i.camera.name, i.stamp_ns, i.path.name) for i in theirs
+        ]
+        assert all(np.array_equal(a.raw(), b.raw()) for a, b in zip(images, theirs, strict=True))
+        assert len({image.content() for image in images}) == 4
+
+
+def test_a_site_of_a_bag_is_written_again_elsewhere(tmp_path):
+    """Its file leads to the same bag; its topics are no paths, whatever a camera is called."""
+    from elbowroom.site.written import moved
+
+    recording = {"layout": "bag", "file": "bags/run", "topics": {"file": "/file/depth", "north": "/n"}}
+    found = moved({"recording": recording}, tmp_path, tmp_path / "deep" / "er")
+    assert (
+        found["recording"]["file"] == "../../bags/run" and found["recording"]["topics"] == recording["topics"]
+    )

@@ -93,11 +93,14 @@ def test_a_chain_of_frames_leads_to_the_world(tmp_path):
         )
         own = bags.transforms(bags.transform(f"{camera.name}_link", f"{camera.name}_optical", optical))
         messages += [("/tf_static", 2, bags.transforms(*parts)), (f"/{camera.name}/tf_static", 3, own)]
+    base = bags.transforms(bags.transform("map", "robot_base", np.eye(4)))
+    messages.append(("/tf_static", 4, base))
     found = said(tmp_path / "bag", sorted(messages, key=lambda m: m[1]))
     assert found.world == "world"
     for camera, true in zip(found.cameras, room.cameras, strict=True):
         assert camera.world_from_camera == pytest.approx(true.world_from_camera, abs=1e-9)
     by_map = said(tmp_path / "again", sorted(messages, key=lambda m: m[1]), world="map")
+    assert set(found.bases) == {"robot_base"} and found.bases["robot_base"] == pytest.approx(poses["map"])
     assert poses["map"] @ by_map.cameras[2].world_from_camera == pytest.approx(
         room.cameras[2].world_from_camera, abs=1e-9
     )

@@ -1,4 +1,4 @@
-"""Which cameras a bag has: topics of depth images, each with its CameraInfo, and a name for the camera."""
+"""Which cameras a bag has: topics of depth images, and a name for the camera of each."""
 
 import re
 from collections import defaultdict
@@ -10,7 +10,8 @@ import numpy as np
 from elbowroom.errors import BagError, FrameError, InputError
 from elbowroom.sources.bags.bag import Bag
 from elbowroom.sources.bags.depth import TRANSPORT, Kind, kind_of
-from elbowroom.sources.bags.messages import CAMERA_INFO, COMPRESSED, IMAGE, CameraInfo, camera_info_of
+from elbowroom.sources.bags.lenses import RECTIFIED
+from elbowroom.sources.bags.messages import COMPRESSED, IMAGE
 from elbowroom.sources.bags.stamps import stamped
 from elbowroom.sources.times.series import usual_step_ns
 from elbowroom.sources.times.stamp import hz
@@ -45,6 +46,11 @@ class DepthTopic(NamedTuple):
         return ALIGNED.search(self.name) is not None
 
     @property
+    def is_rectified(self) -> bool:
+        """Whether images were made pinhole, by the topic's name."""
+        return self.base.rpartition("/")[2].startswith(RECTIFIED)
+
+    @property
     def base(self) -> str:
         """The topic without its transport."""
         return self.name.removesuffix(f"/{TRANSPORT}")
@@ -77,7 +83,7 @@ def depth_topics(bag: Bag) -> Found:
     found: dict[str, DepthTopic] = {}
     others: dict[str, str] = {}
     for topic in bag.of_type(IMAGE, COMPRESSED):
-        kind = _first_kind(bag, topic)
+        kind = first_kind(bag, topic)
         if isinstance(kind, str):
             others[topic] = kind
             continue
@@ -114,40 +120,6 @@ def chosen(bag: Bag, given: Sequence[str]) -> dict[str, DepthTopic]:
                 f"{camera}={topics[0].name}, and likewise of each other camera"
             )
     return {camera: topics[0] for camera, topics in groups.items()}
-
-
-def info_topic(bag: Bag, topic: DepthTopic) -> str:
-    """The topic of a depth topic's CameraInfo: beside it, or below it, or else the only one of the same axes.
-
-    Raises:
-        BagError: there is none.
-    """
-    infos = [name for name in bag.of_type(CAMERA_INFO) if bag.messages(name)]
-    beside = topic.base.rpartition("/")[0]
-    for name in (f"{beside}/camera_info", f"{topic.base}/camera_info"):
-        if name in infos:
-            return name
-    alike = [name for name in infos if _info(bag, name).header.frame == topic.kind.frame]
-    if len(alike) == 1:
-        return alike[0]
-    known = ", ".join(infos) or "none"
-    raise BagError(
-        f"{bag.path}: no CameraInfo of {topic.name}: expected {beside}/camera_info; there are {known}. Record it too, "
-        "or write the site file by hand (`elbowroom site new`)"
-    )
-
-
-def info_of(bag: Bag, name: str) -> CameraInfo:
-    """The first CameraInfo of a topic.
-
-    Raises:
-        BagError: malformed, or a later one says another lens.
-    """
-    first = _info(bag, name)
-    last = camera_info_of(bag.read(bag.messages(name)[-1]), f"{bag.path}: {name}")
-    if (first.k != last.k).any() or (first.width, first.height) != (last.width, last.height):
-        raise BagError(f"{bag.path}: {name}: the lens or the size at the end is not that of the beginning")
-    return first
 
 
 def camera_name(topic: str) -> str:
@@ -195,8 +167,8 @@ def _one_transport(topics: Mapping[str, DepthTopic]) -> list[DepthTopic]:
     return [topic for name, topic in topics.items() if topic.base == name or topic.base not in topics]
 
 
-def _first_kind(bag: Bag, topic: str) -> Kind | str:
-    """Of the first message that is a depth image; or why the first is none."""
+def first_kind(bag: Bag, topic: str) -> Kind | str:
+    """Of the first message of a topic of images that is a depth image; or why the first is none."""
     if bag.topics[topic].encoding != "cdr":
         return f"{topic}: written as {bag.topics[topic].encoding!r}, not cdr"
     why: str | None = None
@@ -206,7 +178,3 @@ def _first_kind(bag: Bag, topic: str) -> Kind | str:
         except (FrameError, BagError) as error:
             why = why or str(error)
     return why or f"{topic}: no message"
-
-
-def _info(bag: Bag, name: str) -> CameraInfo:
-    return camera_info_of(bag.read(bag.messages(name)[0]), f"{bag.path}: {name}")

@@ -5,7 +5,6 @@ The format is that of mcap.dev, specification, version 0. Index and summary at t
 
 import struct
 import threading
-import zlib
 from collections import OrderedDict, defaultdict
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -13,15 +12,14 @@ from typing import BinaryIO, NamedTuple
 
 from elbowroom.errors import BagError
 from elbowroom.sources.bags.cdr import stamp_at_head
+from elbowroom.sources.bags.mcap_chunk import LONGEST_HEAD, Chunk, chunk_of, content_of
 from elbowroom.sources.bags.storage import LARGEST_MESSAGE, Stored, Topic
-from elbowroom.sources.bags.unpacked import is_zstd, unpacked, unpacked_as_far
+from elbowroom.sources.bags.unpacked import is_zstd, unpacked
 
 MAGIC = b"\x89MCAP0\r\n"
-LARGEST_CHUNK = LARGEST_MESSAGE
-"""A chunk that unpacks to more is not read [bytes]."""
 KEPT = 1 << 26
 """Of unpacked chunks the newest are kept, up to so many bytes together, and one at least."""
-RECORD, CHUNK_HEAD = struct.Struct("<BQ"), struct.Struct("<QQQI")
+RECORD = struct.Struct("<BQ")
 MESSAGE_HEAD = struct.Struct("<HIQQ")
 HEAD_SIZE = MESSAGE_HEAD.size + 12
 """Of a message so much is looked at: with the time in its header [bytes]."""
@@ -34,15 +32,6 @@ class _Record(NamedTuple):
     kind: int
     begin: int
     size: int
-
-
-class _Chunk(NamedTuple):
-    begin: int
-    packed: int
-    unpacked: int
-    crc: int
-    kind: str
-    is_whole: bool
 
 
 class McapFile:
@@ -62,7 +51,7 @@ class McapFile:
         self._schemas: dict[int, str] = {}
         self._channels: dict[int, Topic] = {}
         self._stored: dict[str, list[Stored]] = defaultdict(list)
-        self._chunks: list[_Chunk] = []
+        self._chunks: list[Chunk] = []
         self._kept: OrderedDict[int, bytes] = OrderedDict()
         self._lock = threading.Lock()
         self._file = path.open("rb")
@@ -138,16 +127,17 @@ class McapFile:
 
     def _look_into(self, record: _Record) -> None:
         """Adds the messages of a chunk, as far as it goes."""
-        head = self._at(record.begin, min(record.size, CHUNK_HEAD.size + 300))
-        chunk = self._chunk(record, head)
-        if chunk is None:
-            return
         number = len(self._chunks)
-        self._chunks.append(chunk)
         try:
+            chunk = chunk_of(
+                self._at(record.begin, min(record.size, LONGEST_HEAD)), record.begin, record.size
+            )
+            if chunk is None:
+                return
+            self._chunks.append(chunk)
             content = self._unpacked(number)
         except BagError as error:
-            self.notes.append(f"{error}; its messages are left out")
+            self.notes.append(f"{self.path}: {error}; its messages are left out")
             return
         at = 0
         while at + RECORD.size <= len(content):
@@ -162,27 +152,6 @@ class McapFile:
             elif kind in (SCHEMA, CHANNEL):
                 self._define(kind, content[begin:at])
 
-    def _chunk(self, record: _Record, head: bytes) -> _Chunk | None:
-        """What a chunk says of itself; None: it is cut off in that, or says what cannot be."""
-        if len(head) < CHUNK_HEAD.size + 12:
-            return None
-        _, _, size, crc = CHUNK_HEAD.unpack_from(head)
-        at = CHUNK_HEAD.size
-        (letters,) = struct.unpack_from("<I", head, at)
-        if letters > 32 or len(head) < at + 12 + letters:
-            return None
-        kind = head[at + 4 : at + 4 + letters].decode("ascii", "replace")
-        (packed,) = struct.unpack_from("<Q", head, at + 4 + letters)
-        begin = record.begin + at + 12 + letters
-        there = record.begin + record.size - begin
-        if size > LARGEST_CHUNK or packed > LARGEST_CHUNK:
-            self.notes.append(
-                f"{self.path}: chunk at byte {record.begin:,}: {max(size, packed):,} bytes, at most "
-                f"{LARGEST_CHUNK:,} are read; its messages are left out"
-            )
-            return None
-        return _Chunk(begin, min(packed, there), size, crc, kind, packed <= there)
-
     def _unpacked(self, number: int) -> bytes:
         """What a chunk holds; the newest are kept."""
         with self._lock:
@@ -190,21 +159,12 @@ class McapFile:
             if kept is not None:
                 self._kept.move_to_end(number)
                 return kept
-            content = self._unpack(self._chunks[number])
+            chunk = self._chunks[number]
+            content = content_of(chunk, self._at(chunk.begin, chunk.packed))
             self._kept[number] = content
             while len(self._kept) > 1 and sum(map(len, self._kept.values())) > KEPT:
                 self._kept.popitem(last=False)
             return content
-
-    def _unpack(self, chunk: _Chunk) -> bytes:
-        what = f"{self.path}: chunk at byte {chunk.begin:,}"
-        packed = self._at(chunk.begin, chunk.packed)
-        content, damage = unpacked_as_far(packed, chunk.kind, chunk.unpacked, what)
-        if chunk.is_whole and (damage is not None or len(content) != chunk.unpacked):
-            raise BagError(f"{what}: damaged ({damage or f'{len(content):,} bytes of {chunk.unpacked:,}'})")
-        if chunk.is_whole and chunk.crc and zlib.crc32(content) != chunk.crc:
-            raise BagError(f"{what}: damaged (its check sum is wrong)")
-        return content
 
     def _define(self, kind: int, content: bytes) -> None:
         """A schema or a channel; what is malformed is left out, and its messages with it."""

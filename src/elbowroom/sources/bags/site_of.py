@@ -1,6 +1,7 @@
 """What a bag says of a site: cameras with lenses and places, their topics, joints; and how large the room may be."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -9,11 +10,11 @@ from numpy.typing import NDArray
 from elbowroom.errors import BagError
 from elbowroom.geometry import DepthCamera
 from elbowroom.sources.bags.bag import Bag
+from elbowroom.sources.bags.camera_infos import info_topic, lens_by
 from elbowroom.sources.bags.depth import METRES, depth_of
-from elbowroom.sources.bags.depth_topics import DepthTopic, chosen, info_of, info_topic
+from elbowroom.sources.bags.depth_topics import DepthTopic, chosen
 from elbowroom.sources.bags.frames import Frames, frames_of
 from elbowroom.sources.bags.joints import told_of
-from elbowroom.sources.bags.lenses import RECTIFIED, lens_of
 from elbowroom.sources.bags.messages import JOINT_STATE
 
 LONGEST_SIDE_M = 30.0
@@ -45,6 +46,7 @@ class SiteOf(NamedTuple):
         topics: of each camera.
         said: of each camera, where its lens is from and what is odd about it.
         joints: topics of joints, and by topic the joints that have positions.
+        bases: frames that may be a machine's base, and where they are in the world, shape (4, 4).
         box: least and greatest corner of a box around cameras and what they see at first [m].
         notes: what a user should know.
     """
@@ -54,6 +56,7 @@ class SiteOf(NamedTuple):
     topics: Mapping[str, DepthTopic]
     said: Mapping[str, Sequence[str]]
     joints: Mapping[str, Sequence[str]]
+    bases: Mapping[str, NDArray[np.float64]]
     box: tuple[NDArray[np.float64], NDArray[np.float64]]
     notes: Sequence[str]
 
@@ -82,9 +85,18 @@ def site_of(bag: Bag, wish: Wish) -> SiteOf:
         cameras.append(camera)
         said[name] = told
     joints = {topic: _joints(bag, topic) for topic in wish.joints or bag.of_type(JOINT_STATE)}
-    return SiteOf(
-        world, cameras, topics, said, joints, _box(bag, cameras, topics), (*bag.notes, *frames.notes)
-    )
+    box, notes = _box(bag, cameras, topics), (*bag.notes, *frames.notes)
+    return SiteOf(world, cameras, topics, said, joints, _bases(frames, world), box, notes)
+
+
+def _bases(frames: Frames, world: str) -> dict[str, NDArray[np.float64]]:
+    """Frames whose names say that they are a base, as far as they are known in the world."""
+    found = {}
+    for name in sorted({*frames.links, *(link.parent for link in frames.links.values())}):
+        if "base" in name.lower():
+            with suppress(BagError):
+                found[name] = frames.world_from(name, world)
+    return found
 
 
 def _world(bag: Bag, frames: Frames, topics: Mapping[str, DepthTopic], wished: str | None) -> str:
@@ -111,9 +123,7 @@ def _camera(
     bag: Bag, name: str, topic: DepthTopic, frames: Frames, world: str
 ) -> tuple[DepthCamera, list[str]]:
     """A camera, and what is to be said of it."""
-    source = info_topic(bag, topic)
-    rectified = topic.base.rpartition("/")[2].startswith(RECTIFIED)
-    lens = lens_of(info_of(bag, source), topic.kind.size, rectified, f"{bag.path}: {source}")
+    source, lens = info_topic(bag, topic), lens_by(bag, topic.name)
     frame = topic.kind.frame.removeprefix("/")
     camera = DepthCamera(
         name=name,

@@ -90,12 +90,20 @@ def _machine_lines(found: SiteOf) -> list[str]:
     return [
         "# machine:                     # not in the bag: without it free space is seen and no motion is judged",
         "#   urdf: robot.urdf",
-        f"#   world_from_base: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]   # in {found.world}",
+        *_base_lines(found),
         "# joints:                      # full speed, and the time to brake from it, of each joint; the bag has",
         *told,
         "#   JOINT: {max_speed_deg_s: 12, braking_time_s: 0.5}",
         "",
     ]
+
+
+def _base_lines(found: SiteOf) -> list[str]:
+    """Where the machine may stand: at each frame that is called a base."""
+    if not found.bases:
+        return [f"#   world_from_base: {np.eye(4).astype(int).tolist()}   # in {found.world}"]
+    poses = {name: np.round(pose, 9) + 0.0 for name, pose in found.bases.items()}
+    return [f"#   world_from_base: {pose.tolist()}   # of {name}, by tf" for name, pose in poses.items()]
 
 
 def _numbers(values: NDArray[np.float64]) -> str:

@@ -4,79 +4,31 @@ import difflib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from elbowroom.errors import FrameError, JointsError, SiteError
+from elbowroom.errors import BagError, FrameError, JointsError, SiteError
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import JointRecord
 from elbowroom.site.recording_entry import BagRecording
 from elbowroom.site.site import Site
 from elbowroom.sources.bags.bag import Bag
-from elbowroom.sources.bags.depth import METRES, check_depth, depth_of, kind_of
+from elbowroom.sources.bags.camera_infos import lens_by
+from elbowroom.sources.bags.depth import METRES, kind_of
 from elbowroom.sources.bags.joints import Told, record_of, told_of
 from elbowroom.sources.bags.messages import COMPRESSED, IMAGE, JOINT_STATE
 from elbowroom.sources.bags.opened import opened
 from elbowroom.sources.bags.stamps import Stamped, Times, stamped
-from elbowroom.sources.bags.storage import Stored
+from elbowroom.sources.layouts.bag_image import Arrival, Message
 from elbowroom.sources.layouts.gathered import gathered, series_of
 from elbowroom.sources.layouts.image import Image
+from elbowroom.sources.room_clock import RoomClock
+from elbowroom.sources.times.clock import ClockEstimate
 from elbowroom.sources.times.joints import of_machine, require_span
 from elbowroom.sources.times.meeting import Meeting
 from elbowroom.sources.times.stamp import require_possible
 
 DEPTH_TYPES = (IMAGE, COMPRESSED)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Message:
-    """A depth image within a bag (`layouts.image.Stored`).
-
-    Args:
-        bag: opened.
-        topic: of the image.
-        stored: where it lies.
-        name: of the message, for errors.
-        in_metres: whether it holds metres.
-    """
-
-    bag: Bag
-    topic: str
-    stored: Stored
-    name: str
-    in_metres: bool
-
-    def content(self) -> bytes:
-        """The message, byte for byte."""
-        return self.bag.read(self.stored)
-
-    def check(self, camera: DepthCamera) -> None:
-        """Looks at what the message says of its image; raises as `pixels`."""
-        size = camera.width, camera.height
-        check_depth(self.bag.topics[self.topic].type, self.content(), self.name, size)
-
-    def pixels(self, camera: DepthCamera) -> NDArray[np.uint16] | NDArray[np.float32]:
-        """Whole numbers, or metres, shape (height, width).
-
-        Raises:
-            BagError, FrameError: malformed, or not what the camera delivers.
-        """
-        size = camera.width, camera.height
-        return depth_of(self.bag.topics[self.topic].type, self.content(), self.name, size)
-
-
-class Arrival(NamedTuple):
-    """An image, and when the recorder got it.
-
-    Args:
-        received_ns: [ns, the recorder's clock].
-        image: not read yet.
-    """
-
-    received_ns: int
-    image: Image
+OTHER_FOCAL, OTHER_CENTRE_PX = 0.05, 5.0
+"""A lens whose focal length is off by this share, or its centre by so many pixels, is another one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +76,14 @@ class BagFrames:
         ]
         return sorted(found, key=lambda arrival: arrival.received_ns)
 
+    def clocks(self) -> dict[str, ClockEstimate]:
+        """What is known at the end of the bag of the clock of each camera that has stamps. Raises as `moments`."""
+        room, arrivals = RoomClock(), self.arrivals()
+        for received_ns, image in arrivals:
+            if self.by_header(image.camera.name):
+                room.hear(image.camera.name, received_ns, image.stamp_ns or 0)
+        return dict(room.estimates(arrivals[-1].received_ns)) if arrivals else {}
+
     def by_header(self, camera: str) -> bool:
         """Whether a camera's times are those of exposure; otherwise, of receipt."""
         return self._times[camera].by_header
@@ -138,7 +98,26 @@ class BagFrames:
         """What is wrong with the bag and odd about its stamps; raises as `moments`."""
         told = [note for times in self._times.values() for note in times.notes]
         has_joints = self.site.entry.machine is not None
-        return (*self._bag.notes, *told, *(self._told.notes if has_joints else ()))
+        lenses = [self._lens_note(camera) for camera in self.site.cameras()]
+        odd = [note for note in lenses if note is not None]
+        return (*self._bag.notes, *told, *odd, *(self._told.notes if has_joints else ()))
+
+    def _lens_note(self, camera: DepthCamera) -> str | None:
+        """That the bag says another lens than the site; None: it says the same, or none."""
+        try:
+            found = lens_by(self._bag, self.recording.topics[camera.name])
+        except (BagError, FrameError):
+            return None
+        site, bag = camera.intrinsics, found.intrinsics
+        off = max(abs(bag.fx / site.fx - 1), abs(bag.fy / site.fy - 1))
+        centre = max(abs(bag.cx - site.cx), abs(bag.cy - site.cy))
+        if off <= OTHER_FOCAL and centre <= OTHER_CENTRE_PX:
+            return None
+        return (
+            f"camera {camera.name}: the bag's CameraInfo says fx {bag.fx:.5g}, fy {bag.fy:.5g}, cx {bag.cx:.5g}, cy "
+            f"{bag.cy:.5g}, the site fx {site.fx:.5g}, fy {site.fy:.5g}, cx {site.cx:.5g}, cy {site.cy:.5g}: is it "
+            "another camera, or another size?"
+        )
 
     def joints(self) -> JointRecord | None:
         """The joints of the machine; None: there is none.

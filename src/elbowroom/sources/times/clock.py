@@ -10,7 +10,7 @@ import itertools
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import NamedTuple, TypedDict
 
 WINDOW_NS, BUCKET_NS = 10_000_000_000, 500_000_000
 """Differences of so long are kept [ns], the least of each of these parts of it."""
@@ -18,6 +18,15 @@ DRIFT_LIMIT = 200e-6
 """No clock of a camera or a computer goes faster or slower than another by more than this share."""
 SETTLED_NS = 1_000_000_000
 """After so long a camera's clock is known [ns]."""
+
+
+class ClockRow(TypedDict):
+    """An estimate as numbers of a row."""
+
+    offset_ms: float
+    drift_ppm: float
+    bound_ms: float
+    settled: bool
 
 
 class ClockEstimate(NamedTuple):
@@ -37,14 +46,14 @@ class ClockEstimate(NamedTuple):
     is_settled: bool
 
     @property
-    def row(self) -> dict[str, float | bool]:
+    def row(self) -> ClockRow:
         """As numbers of a row: offset and bound [ms], drift [ppm]."""
-        return {
-            "offset_ms": self.offset_ns / 1e6,
-            "drift_ppm": self.drift_ppm,
-            "bound_ms": self.bound_ns / 1e6,
-            "settled": self.is_settled,
-        }
+        return ClockRow(
+            offset_ms=self.offset_ns / 1e6,
+            drift_ppm=self.drift_ppm,
+            bound_ms=self.bound_ns / 1e6,
+            settled=self.is_settled,
+        )
 
 
 @dataclass(slots=True, eq=False)
