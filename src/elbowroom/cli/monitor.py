@@ -66,7 +66,8 @@ def monitor(
 
     Without SITE: a simulated intervention room, where people walk and a C-arm
     moves, before 21 small time-of-flight cameras at 2.4 and 0.4 m in turn; --noise
-    exact shows it before perfect ones. A site with a recording plays it once. Without a machine, or without
+    exact shows it before perfect ones. A site with a recording plays it once; a
+    bag as if its cameras were there now, the newest image of each counts. Without a machine, or without
     speeds of its joints, it says what is free. Ctrl-C ends with a summary.
 
     Cameras that were commissioned (`elbowroom calibrate commission`) are watched:
@@ -81,7 +82,7 @@ def monitor(
     use_threads(threads)
 
     from elbowroom.site import Site
-    from elbowroom.sources import open_room
+    from elbowroom.sources import live, open_room
 
     with options_named(
         joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock", noise="--noise"
@@ -97,7 +98,7 @@ def monitor(
             resolution=size_px,
             knocks=knock or (),
         )
-        _watch(room, seconds, json, out)
+        _watch(live(room), seconds, json, out)
 
 
 def _noisy(site: "Site", noise: str) -> "Site":

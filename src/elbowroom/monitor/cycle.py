@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -86,9 +86,8 @@ class Cycle:
         fault = f"no usable verdict for {', '.join(missing)}" if missing else None
         verdicts = tuple(given.get(motion) or self._stop(motion) for motion in self.motions)
         kept = space if self.keeps_images else space.released()
-        return CycleResult(
-            self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault, late=late
-        )
+        result = CycleResult(self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault)
+        return replace(result, late=late, skew_ms=snapshot.fresh(self.terms.max_age_ns).skew_ms)
 
     def failed(
         self, error: Exception, snapshot: Snapshot | None, stage_ms: dict[str, float] | None = None

@@ -24,8 +24,8 @@ from elbowroom.site import seven_scenes
 from elbowroom.site.camera_entry import CameraSettings, build_camera, mended_poses
 from elbowroom.site.machine_entry import motions_of
 from elbowroom.site.messages import one_line
-from elbowroom.site.paths import existing_folder
-from elbowroom.site.recording_entry import SevenScenes, StamplessFolder
+from elbowroom.site.paths import existing_bag, existing_folder
+from elbowroom.site.recording_entry import BagRecording, SevenScenes, StamplessFolder
 from elbowroom.site.schema import SimulatedEntry, SiteEntry
 from elbowroom.site.zone_entry import with_zones
 
@@ -332,7 +332,7 @@ class Site:
         return self.entry.override.build(speeds)
 
     def recording_folder(self) -> Path:
-        """The folder of the recording.
+        """The folder of the recording; of a bag its folder, or its file.
 
         Raises:
             SiteError: the site names none, or it is absent.
@@ -343,6 +343,8 @@ class Site:
                 f"{self.path}: recording: missing; this command reads one (`elbowroom simulate` makes one of a "
                 "modelled room)"
             )
+        if isinstance(recording, BagRecording):
+            return self._blame("recording.file", lambda: existing_bag(recording.file, self.path.parent))
         return self._blame("recording.folder", lambda: existing_folder(recording.folder, self.path.parent))
 
     @property
@@ -357,7 +359,7 @@ class Site:
         try:
             self.recording_folder()
         except SiteError as error:
-            if "no folder" in str(error):
+            if "no folder" in str(error):  # of a bag: "no folder or file"
                 return str(error).removeprefix(f"{self.path}: ")
             raise
         return None

@@ -172,7 +172,7 @@ class TerminalView:
 
     def line(self, result: CycleResult) -> str:
         """One pass in one plain line."""
-        age = "" if result.age_ms is None else f" age {result.age_ms:.0f} ms"
+        age = "" if result.age_ms is None else f" age {result.age_ms:.0f} ms{_skew(result.skew_ms)}"
         head = (
             f"{result.stamp_ns / 1e9:8.2f} s {self.log.rate_hz:5.1f} Hz cycle {result.cycle_ms:.0f} ms{age}"
         )
@@ -195,6 +195,7 @@ class TerminalView:
         text.append("  frame age ")
         style = "bold" if result.late is None else STYLES[Level.STOP]
         text.append("unknown" if result.age_ms is None else f"{age:.0f} ms", style)
+        text.append(_skew(result.skew_ms))
         text.append("  cycle ")
         text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
         text.append(f" = {stages}", "dim")
@@ -262,3 +263,8 @@ def _looked_at(verdict: Verdict) -> float:
     """How far a verdict could have said to go [m or rad along the joint]."""
     motion = verdict.motion
     return motion.looked_at if isinstance(motion, Motion) else motion.reach or float("inf")
+
+
+def _skew(skew_ms: float | None) -> str:
+    """How far apart the frames of a pass were, in words; nothing where that rounds to nothing."""
+    return "" if skew_ms is None or skew_ms < 0.5 else f" skew {skew_ms:.0f} ms"
