@@ -14,6 +14,7 @@ PACKAGES = {
     "distributed": ("a cluster needs Dask", "cluster"),
     "matplotlib": ("charts need Matplotlib", "evaluate"),
     "ortools": ("finding a placement needs CP-SAT of OR-Tools", "placement"),
+    "pymodbus": ("the Modbus output needs pymodbus", "modbus"),
     "small_gicp": ("calibration by the machine needs small_gicp", "calibrate"),
     "xacro": ("expanding a xacro file needs xacro", "xacro"),
 }

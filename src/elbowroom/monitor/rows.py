@@ -8,6 +8,7 @@ import numpy as np
 from elbowroom.files.json_rows import AddRow
 from elbowroom.geometry.parallel import thread_count
 from elbowroom.monitor.face import Pass
+from elbowroom.monitor.gate.told import GateRows
 from elbowroom.monitor.health.drift.watch import BODY
 from elbowroom.monitor.health.health import CameraHealth, LinkHealth
 from elbowroom.monitor.result import CycleResult
@@ -25,6 +26,7 @@ class Rows:
     def __init__(self, add: AddRow) -> None:
         self._add = add
         self._told: dict[str, str] = {}
+        self._gate = GateRows()
 
     def begin(self, room: Room) -> None:
         """Adds the row of the room."""
@@ -34,7 +36,7 @@ class Rows:
         """Adds the rows of a pass."""
         for row in cycle_rows(done.result, done.source_ms):
             self._add(row)
-        for row in health_rows(done.result, self._told):
+        for row in (*health_rows(done.result, self._told), *self._gate.rows(done.result, done.decision)):
             self._add(row)
 
     def end(self) -> None:

@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
 from elbowroom.errors import InputError
+from elbowroom.guard.fault import Fault
 from elbowroom.guard.reason import Reason
 from elbowroom.monitor.gate.claim import Claim
 from elbowroom.monitor.gate.state import (
     Decision,
     Ended,
     Event,
-    Fault,
     GateState,
     Held,
     Judged,
@@ -29,9 +29,7 @@ from elbowroom.motion import Level
 MS = 1_000_000
 RULES = Rules(("slide +", "slide -", "turn +"))
 WATCH = Fault(Reason.WATCH, "cam1", "camera cam1 has moved")
-FAULTS = [
-    Fault(reason, subject) for reason in Reason if reason.is_fault for subject in ("", "cam1")
-]
+FAULTS = [Fault(reason, subject) for reason in Reason if reason.is_fault for subject in ("", "cam1")]
 BARRIERS = [Reason.SURFACE, Reason.MACHINE, Reason.BLIND, Reason.OUTSIDE_GRID, Reason.UNSEEN]
 
 

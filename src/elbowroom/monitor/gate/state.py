@@ -1,11 +1,12 @@
 """What the gate remembers, what happens to it, and what it says: values."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 from types import MappingProxyType
 
 from elbowroom.errors import InputError
+from elbowroom.guard.fault import Fault
 from elbowroom.guard.reason import Reason
 from elbowroom.monitor.gate.claim import Claim
 from elbowroom.motion import Level
@@ -58,30 +59,6 @@ class Rules:
     def silence_ns(self) -> int:
         """Two deadlines: what is longer without a pass is silence [ns]."""
         return 2 * self.deadline_ns
-
-
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """What latches.
-
-    Args:
-        reason: its kind.
-        subject: the camera or part that it is about; empty: none.
-        text: what was found, one sentence; two faults of one reason and subject are the same one, whatever the text.
-    """
-
-    reason: Reason
-    subject: str = ""
-    text: str = field(default="", compare=False)
-
-    def __post_init__(self) -> None:
-        if not self.reason.is_fault:
-            raise InputError(f"gate: {self.reason.name} is no fault")
-
-    @property
-    def sentence(self) -> str:
-        """What an operator reads."""
-        return self.text or self.reason.sentence
 
 
 @dataclass(frozen=True, slots=True)

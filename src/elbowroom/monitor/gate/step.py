@@ -15,6 +15,7 @@ A pass is whole if it has one claim for each motion and no fault. A held signal 
 
 from dataclasses import replace
 
+from elbowroom.guard.fault import Fault
 from elbowroom.guard.reason import Reason
 from elbowroom.monitor.gate.claim import Claim
 from elbowroom.monitor.gate.state import (
@@ -22,7 +23,6 @@ from elbowroom.monitor.gate.state import (
     Decision,
     Ended,
     Event,
-    Fault,
     GateState,
     Held,
     Judged,
@@ -60,13 +60,17 @@ def step(state: GateState, event: Event, now_ns: int, rules: Rules) -> tuple[Gat
         case ResetAsked():
             answer = _refused(state)
             if answer is None:
-                state = replace(state, phase=Phase.STARTING, latched=(), active=(), claims=None, passed_ns=None)
+                state = replace(
+                    state, phase=Phase.STARTING, latched=(), active=(), claims=None, passed_ns=None
+                )
         case Ended():
             state = replace(state, phase=Phase.ENDED, claims=None)
     is_reset = isinstance(event, ResetAsked) and answer is None
     rising_s = _since_pass_s(before, now_ns, rules) if isinstance(event, Judged) else 0.0
     state = replace(state, speeds=_speeds(state, now_ns, rising_s, rules))
-    said = "reset: the machine stays stopped until the next whole pass, then speed rises" if is_reset else answer
+    said = (
+        "reset: the machine stays stopped until the next whole pass, then speed rises" if is_reset else answer
+    )
     return state, _decision(state, rules, said, is_reset)
 
 
@@ -75,7 +79,9 @@ def _judged(state: GateState, event: Judged, went_back: bool, rules: Rules) -> G
     silent = tuple(fault for fault in state.active if fault.reason is Reason.SILENCE)
     faults = list(event.faults)
     if tuple(claim.motion for claim in event.claims) != rules.motions:
-        missing = [motion for motion in rules.motions if motion not in {claim.motion for claim in event.claims}]
+        missing = [
+            motion for motion in rules.motions if motion not in {claim.motion for claim in event.claims}
+        ]
         text = f"no usable verdict for {', '.join(missing) or 'the motions as they were asked'}"
         faults.append(Fault(Reason.FAULT, "", text))
     if went_back:
@@ -152,13 +158,9 @@ def _is_held(state: GateState, now_ns: int, rules: Rules) -> bool:
     return state.held_ns is not None and now_ns - state.held_ns <= rules.hold_ns
 
 
-def _decision(
-    state: GateState, rules: Rules, answer: str | None = None, is_reset: bool = False
-) -> Decision:
+def _decision(state: GateState, rules: Rules, answer: str | None = None, is_reset: bool = False) -> Decision:
     """What the state says."""
-    motions = tuple(
-        _allowed(state, number, motion, rules) for number, motion in enumerate(rules.motions)
-    )
+    motions = tuple(_allowed(state, number, motion, rules) for number, motion in enumerate(rules.motions))
     held_until_ns = None
     if state.held_ns is not None and any(allowed.held for allowed in motions):
         held_until_ns = state.held_ns + rules.hold_ns
