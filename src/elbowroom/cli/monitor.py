@@ -23,6 +23,22 @@ if TYPE_CHECKING:
     from elbowroom.site import Site
     from elbowroom.sources import Room
 
+Knocks = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="WHAT:SIZE@SECONDS",
+        help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
+        "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
+    ),
+]
+GateFolder = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR",
+        help="Decide by a gate whose latch and controls lie in this folder; see `elbowroom gate --help`.",
+    ),
+]
+
 
 def monitor(
     site: Annotated[
@@ -49,21 +65,8 @@ def monitor(
     detail: Detail = None,
     joints: JointsText = None,
     threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
-    knock: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="WHAT:SIZE@SECONDS",
-            help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
-            "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
-        ),
-    ] = None,
-    gate: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR",
-            help="Decide by a gate whose latch and controls lie in this folder; see `elbowroom gate --help`.",
-        ),
-    ] = None,
+    knock: Knocks = None,
+    gate: GateFolder = None,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")

@@ -1,7 +1,7 @@
 """The latch on disk: one file that says *not latched* only where a run has ended as it was asked to.
 
-While a run goes on, the file says so, and is read as latched: so nothing has to be written in time. Cut off at any byte, changed, lost or
-older, of another site or a later version: latched.
+While a run goes on, the file says so, and is read as latched: so nothing has to be written in time. Cut off at any
+byte, changed, lost, one write older, of another site or of a later version: latched.
 
     {"elbowroom latch": 1, "site": "...", "mark": "latched", "faults": [{"reason": "WATCH", ...}]}
     sha256 of the line above, in hexadecimal

@@ -1,4 +1,4 @@
-"""The monitor's end of its watchdog: starts it, sends heartbeats, reads what it reports, and says what is wrong with it."""
+"""The monitor's end of its watchdog: starts it, sends heartbeats, reads what it reports, says what is wrong with it."""
 
 import json
 import os
@@ -70,7 +70,7 @@ class WatchdogLink:
         self._unanswered[heartbeat.sequence] = self.clock_ns()
 
     def faults(self) -> list[Fault]:
-        """What is wrong with the watchdog, its outputs, or was wrong with the monitor as it saw it since it was asked last."""
+        """What is wrong with the watchdog or its outputs, or was with the monitor as it saw it since the last call."""
         self._read()
         now_ns = self.clock_ns()
         found = []

@@ -1,4 +1,4 @@
-"""A Modbus TCP server that a PLC polls. It answers what is true at the moment of the question, and refuses whatever would change it."""
+"""A Modbus TCP server that a PLC polls. It answers what is true when it is asked, and refuses what would change it."""
 
 import asyncio
 import logging

@@ -35,7 +35,8 @@ class Callback:
     """Calls a Python function, in the watchdog's process, with what may be done.
 
     Args:
-        where: "package.module:function" or "file.py:function"; it takes a `Said` and the motions' names, and returns at once.
+        where: "package.module:function" or "file.py:function"; it takes a `Said` and the motions' names, and does not
+            wait for anything.
         motions: names of the motions, in the order of the words.
 
     Raises:
@@ -78,7 +79,7 @@ def found(where: str) -> Callable[[Said, Sequence[str]], Any]:
         raise InputError(f"callback {where}: {error}; write package.module:function") from None
     if not callable(function):
         raise InputError(f"callback {where}: is no function")
-    return function  # type: ignore[no-any-return]
+    return function
 
 
 def outputs_of(told: Mapping[str, Any], ask: Callable[[], Said]) -> list[Output]:

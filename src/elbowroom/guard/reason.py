@@ -4,10 +4,10 @@ from enum import IntEnum
 
 
 class Reason(IntEnum):
-    """The numbers stay as they are from one version to the next; a receiver takes one that it does not know for a fault.
+    """The numbers stay from one version to the next; a receiver takes one that it does not know for a fault.
 
-    0 is never said, so that memory that nobody wrote is no reason. Below 16: what lies in the way, which latches nothing. From
-    16 on: what the gate itself says. From 32 on: faults, each of which latches.
+    0 is never said, so that memory that nobody wrote is no reason. Below 16: what lies in the way, which latches
+    nothing. From 16 on: what the gate itself says. From 32 on: faults, each of which latches.
     """
 
     UNSAID = 0

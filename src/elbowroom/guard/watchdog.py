@@ -1,8 +1,10 @@
-"""The watchdog's process: heartbeats come in on its standard input, outputs say stop where they do not. `python -m elbowroom.guard.watchdog CONFIG`.
+"""The watchdog's process: heartbeats come in on its standard input, and outputs say stop where they do not.
 
-CONFIG is JSON: `motions` (names), `deadline_ns`, `callback`, `modbus`, see `output.outputs_of`. On its standard output it reports, a line
-of JSON each: `ready` (names of outputs), `ack` (a sequence), `trip` (their count), `trouble` (why it ends, or what an output
-says), `well` (the outputs do again).
+    python -m elbowroom.guard.watchdog CONFIG
+
+CONFIG is JSON: `motions` (names), `deadline_ns`, `callback`, `modbus`, see `output.outputs_of`. On its standard output
+it reports, a line of JSON each: `ready` (names of outputs), `ack` (a sequence), `trip` (their count), `trouble` (why it
+ends, or what is wrong with an output), `well` (the outputs do again).
 """
 
 import asyncio

@@ -1,6 +1,7 @@
 """The gate's laws: falls at once and rises slowly, latched until reset, a reset starts nothing, silence is stop."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -23,10 +24,12 @@ from elbowroom.monitor.gate.state import (
     Rules,
     Ticked,
 )
+from elbowroom.monitor.gate import step as code
 from elbowroom.monitor.gate.step import step
 from elbowroom.motion import Level
 
 MS = 1_000_000
+PAGE = (Path(__file__).resolve().parents[3] / "docs" / "safety.md").read_text(encoding="utf-8")
 RULES = Rules(("slide +", "slide -", "turn +"))
 WATCH = Fault(Reason.WATCH, "cam1", "camera cam1 has moved")
 FAULTS = [Fault(reason, subject) for reason in Reason if reason.is_fault for subject in ("", "cam1")]
@@ -284,10 +287,9 @@ def table_in(text: str) -> list[tuple[str, str, str]]:
     return rows
 
 
-def test_the_table_of_the_code_is_what_it_does() -> None:
-    import elbowroom.monitor.gate.step as code
-
-    rows = table_in(code.__doc__ or "")
+@pytest.mark.parametrize("text", [code.__doc__ or "", PAGE], ids=["code", "page"])
+def test_the_table_of_states_is_what_the_gate_does(text: str) -> None:
+    rows = table_in(text)
     assert len(rows) == len(IN_PHASE) * len(EVENT_OF)
     for phase, event_name, then in rows:
         event, later_ms = EVENT_OF[event_name]
@@ -391,7 +393,7 @@ def test_override_creeps_into_unseen_space_while_held() -> None:
 
 @pytest.mark.parametrize("reason", [reason for reason in BARRIERS if reason is not Reason.UNSEEN])
 def test_override_overrides_nothing_that_was_seen(reason: Reason) -> None:
-    state, said = run(whole(), *[Held(), whole(blocked("slide +", reason))] * 10, every_ms=50)
+    _, said = run(whole(), *[Held(), whole(blocked("slide +", reason))] * 10, every_ms=50)
     assert said.motions[0].speed == 0
 
 

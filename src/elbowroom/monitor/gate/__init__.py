@@ -1,1 +1,1 @@
-"""The gate: what verdicts and faults become for whoever drives the machine. It may hold back, never start or speed up."""
+"""The gate: what verdicts and faults become for whoever drives the machine. It holds back, and never speeds up."""

@@ -71,8 +71,8 @@ class Claim:
 def speed_of(verdict: Verdict) -> float:
     """The greatest share of full speed from which the machine comes to rest one braking distance before the block.
 
-    At constant deceleration v² = 2 a s, and S is the way from full speed: so at a free travel d between S and 2 S it is the root of
-    (d - S) / S. 0 at and within S, full speed from 2 S on.
+    At constant deceleration v² = 2 a s, and S is the way from full speed: so at a free travel d between S and 2 S it is
+    the root of (d - S) / S. 0 at and within S, full speed from 2 S on.
 
     Args:
         verdict: of one motion.

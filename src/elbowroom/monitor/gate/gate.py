@@ -1,9 +1,9 @@
-"""The gate of a run: the one place that remembers. It asks the pure step what to say, keeps the latch, and tells the watchdog."""
+"""The gate of a run, the one place that remembers: it asks the step what to say, keeps the latch, tells who listens."""
 
 import fcntl
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -109,7 +109,7 @@ class Gate:
             self._lock = None
 
     def _pass(self, judged: Judged) -> None:
-        """A pass, with what is wrong beside it. A stop is said before it is written: what is on disk is latched anyway."""
+        """A pass, with what is wrong beside it. A stop is said before it is written: the disk says latched anyway."""
         beside = [] if self.watchdog is None else self.watchdog.faults()
         self._decision = self._stepped(self._with(judged, beside))
         self._send()
@@ -134,9 +134,9 @@ class Gate:
         now_ns, trips = self.clock_ns(), self.watchdog.trips
         self.watchdog.send(heartbeat_of(self._decision, self._sequence, now_ns, trips, self.rules))
 
-    def _asked(self) -> list[tuple[str, Callable[[dict[str, Any]], None]]]:
+    def _asked(self) -> list[tuple[str, Callable[[Mapping[str, Any]], None]]]:
         """What was asked since the last pass, without held signals: these are heard before it."""
-        left = []
+        left: list[tuple[str, Callable[[Mapping[str, Any]], None]]] = []
         with suppress(Exception):  # who asks wrongly moves nothing and stops nothing
             for request, answer in self._control.requests():
                 word, _, when = request.partition(" ")
@@ -149,7 +149,7 @@ class Gate:
                 answer({"held": is_now})
         return left
 
-    def _answer(self, request: str, answer: Callable[[dict[str, Any]], None]) -> None:
+    def _answer(self, request: str, answer: Callable[[Mapping[str, Any]], None]) -> None:
         """Does and answers what was asked; a reset is kept on disk before it is said to be done."""
         if request == "reset":
             decision = self._stepped(ResetAsked())

@@ -23,7 +23,8 @@ def gate_of(room: Room, folder: Path | None = None) -> Gate | None:
         folder: of the latch; None: as the site says.
 
     Raises:
-        InputError: the site has a gate and nobody says where its latch lies; or no motion is judged, or more than an output can tell.
+        InputError: the site has a gate and nobody says where its latch lies; or no motion is judged, or more than an
+            output can tell.
         PackageError: the site asks for Modbus, and pymodbus is not installed.
     """
     entry = room.site.entry.gate

@@ -1,6 +1,6 @@
 """The gate as one pure function: what it remembers, what happens and when, to what it remembers then and what it says.
 
-It holds no clock and keeps nothing. The table of phases and events (docs/safety.md, "The gate's states"):
+It holds no clock and keeps nothing. The table of phases and events (docs/safety.md, "The gate"):
 
 | in | whole pass | pass with a fault | two deadlines without a pass | reset | end |
 |---|---|---|---|---|---|
