@@ -72,7 +72,9 @@ def after(*ages_ms: float, watched: Watched | None = None) -> Watched:
     return watched
 
 
-@pytest.mark.parametrize(("age_ms", "speed"), [(0, 800), (100, 800), (200, 800), (201, 0), (10_000, 0), (-101, 0)])
+@pytest.mark.parametrize(
+    ("age_ms", "speed"), [(0, 800), (100, 800), (200, 800), (201, 0), (10_000, 0), (-101, 0)]
+)
 def test_two_deadlines_of_silence_are_stop(age_ms: float, speed: int) -> None:
     said = after(age_ms).said(BEAT.finished_ns + round(age_ms * MS))
     assert said.machine.per_mille == speed
@@ -130,7 +132,10 @@ def test_registers_are_16_bits_and_checked(beat: Heartbeat, now_ns: int) -> None
 
 
 def test_checksum_is_the_one_that_modbus_has() -> None:
-    assert crc16([int.from_bytes(b"12"), int.from_bytes(b"34"), int.from_bytes(b"56"), int.from_bytes(b"78")]) == 0x37DD
+    assert (
+        crc16([int.from_bytes(b"12"), int.from_bytes(b"34"), int.from_bytes(b"56"), int.from_bytes(b"78")])
+        == 0x37DD
+    )
 
 
 def test_no_more_motions_than_one_request_reads() -> None:

@@ -64,7 +64,8 @@ def test_any_bytes_are_latched(tmp_path_factory: pytest.TempPathFactory, content
 
 
 @pytest.mark.parametrize(
-    "line", ["[" * 20_000, "null", "[]", "{}", '{"elbowroom latch": true}', '{"elbowroom latch": 1, "site": []}']
+    "line",
+    ["[" * 20_000, "null", "[]", "{}", '{"elbowroom latch": true}', '{"elbowroom latch": 1, "site": []}'],
 )
 def test_whole_lines_that_say_something_else_are_latched(tmp_path: Path, line: str) -> None:
     import hashlib
@@ -163,7 +164,9 @@ def test_a_write_that_comes_in_pieces_is_whole(tmp_path: Path, monkeypatch: pyte
     assert read_latch(tmp_path / "latch", SITE).faults == (MOVED,)
 
 
-def test_latch_is_on_the_disk_before_it_is_said_to_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_latch_is_on_the_disk_before_it_is_said_to_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     calls: list[str] = []
     fsync = os.fsync
     monkeypatch.setattr(

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Self
 
@@ -93,14 +94,15 @@ def speed_of(verdict: Verdict) -> float:
 def claims_of(
     verdicts: Sequence[Verdict], low_speed: float, escaping: frozenset[str] = frozenset()
 ) -> tuple[Claim, ...]:
-    """What the verdicts of a pass claim, in their order.
+    """What the verdicts of a pass claim, in their order; one that says no usable travel claims nothing.
 
     Args:
         verdicts: of a pass.
         low_speed: at which one creeps, a share of full speed.
         escaping: names of the motions that lead out of contact.
-
-    Raises:
-        InputError: as `Claim.of`.
     """
-    return tuple(Claim.of(verdict, low_speed, verdict.motion.name in escaping) for verdict in verdicts)
+    claims = []
+    for verdict in verdicts:
+        with suppress(InputError):
+            claims.append(Claim.of(verdict, low_speed, verdict.motion.name in escaping))
+    return tuple(claims)
