@@ -33,15 +33,17 @@ def status(folder: Folder, json: JsonFile = None) -> None:
 
 
 @gate_app.command(epilog="Example: elbowroom gate reset my_gate")
-def reset(folder: Folder) -> None:
+def reset(folder: Folder, json: JsonFile = None) -> None:
     """Forget faults that are over. Refused, with exit code 1, while one is there.
 
     It starts nothing: the machine stays stopped until the next pass, then speed
     rises slowly. Only who owns the folder may, and only on this computer.
     """
+    from elbowroom.files.json_rows import write_json
     from elbowroom.guard.control import ask
 
     told = ask(folder, "reset")
+    write_json(json, [{"kind": "gate", **told}])
     print(told["answer"])
     if not told["reset"]:
         raise typer.Exit(1)

@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from elbowroom.guard.fault import Fault
 from elbowroom.guard.reason import Reason
 
-FAULT, ASKED, RESET, REFUSED, ENDING, ENDED = "fault", "asked", "reset", "refused", "ending", "ended"
-"""Words of a journal: a fault latched (and is on disk), a reset is asked for, was done, was refused; the run ends, has
-ended."""
+BEGUN, FAULT, ASKED, RESET, REFUSED = "begun", "fault", "asked", "reset", "refused"
+ENDING, ENDED = "ending", "ended"
+"""Words of a journal: the gate has begun (before that nothing can move); a fault latched, and is on disk; a reset is asked
+for, was done, was refused; the run ends, has ended."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,12 +18,14 @@ class Truth:
 
     Args:
         latched: faults that are, or were until a reset that may have been done.
+        has_begun: the gate said so, and so may have let something move.
         is_doubtful: a reset was asked for, and nobody heard whether it was done.
         is_ending: the run was asked to end.
         has_ended: it has.
     """
 
     latched: frozenset[Reason]
+    has_begun: bool = False
     is_doubtful: bool = False
     is_ending: bool = False
     has_ended: bool = False
@@ -34,6 +37,8 @@ class Truth:
             ValueError, KeyError: it is none.
         """
         word, _, what = line.partition(" ")
+        if word == BEGUN:
+            return replace(self, has_begun=True)
         if word == FAULT:
             return replace(self, latched=self.latched | {Reason[what]})
         if word == RESET:
@@ -59,13 +64,14 @@ def truth_after(latched: Iterable[Fault], lines: Iterable[str]) -> Truth:
 
 
 def is_kept(truth: Truth, kept: Iterable[Fault]) -> bool:
-    """Whether the latch reads as latched wherever it may not read otherwise.
+    """Whether the latch reads as latched wherever it may not read otherwise: after an end, or before a begin.
 
     Args:
         truth: what is known.
         kept: what was read.
     """
-    return bool(tuple(kept)) or (truth.is_ending and not truth.latched)
+    moved_nothing = truth.is_ending or not truth.has_begun
+    return bool(tuple(kept)) or (moved_nothing and not truth.latched)
 
 
 def is_named(truth: Truth, kept: Iterable[Fault]) -> bool:

@@ -1,4 +1,4 @@
-"""The process that is killed: a gate in a folder, with faults and resets at random, that says what it has done in a journal."""
+"""The process that is killed: a gate with faults and resets at random, that says in a journal what it has done."""
 
 import os
 import random
@@ -8,7 +8,7 @@ from contextlib import suppress
 from itertools import count
 from pathlib import Path
 
-from elbowroom.evaluate.latch.journal import ASKED, ENDED, ENDING, FAULT, REFUSED, RESET
+from elbowroom.evaluate.latch.journal import ASKED, BEGUN, ENDED, ENDING, FAULT, REFUSED, RESET
 from elbowroom.guard.control import NAME
 from elbowroom.monitor.gate.gate import Gate
 from elbowroom.monitor.gate.state import Rules
@@ -37,6 +37,7 @@ def write_for_ever(folder: Path, seed: int, say: Callable[[str], None]) -> None:
         ticks = count(1_000_000_000, PASS_NS // 4)
         gate = Gate(folder, SITE, RULES, None, lambda ticks=ticks: next(ticks))  # type: ignore[misc]
         gate.begin()
+        say(BEGUN)
         for sequence in range(chance.randint(1, MOST_PASSES)):
             _pass(gate, folder, sequence, chance, say)
         say(ENDING)
