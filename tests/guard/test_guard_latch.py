@@ -169,11 +169,12 @@ def test_latch_is_on_the_disk_before_it_is_said_to_be(
 ) -> None:
     calls: list[str] = []
     fsync = os.fsync
-    monkeypatch.setattr(
-        durable.os,
-        "fsync",
-        lambda file: (calls.append(os.path.basename(os.readlink(f"/proc/self/fd/{file}"))), fsync(file)),  # noqa: PTH119
-    )
+
+    def noted(file: int) -> None:
+        calls.append(Path(f"/proc/self/fd/{file}").resolve().name)
+        fsync(file)
+
+    monkeypatch.setattr(durable.os, "fsync", noted)
     write_latch(tmp_path / "latch", SITE, Mark.ENDED)
     assert calls == [".latch.unfinished", tmp_path.name]
     assert oct((tmp_path / "latch").stat().st_mode & 0o777) == "0o600"

@@ -1,10 +1,12 @@
 """The experiment with the latch: it finds none lost, and it would find one."""
 
+import random
 from pathlib import Path
 
 import pytest
 
 from elbowroom.evaluate.due import due_of
+from elbowroom.evaluate.latch import latch as experiment
 from elbowroom.evaluate.latch.journal import is_kept, is_named, truth_after
 from elbowroom.evaluate.latch.killing import row_of
 from elbowroom.evaluate.latch.latch import DUE, latch_rows, latch_summary, wrong_rows
@@ -16,23 +18,23 @@ LATE, BROKEN, UNCLEAN = Fault(Reason.STALE), Fault(Reason.FAULT), Fault(Reason.U
 
 
 def test_no_latch_is_lost() -> None:
-    rows = list(latch_rows(60))
+    rows = list(latch_rows(25))
     summary = latch_summary(rows)
     assert [row["case"] for row in summary] == ["killed", "cut off", "one bit changed", "older"]
     for row in summary:
-        assert row["times"] == row["kept"] == 60
+        assert row["times"] == row["kept"] == 25
         assert all(due_of(DUE, key).met(row) for key in ("lost", "unnamed"))
-    assert summary[0]["after_latching"] > 5  # some had said what they had latched
+    assert summary[0]["after_latching"] > 2  # some had said what they had latched
     assert wrong_rows(rows) == []
 
 
-def test_a_latch_that_forgets_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_latch_that_forgets_is_found(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     def unlatched(path: Path, site: str) -> latch.Kept:
         return latch.Kept(())
 
-    for module in ("latch.latch", "latch.killing"):
-        monkeypatch.setattr(f"elbowroom.evaluate.{module}.read_latch", unlatched)
-    rows = [row for row in latch_rows(20) if row["case"] != "killed"]
+    monkeypatch.setattr(experiment, "read_latch", unlatched)
+    chance = random.Random(1)
+    rows = [*experiment._files(tmp_path / "a", 20, chance), *experiment._older(tmp_path, 20, chance)]
     assert all(row["lost"] == 20 for row in latch_summary(rows))
     assert len(wrong_rows(rows)) == 60
 

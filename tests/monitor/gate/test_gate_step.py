@@ -11,6 +11,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 from elbowroom.errors import InputError
 from elbowroom.guard.fault import Fault
 from elbowroom.guard.reason import Reason
+from elbowroom.monitor.gate import step as code
 from elbowroom.monitor.gate.claim import Claim
 from elbowroom.monitor.gate.state import (
     Decision,
@@ -24,7 +25,6 @@ from elbowroom.monitor.gate.state import (
     Rules,
     Ticked,
 )
-from elbowroom.monitor.gate import step as code
 from elbowroom.monitor.gate.step import step
 from elbowroom.motion import Level
 

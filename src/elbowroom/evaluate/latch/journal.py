@@ -8,8 +8,8 @@ from elbowroom.guard.reason import Reason
 
 BEGUN, FAULT, ASKED, RESET, REFUSED = "begun", "fault", "asked", "reset", "refused"
 ENDING, ENDED = "ending", "ended"
-"""Words of a journal: the gate has begun (before that nothing can move); a fault latched, and is on disk; a reset is asked
-for, was done, was refused; the run ends, has ended."""
+"""Words of a journal: the gate has begun (before that nothing can move); a fault latched, and is on disk; a reset is
+asked for, was done, was refused; the run ends, has ended."""
 
 
 @dataclass(frozen=True, slots=True)
