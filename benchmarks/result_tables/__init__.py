@@ -3,6 +3,7 @@
 from result_tables.calibration import calibration_tables
 from result_tables.cells import Row, any_tables
 from result_tables.drift import drift_tables
+from result_tables.latch import latch_tables
 from result_tables.placement import placement_tables, sweep_tables
 from result_tables.robots import robot_tables
 from result_tables.space import room_tables, sevenscenes_tables
@@ -17,6 +18,7 @@ __all__ = [
     "calibration_tables",
     "drift_tables",
     "hand_tables",
+    "latch_tables",
     "placement_tables",
     "poses_tables",
     "robot_tables",

@@ -38,7 +38,7 @@ def latch(
             "causes not named": "{unnamed}",
             "killed after it had latched": text("{}", "after_latching"),
             "killed inside a write": text("{}", "inside_a_write"),
-            "ended, so unlatched": text("{}", "unlatched"),
+            "unlatched, rightly": text("{}", "unlatched"),
         },
         sentence(DUE),
     )
