@@ -1,6 +1,5 @@
 """The watchdog as a process: whoever dies or falls silent, its readers by other hands read stop."""
 
-import json
 import os
 import shutil
 import signal
@@ -210,41 +209,6 @@ def test_mbpoll_reads_the_same(shared: Wired) -> None:
     assert "Illegal function" in write.stdout + write.stderr
 
 
-def test_monitor_that_is_killed_is_stop(tmp_path: Path) -> None:
-    # a process of its own beats; this one reads
-    wired = Wired()
-    beats = tmp_path / "beats.py"
-    beats.write_text(
-        "import sys, time, json\n"
-        "from elbowroom.guard.link import WatchdogLink\n"
-        "from elbowroom.guard.heartbeat import Heartbeat, Word\n"
-        "link = WatchdogLink(json.loads(sys.argv[1])); link.begin(); go = Word(640, 1, 2); n = 0\n"
-        "while True:\n"
-        "    n += 1; link.faults()\n"
-        "    now = time.monotonic_ns()\n"
-        "    link.send(Heartbeat(n, now, link.told['deadline_ns'], 2, go, (go, go), 0, link.trips))\n"
-        "    time.sleep(0.02)\n"
-    )
-    monitor = subprocess.Popen([sys.executable, str(beats), json.dumps(dict(wired.link.told))])
-    try:
-
-        def is_going() -> bool:
-            words = wired.client.read_holding_registers(0, COUNT)
-            return words is not None and words[6] == 640
-
-        until(is_going, 15.0)
-        monitor.send_signal(signal.SIGKILL)
-        killed_s = time.monotonic()
-        until(lambda: wired.read()[6] == 0, 2.0)
-        assert time.monotonic() - killed_s < 2 * DEADLINE_NS / 1e9 + 0.5
-        assert PHASES[wired.read()[4]] == "silent"
-        until(lambda: wired.client.read_holding_registers(0, COUNT) is None, 6.0)  # and then it is gone, too
-    finally:
-        monitor.kill()
-        monitor.wait()
-        wired.client.close()
-
-
 def test_watchdog_that_is_killed_is_a_fault_and_is_started_again(own: Wired) -> None:
     own.goes()
     pid = own.link.process_id
@@ -328,6 +292,12 @@ def test_callback_is_called_in_the_watchdog_also_after_the_monitor_is_gone(tmp_p
 def test_callback_that_is_not_there_is_said(where: str) -> None:
     with pytest.raises(InputError, match=where):
         found(where)
+
+
+@pytest.mark.skipif(not Path("/proc/self/maps").exists(), reason="no /proc here")
+def test_running_watchdog_is_small(shared: Wired) -> None:
+    maps = Path(f"/proc/{shared.link.process_id}/maps").read_text()
+    assert "python" in maps and not any(name in maps for name in ("numpy", "llvmlite", "scipy"))
 
 
 def test_watchdog_needs_no_numpy() -> None:
