@@ -43,6 +43,11 @@ def notes_of(site: Site) -> tuple[str, ...]:
         if without:
             notes.append(f"joints without a speed, whose motions are not checked: {', '.join(without)}")
     notes += _masks(site)
+    if entry.gate is not None and entry.gate.modbus is not None and entry.gate.modbus.is_open:
+        host, port = entry.gate.modbus.host, entry.gate.modbus.port
+        notes.append(
+            f"gate: whoever reaches {host}:{port} can read what the machine may do, by the site's word"
+        )
     if isinstance(entry.recording, SevenScenes):
         notes.append("each frame is a camera of its own, all at one moment: the room must not have changed")
         if entry.recording.exclude:
