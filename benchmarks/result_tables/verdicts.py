@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from elbowroom.evaluate.cell import rows as cell
 from elbowroom.evaluate.escape import escape
 from elbowroom.evaluate.hand import hand
 from elbowroom.evaluate.rooms import alone, poses, travel
@@ -20,6 +21,24 @@ def alone_tables(rows: Sequence[Row]) -> list[str]:
             "voxel": centimetres,
             **same("detail", "poses", "verdicts", "stop", "decelerate", "inform", "clear"),
             "clear %": of("clear_pct", 2, due=alone.DUE),
+        },
+    )
+
+
+def cell_tables(rows: Sequence[Row]) -> list[str]:
+    """Truly clear motions of an arm that stop, by joints, poses and cause."""
+    return table(
+        _summaries(rows),
+        {
+            "contact with the table": of("contact"),
+            "joints": of("joints"),
+            "poses": of("kind_of_pose"),
+            **same("motions"),
+            "milder than the truth": of("milder_level", due=cell.DUE),
+            "of its own links": of("milder_own"),
+            "truly clear": of("truly_clear"),
+            "of these stop %": of("stop_where_clear_pct", 1, due=cell.DUE),
+            **{f"by {cause.name.lower()}": of(f"stopped_by_{cause.name.lower()}") for cause in cell.STOPPING},
         },
     )
 

@@ -12,7 +12,7 @@ from elbowroom.geometry import bits, parallel
 from elbowroom.machine import Machine
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.course import Way, way_of
-from elbowroom.motion.ground import grounds_of
+from elbowroom.motion.ground import grounds_of, zone_of
 from elbowroom.motion.inside import blocks_inside
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.meeting import Meeting
@@ -120,6 +120,7 @@ def joint_motions(
 class _Scene:
     """What the motions of one check share."""
 
+    space: FreeSpace
     starts: tuple[Start, ...]
     machine: Machine
     skin: Skin
@@ -134,6 +135,7 @@ class _Scene:
         placed = machine.world_from_link_array(start[None])[0]
         starts = tuple(Start.of(machine, ground, placed) for ground in grounds_of(space, machine))
         return cls(
+            space,
             starts,
             machine,
             skin_of(machine, voxel_size_m),
@@ -154,12 +156,13 @@ class _Scene:
                 way.unit,
                 met.link,
                 tuple(met.place_in_world.tolist()),
-                Cause.MACHINE,
+                Cause.MACHINE if met.other in self.machine.link_names else Cause.SURFACE,
                 met.other,
                 reaches and met.travel > 0,
             )
         if block is None:
             return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE, escapes=reaches)
+        zone = zone_of(block, self.space, self.machine)
         return Verdict(
             motion,
             Level.at(block.travel, motion.braking_distance),
@@ -167,8 +170,9 @@ class _Scene:
             way.unit,
             self.machine.link_names[self.skin.link[block.cluster]],
             tuple(block.place_in_world.tolist()),
-            CAUSES[block.kind],
+            CAUSES[block.kind] if zone is None else Cause.KEPT_OUT,
             escapes=reaches and block.travel > 0,
+            zone=zone,
         )
 
     def _first_block(self, speeds: NDArray[np.float64], way: Way) -> tuple[Block | None, bool]:

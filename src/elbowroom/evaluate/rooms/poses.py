@@ -47,7 +47,7 @@ def poses_rows(
         voxel_size_m: edge of a voxel [m].
         poses: how many moments, each with the machine in a random pose that touches nothing.
         cameras, size, heights_m: along the walls, at these heights in turn [m]. From 2.4 m alone no camera sees what
-            lies under the machine's own overhangs. Those that would hang inside a cabinet hang highest.
+            lies under the machine's own overhangs. Those that would hang inside a cabinet hang beside it.
         detail: of the carve.
         noise: whether cameras are of time of flight, with noise and flying pixels; else they are exact.
         seed: of moments and poses.
@@ -60,10 +60,9 @@ def poses_rows(
     """
     room = InterventionRoom()
     motions = room_motions(room.machine)
+    noise_model = NOISE_PRESETS["tof"] if noise else None
     views = hung_clear(
-        wall_cameras(cameras, heights_m, size=size, noise=NOISE_PRESETS["tof"] if noise else None),
-        room.at(0.0).solids,
-        max(heights_m),
+        wall_cameras(cameras, heights_m, size=size, noise=noise_model), room.at(0.0).static_solids
     )
     grid = room_grid(voxel_size_m)
     rng = np.random.default_rng(seed)

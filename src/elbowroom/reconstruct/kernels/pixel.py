@@ -74,7 +74,7 @@ def _bounds(texels, first, width, pixels):
 
 
 @uncounted(cache=True, error_model="numpy", forceinline=True)
-def _outline(camera, middle, half):
+def outline_of(camera, middle, half):
     """Least and greatest column, least and greatest row of a voxel's corners; its middle in camera axes."""
     m = camera.camera_from_world
     px, py, pz = middle
@@ -93,7 +93,7 @@ def _outline(camera, middle, half):
 
 
 @uncounted(cache=True, error_model="numpy", forceinline=True)
-def _pixels_within(camera, outline):
+def pixels_within(camera, outline):
     """The pixels whose widened cones may meet what has this outline; none of them: left is beyond right."""
     u0, u1, v0, v1 = outline
     lateral = camera.lateral_px
@@ -134,7 +134,7 @@ def _depths_of(camera, middle, edge, reach_z):
 
 
 @uncounted(cache=True, error_model="numpy", forceinline=True)
-def _bounds_about(camera, texels, pixels):
+def bounds_about(camera, texels, pixels):
     """Least and greatest depth of what pixels free, in quanta: over all of them, or over the tiles that hold them."""
     if pixels.right - pixels.left < 8:
         return _bounds(texels.trust_texels, camera.first_texel, camera.width, pixels)
@@ -261,13 +261,13 @@ def settle_voxel(camera, texels, box, voxel):
         return 0
     if middle[2] - reach_z <= PLANE_EPS:
         return DISPUTES
-    pixels = _pixels_within(camera, _outline(camera, middle, half))
+    pixels = pixels_within(camera, outline_of(camera, middle, half))
     if pixels.left > pixels.right:
         return 0
     free = THROUGH if pixels.whole else 0
     # what bounds over all pixels settle: most voxels
     depths = _depths_of(camera, middle, box.edge, reach_z)
-    least, most = _bounds_about(camera, texels, pixels)
+    least, most = bounds_about(camera, texels, pixels)
     if least >= depths.clear_from:
         return free
     if most <= depths.hidden_to:
