@@ -8,6 +8,7 @@
     │   ├── MachineError     a URDF, a mesh, a joint that is unknown or out of its limits
     │   ├── JointsError      joints over time that are malformed, or not known at the time that is asked for
     │   ├── SiteError        a site file or a recording's folder
+    │   ├── BagError         a rosbag2 or MCAP file, or a message in it, that is not what it says it is
     │   ├── CalibrationError a board, a capture, or what was seen in it does not fix a pose
     │   │   └── NoResultError  something was found that cannot be taken for a result
     │   └── ImplausibleError values that read as valid and cannot be meant so: a unit, a lens, a pose, a sentinel
@@ -50,6 +51,10 @@ class JointsError(InputError):
 
 class SiteError(InputError):
     """A site file or a recording's folder that cannot be used."""
+
+
+class BagError(InputError):
+    """A rosbag2 or MCAP file, or a message in it, that cannot be read; the text names the topic and what came."""
 
 
 class CalibrationError(InputError):

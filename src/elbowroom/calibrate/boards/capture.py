@@ -23,7 +23,7 @@ from elbowroom.geometry.parallel import spread
 from elbowroom.site import Site
 from elbowroom.site.calibration_entry import CaptureImagesEntry
 from elbowroom.site.paths import existing_folder, inside
-from elbowroom.site.recording_entry import StampedFolder
+from elbowroom.site.recording_entry import BagRecording, StampedFolder
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
 
@@ -104,7 +104,7 @@ def images_by_pose(site: Site) -> list[list[Image]]:
     """
     by_camera = layout_of(site).by_camera()
     recording = site.entry.recording
-    if not isinstance(recording, StampedFolder):
+    if not isinstance(recording, StampedFolder | BagRecording):
         return [list(group) for group in zip(*by_camera.values(), strict=True)]
     skew_ns = round(recording.max_skew_ms * 1e6)
     poses: list[list[Image]] = []

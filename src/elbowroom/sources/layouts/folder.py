@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-import numpy as np
-
 from elbowroom.errors import FrameError, SiteError
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import JointRecord
@@ -14,11 +12,11 @@ from elbowroom.site.paths import inside
 from elbowroom.site.recording_entry import StampedFolder, StampUnit
 from elbowroom.site.site import Site
 from elbowroom.sources.depth_image import images_in
+from elbowroom.sources.layouts.gathered import gathered, series_of
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.times.company import require_dates
 from elbowroom.sources.times.joints import of_machine, require_meeting
 from elbowroom.sources.times.meeting import Meeting
-from elbowroom.sources.times.series import Series
 from elbowroom.sources.times.stamp import require_possible, stamp_of, unit_of
 
 
@@ -45,18 +43,12 @@ class Folder:
         """
         meeting = self.meeting
         require_dates(self.site.path, meeting)
-        return [
-            [images[index] for images, index in zip(self._rows.values(), column, strict=True) if index >= 0]
-            for column in meeting.taken().T
-        ]
+        return gathered(self._rows, meeting)
 
     @cached_property
     def meeting(self) -> Meeting:
         """When each camera's images were taken, and who meets whom; raises as `moments`."""
-        series = tuple(
-            Series(name, np.array([image.stamp_ns for image in row], dtype=np.int64))
-            for name, row in self._rows.items()
-        )
+        series = series_of(self._rows)
         if not any(map(len, series)):
             raise SiteError(
                 f"{self.site.path}: recording: no frames; expected {self.folder}/<camera>/<stamp_ns>.png, or .pgm"
