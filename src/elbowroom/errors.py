@@ -10,6 +10,7 @@
     │   ├── SiteError        a site file or a recording's folder
     │   ├── BagError         a rosbag2 or MCAP file, or a message in it, that is not what it says it is
     │   ├── CalibrationError a board, a capture, or what was seen in it does not fix a pose
+    │   │   └── NoResultError  something was found that cannot be taken for a result
     │   └── ImplausibleError values that read as valid and cannot be meant so: a unit, a lens, a pose, a sentinel
     ├── EvidenceError        evidence that cannot be merged or resolved
     └── PackageError         an optional package is not installed
@@ -58,6 +59,10 @@ class BagError(InputError):
 
 class CalibrationError(InputError):
     """A board or a capture from which a pose cannot be had; the message says what to capture instead."""
+
+
+class NoResultError(CalibrationError):
+    """What a calibration found is none: a camera moved by metres, or hardly known; the message says what it may be."""
 
 
 class ImplausibleError(InputError):

@@ -10,6 +10,8 @@ from elbowroom.cli.options import JsonFile, SitePath
 from elbowroom.cli.site_bag import from_bag, topics
 from elbowroom.cli.site_mask import mask
 from elbowroom.cli.site_moment import pose_to_draw, tight_notes
+from elbowroom.cli.site_own_links import own_links
+from elbowroom.cli.swept import say_swept, swept_row
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
@@ -22,11 +24,12 @@ if TYPE_CHECKING:
     from elbowroom.sources.times.clock import ClockRow
 
 site_app = typer.Typer(
-    help="Write a site file, also by a bag of ROS 2; check one; find masks.",
+    help="Write a site file, also by a bag of ROS 2; check one; find masks, or links that never meet.",
     epilog="Begin with: elbowroom site new my_room.yaml",
     no_args_is_help=True,
 )
 site_app.command(epilog="Example: elbowroom site mask my_room.yaml --out masks")(mask)
+site_app.command(epilog="Example: elbowroom site own-links my_room.yaml --out own_links.yaml")(own_links)
 site_app.command("from-bag", epilog="Example: elbowroom site from-bag my_bag --out my_room.yaml")(from_bag)
 site_app.command(epilog="Example: elbowroom site topics my_bag")(topics)
 
@@ -71,6 +74,9 @@ def check(
     A recording that is not there yet is a note. Where there is one, or a key room,
     the motions are tried at its first moment: a link beside which a surface lies
     within the cameras' own margins is named, since it would be stopped for ever.
+
+    Of the space that the motions sweep it is said, by link, how much no camera sees,
+    whether all images end below or above it, and where one more camera would help.
     """
     from elbowroom.site import Site
 
@@ -141,6 +147,7 @@ def _findings(site: "Site") -> dict[str, Any]:
         "times": times,
         "clocks": clocks,
         **memory_of(grid, cameras).row(),
+        **swept_row(site)[1],
         "notes": notes,
         "findings": [asdict(finding) for finding in (*found, *_of_the_model(site, found))],
     }
@@ -197,6 +204,7 @@ def _say(row: dict[str, Any]) -> None:
         if key == "recording" and row["times"] is not None:
             print("".join(f"times     {span}\n" for span in row["times"]["spans"]), end="")
             print(_clocks_text(row["clocks"]), end="")
+    say_swept(row)
     for note in row["notes"]:
         print(f"note      {note}")
     for finding in row["findings"]:

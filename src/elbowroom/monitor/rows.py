@@ -9,6 +9,7 @@ import numpy as np
 from elbowroom.files.json_rows import AddRow
 from elbowroom.geometry.parallel import thread_count
 from elbowroom.monitor.face import Pass
+from elbowroom.monitor.gate.told import GateRows
 from elbowroom.monitor.health.drift.watch import BODY
 from elbowroom.monitor.health.health import CameraHealth, LinkHealth
 from elbowroom.monitor.result import CycleResult
@@ -32,6 +33,7 @@ class Rows:
         self._told: dict[str, str] = {}
         self._source: Source | None = None
         self._clocks_ns: int | None = None
+        self._gate = GateRows()
 
     def begin(self, room: Room) -> None:
         """Adds the row of the room."""
@@ -42,7 +44,7 @@ class Rows:
         """Adds the rows of a pass."""
         for row in cycle_rows(done.result, done.source_ms):
             self._add(row)
-        for row in health_rows(done.result, self._told):
+        for row in (*health_rows(done.result, self._told), *self._gate.rows(done.result, done.decision)):
             self._add(row)
         if isinstance(self._source, Played) and self._is_time(done.result.stamp_ns):
             for row in clock_rows(done.result, self._source.clocks):
@@ -73,7 +75,7 @@ def room_row(room: Room) -> dict[str, Any]:
         "detail": room.terms.detail,
         "threads": thread_count(),
         "unchecked_links": room.machine.unchecked_links if room.machine else (),
-        "allowances": room.machine.allowances if room.machine else (),
+        "allowances": room.allowances,
         "bodiless_links": room.machine.bodiless_links if room.machine else (),
     }
 

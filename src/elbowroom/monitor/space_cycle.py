@@ -51,7 +51,7 @@ class SpaceCycle:
                 self.terms,
                 timer=lambda stage: timed(stage, stage_ms),
             )
-            late = lateness(snapshot, self.terms.max_age_ns, (self.clock_ns() - begun_ns) / 1e6)
+            late = lateness(snapshot, self.terms, (self.clock_ns() - begun_ns) / 1e6)
         except Exception as error:
             return self.failed(error, snapshot, stage_ms)
         now_ns = snapshot.now_ns or 0

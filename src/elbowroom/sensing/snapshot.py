@@ -91,6 +91,18 @@ class Snapshot:
         return replace(self, frames=tuple(kept))
 
     @property
+    def moment_ns(self) -> int | None:
+        """The moment that what is seen is said of: now, or else the newest frame's time; None: nothing has a time."""
+        if self.now_ns is not None:
+            return self.now_ns
+        return max((frame.stamp_ns for frame in self.frames if frame.stamp_ns is not None), default=None)
+
+    def away_ns(self, frame: DepthFrame) -> int:
+        """Between a frame and the moment, before or after [ns]; 0 where either has no time."""
+        moment_ns = self.moment_ns
+        return 0 if moment_ns is None or frame.stamp_ns is None else abs(moment_ns - frame.stamp_ns)
+
+    @property
     def oldest_age_ms(self) -> float | None:
         """Age of the oldest frame [ms]; None: no frame has a time, or nobody knows the time now."""
         bounds = self.clock_bounds_ns

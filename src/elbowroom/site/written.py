@@ -18,7 +18,7 @@ from elbowroom.site import Site
 from elbowroom.site.paths import led_from
 from elbowroom.site.schema import EVEN_SETTINGS
 
-PATH_KEYS = ("intrinsics_file", "pose_file", "urdf", "mesh", "folder", "file", "mask")
+PATH_KEYS = ("intrinsics_file", "pose_file", "urdf", "srdf", "own_links", "mesh", "folder", "file", "mask")
 """Keys whose values are paths beside the site file."""
 SHIPPED_ROOM = re.compile("setup[1-6]")
 """A mesh of this name is no file but a room of the package."""

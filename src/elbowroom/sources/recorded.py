@@ -79,7 +79,7 @@ def moments(site: Site, joints: Joints | None = None) -> Iterator[Snapshot]:
     layout = layout_of(site)
     groups = layout.moments()
     known = joints if joints is not None else layout.joints()
-    if site.entry.machine is not None and known is None:
+    if site.entry.has_machine and known is None:
         raise SiteError(
             f"joints: {site.path} records none of its machine; give positions that hold throughout"
         )
@@ -145,7 +145,7 @@ def time_findings(site: Site) -> tuple[Finding, ...]:
     if not isinstance(layout, Folder | BagFrames):
         return ()
     layout.moments()
-    record = layout.joints() if site.entry.machine is not None and layout.joints_path.exists() else None
+    record = layout.joints() if site.entry.has_machine and layout.joints_path.exists() else None
     joints = () if record is None else joint_findings(layout.joints_path, record, layout.meeting)
     notes = layout.notes if isinstance(layout, BagFrames) else ()
     clocks = layout.clocks() if isinstance(layout, BagFrames) else {}

@@ -56,6 +56,11 @@ class Room:
         return self.machine, motions
 
     @property
+    def allowances(self) -> tuple[str, ...]:
+        """What the site lets pass by somebody's word, a line each: every summary says it."""
+        return (*(self.machine.allowances if self.machine else ()), *self.terms.allowances)
+
+    @property
     def unasked(self) -> str | None:
         """Why no motion can be asked here: no machine, or no joint with a speed; None: motions can."""
         if self.machine is None:

@@ -3,6 +3,7 @@
 from elbowroom.monitor.health.checks import Look
 from elbowroom.monitor.health.contradiction_look import ContradictionLook
 from elbowroom.monitor.health.model_look import ModelLook
+from elbowroom.monitor.health.nothing_look import NothingLook
 from elbowroom.monitor.health.source_look import SourceLook
 from elbowroom.monitor.health.values_look import ValuesLook
 from elbowroom.site.plausible import look_at_site
@@ -19,5 +20,6 @@ def looks_of(room: Room) -> tuple[Look, ...]:
         *source,
         ValuesLook(room.grid, room.cameras, units_of(room.site, room.cameras), said),
         ContradictionLook(room.cameras, room.terms.margin),
+        NothingLook(room.grid, room.cameras, room.terms.margin),
         *model,
     )
