@@ -20,7 +20,7 @@ MOTIONS = tuple(
 def scene(tmp_path_factory):
     pytest.importorskip("coal", reason="coal is not installed; exact mesh distance is left out")
     arm = machines.slider_and_arm(tmp_path_factory.mktemp("arm"))
-    wall = Solid("wall", join([box((0.2, 0.055, 0.3), (0.6, 0.1, 0.8))]), np.eye(4))
+    wall = Solid("wall", join([box((0.2, 0.055, 0.3), (0.4, 0.1, 0.8))]), np.eye(4))
     return Scene.of("arm, by a wall", arm, MOTIONS, (wall,), room(0.05))
 
 
