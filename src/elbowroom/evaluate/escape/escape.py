@@ -66,9 +66,14 @@ def _judged(scene: Scene, joints: Mapping[str, float], motion: Motion, verdict: 
         "free_travel": verdict.free_travel,
         "true_travel": contact.travel,
         "beyond": verdict.free_travel > contact.travel + SAME,
-        "touching": any(scene.truth.gap(_moved(joints, motion, travel), 1e-4) <= 0 for travel in announced),
+        "touching": any(_touches(scene, _moved(joints, motion, travel), motion) for travel in announced),
         "leads_away": not contact.touches and leads_away(scene, joints, motion),
     }
+
+
+def _touches(scene: Scene, joints: Mapping[str, float], motion: Motion) -> bool:
+    """Whether a link that moves touches anything."""
+    return any(gap <= 0 for gap in scene.truth.gaps(joints, motion.joint, NEARER_M).values())
 
 
 def leads_away(scene: Scene, joints: Mapping[str, float], motion: Motion) -> bool:

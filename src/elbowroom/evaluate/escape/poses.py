@@ -121,8 +121,18 @@ def pose_beside(scene: Scene, rng: np.random.Generator) -> tuple[dict[str, float
         far = Motion(motion.joint, motion.direction, motion.braking_distance, FAR_M)
         contact = scene.truth.until_contact(joints, far)
         found = _driven(scene, joints, far, contact.travel, gap) if contact.touches else None
-        if found is not None:
+        if found is not None and _is_watched(scene, found[0]):
             return found
+
+
+def _is_watched(scene: Scene, joints: Mapping[str, float]) -> bool:
+    """Whether the whole machine stands in the watched box."""
+    placed = scene.machine.world_from_link_array(scene.machine.positions(joints)[None])[0]
+    return all(
+        bool(scene.grid.contains(link.vertices @ pose[:3, :3].T + pose[:3, 3]).all())
+        for link, pose in zip(scene.machine.links, placed, strict=True)
+        if link.name in scene.machine.checked_links
+    )
 
 
 def _driven(
