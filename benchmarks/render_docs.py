@@ -106,6 +106,30 @@ since its own returns lie in its model ([why](safety.md#own-body)).
         tables.hand_tables,
     ),
     Section(
+        "own_links.json",
+        "Own links",
+        """
+Robots as they were published (example-robot-data, one of a folder), random poses in which no links touch, all joints in
+both directions, S of 0.25 rad or 0.1 m; beside what the distance of their meshes says (coal). Pairs that touch where
+all joints are at zero are left out, as MoveIt's setup assistant leaves them out. *meets*: a link touches another within
+S. *beyond*: free travel is longer than the truth.
+""",
+        "elbowroom evaluate own-links",
+        tables.own_links_tables,
+    ),
+    Section(
+        "table.json",
+        "An arm on a table",
+        """
+A UR5 whose base stands on a table, six cameras of 424 x 240 with the noise of a D435, 2 cm, random poses, shoulder and
+elbow in both directions; beside what the distance of meshes says (coal). With `contacts`, shoulder and upper arm may be
+near the table ([what that is](safety.md#what-it-touches-and-carries)). *milder*: something is met within S, and the
+verdict is no stop.
+""",
+        "elbowroom evaluate table",
+        tables.table_tables,
+    ),
+    Section(
         "evaluate_poses.json",
         "Verdicts beside exact geometry",
         """

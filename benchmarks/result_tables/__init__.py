@@ -7,7 +7,14 @@ from result_tables.placement import placement_tables, sweep_tables
 from result_tables.robots import robot_tables
 from result_tables.space import room_tables, sevenscenes_tables
 from result_tables.speed import bench_tables, start_tables
-from result_tables.verdicts import alone_tables, hand_tables, poses_tables, travel_tables
+from result_tables.verdicts import (
+    alone_tables,
+    hand_tables,
+    own_links_tables,
+    poses_tables,
+    table_tables,
+    travel_tables,
+)
 
 __all__ = [
     "Row",
@@ -17,6 +24,7 @@ __all__ = [
     "calibration_tables",
     "drift_tables",
     "hand_tables",
+    "own_links_tables",
     "placement_tables",
     "poses_tables",
     "robot_tables",
@@ -24,5 +32,6 @@ __all__ = [
     "sevenscenes_tables",
     "start_tables",
     "sweep_tables",
+    "table_tables",
     "travel_tables",
 ]

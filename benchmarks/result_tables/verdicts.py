@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 
 from elbowroom.evaluate.hand import hand
+from elbowroom.evaluate.own_links import own_links
 from elbowroom.evaluate.rooms import alone, poses, travel
+from elbowroom.evaluate.table import table as on_table
 from result_tables.cells import Row, centimetres, of, same, table
 
 
@@ -34,6 +36,36 @@ def hand_tables(rows: Sequence[Row]) -> list[str]:
             **same("stop", "decelerate", "inform"),
             "clear": of("clear", due=hand.DUE),
             "machine alone, stop %": of("alone_stop_pct", 1, due=hand.DUE),
+        },
+    )
+
+
+def own_links_tables(rows: Sequence[Row]) -> list[str]:
+    """Stops at own links beside the truth, of all robots together."""
+    return table(
+        _summaries(rows),
+        {
+            **same("robots", "poses", "motions"),
+            "meets": of("meet"),
+            "called clear": of("called_clear", due=own_links.DUE),
+            **same("beyond", "stops"),
+            "stops where clear %": of("false_stops_pct", 2, due=own_links.DUE),
+        },
+    )
+
+
+def table_tables(rows: Sequence[Row]) -> list[str]:
+    """Motions of an arm on a table, without declared contact and with it."""
+    return table(
+        _summaries(rows),
+        {
+            "declared contact": of("contact"),
+            **same("poses", "motions"),
+            "truly clear": of("clear"),
+            "of these stop %": of("stop_where_clear_pct", 1, due=on_table.DUE),
+            "meets within S": of("within"),
+            "milder": of("milder", due=on_table.DUE),
+            "beyond": of("beyond"),
         },
     )
 

@@ -1,0 +1,1 @@
+"""An arm that stands on a table: which motions stop that are truly clear, with declared contact or without."""
