@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 
+from elbowroom.evaluate.cell import rows as cell
+from elbowroom.evaluate.escape import escape
 from elbowroom.evaluate.hand import hand
 from elbowroom.evaluate.own_links import own_links
 from elbowroom.evaluate.rooms import alone, poses, travel
-from elbowroom.evaluate.table import table as on_table
 from result_tables.cells import Row, centimetres, of, same, table
 
 
@@ -25,6 +26,24 @@ def alone_tables(rows: Sequence[Row]) -> list[str]:
     )
 
 
+def cell_tables(rows: Sequence[Row]) -> list[str]:
+    """Truly clear motions of an arm that stop, by joints, poses and cause."""
+    return table(
+        _summaries(rows),
+        {
+            "contact with the table": of("contact"),
+            "joints": of("joints"),
+            "poses": of("kind_of_pose"),
+            **same("motions"),
+            "milder than the truth": of("milder_level", due=cell.DUE),
+            "of its own links": of("milder_own"),
+            "truly clear": of("truly_clear"),
+            "of these stop %": of("stop_where_clear_pct", 1, due=cell.DUE),
+            **{f"by {cause.name.lower()}": of(f"stopped_by_{cause.name.lower()}") for cause in cell.STOPPING},
+        },
+    )
+
+
 def hand_tables(rows: Sequence[Row]) -> list[str]:
     """Levels of motions that meet a hand, and of the machine alone, by what explains."""
     return table(
@@ -40,6 +59,23 @@ def hand_tables(rows: Sequence[Row]) -> list[str]:
     )
 
 
+def escape_tables(rows: Sequence[Row]) -> list[str]:
+    """Motions beside an object: refused, or let go too far, by machine."""
+    return table(
+        _summaries(rows),
+        {
+            **same("machine", "poses", "motions"),
+            "least gap [mm]": of("least_gap_mm", 2),
+            "lead away": of("leads_away"),
+            "of these stop": of("refused"),
+            "%": of("refused_pct", 1, due=escape.DUE),
+            "escape": of("escapes"),
+            "beyond the truth": of("beyond", due=escape.DUE),
+            "contact on the way": of("touching", due=escape.DUE),
+        },
+    )
+
+
 def own_links_tables(rows: Sequence[Row]) -> list[str]:
     """Stops at own links beside the truth, of all robots together."""
     return table(
@@ -50,22 +86,6 @@ def own_links_tables(rows: Sequence[Row]) -> list[str]:
             "called clear": of("called_clear", due=own_links.DUE),
             **same("beyond", "stops"),
             "stops where clear %": of("false_stops_pct", 2, due=own_links.DUE),
-        },
-    )
-
-
-def table_tables(rows: Sequence[Row]) -> list[str]:
-    """Motions of an arm on a table, without declared contact and with it."""
-    return table(
-        _summaries(rows),
-        {
-            "declared contact": of("contact"),
-            **same("poses", "motions"),
-            "truly clear": of("clear"),
-            "of these stop %": of("stop_where_clear_pct", 1, due=on_table.DUE),
-            "meets within S": of("within"),
-            "milder": of("milder", due=on_table.DUE),
-            "beyond": of("beyond"),
         },
     )
 

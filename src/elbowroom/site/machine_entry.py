@@ -17,7 +17,8 @@ from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.machine.joint_state import JointTolerance
 from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.together import Member
-from elbowroom.motion import Motion, braking_distance
+from elbowroom.motion import Motion, Override, braking_distance
+from elbowroom.motion.creep import REDUCED_SPEED_M_S, SHARE_OF_FULL_SPEED
 from elbowroom.site.contact_entry import ContactEntry, PartEntry, StandEntry, require_protected
 from elbowroom.site.entry import Entry, Flag, Matrix, NotNegative, Number, Positive, Text
 from elbowroom.site.paths import existing_folder, expand
@@ -185,6 +186,21 @@ class JointEntry(Entry):
             return math.radians(self.max_speed_deg_s)
         does, key = ("slides", "max_speed_m_s") if joint.unit == "m" else ("turns", "max_speed_deg_s")
         raise SiteError(f"joints.{joint.name}: {joint.name} {does}, its speed is written {key}")
+
+
+class OverrideEntry(Entry):
+    """How fast an operator who holds on may creep where nobody sees: of the fastest point, and of full speed."""
+
+    max_speed_mm_s: Annotated[Positive, up_to(1000, "mm/s")] = 1e3 * REDUCED_SPEED_M_S
+    share_of_full_speed: Annotated[Number, Field(gt=0, le=1)] = SHARE_OF_FULL_SPEED
+
+    def build(self, speeds: Mapping[str, float]) -> Override:
+        """The override.
+
+        Args:
+            speeds: full speeds of the joints by name [m/s or rad/s].
+        """
+        return Override(self.max_speed_mm_s / 1e3, self.share_of_full_speed, speeds)
 
 
 def motions_of(machine: Machine, joints: Mapping[str, JointEntry]) -> tuple[Motion, ...]:

@@ -15,6 +15,7 @@ def notes_of(site: Site) -> tuple[str, ...]:
     entry, notes = site.entry, []
     if not site.has_stamps:
         notes.append("frames have no times: no limit on their age")
+        notes.append("nobody knows what moved since frames without times: what they show is taken to hold")
         if entry.max_frame_age_ms is not None:
             notes.append("max_frame_age_ms has no effect on frames without times")
     elif entry.max_frame_age_ms is None:
@@ -25,6 +26,7 @@ def notes_of(site: Site) -> tuple[str, ...]:
         notes.append(
             "detail point, the thesis' test of voxel centres, is for comparison: it frees occupied voxels"
         )
+    notes += site.terms().allowances
     machine = site.machine()
     if machine is not None:
         if machine.unchecked_links:
@@ -41,6 +43,11 @@ def notes_of(site: Site) -> tuple[str, ...]:
         if without:
             notes.append(f"joints without a speed, whose motions are not checked: {', '.join(without)}")
     notes += _masks(site)
+    if entry.gate is not None and entry.gate.modbus is not None and entry.gate.modbus.is_open:
+        host, port = entry.gate.modbus.host, entry.gate.modbus.port
+        notes.append(
+            f"gate: whoever reaches {host}:{port} can read what the machine may do, by the site's word"
+        )
     if isinstance(entry.recording, SevenScenes):
         notes.append("each frame is a camera of its own, all at one moment: the room must not have changed")
         if entry.recording.exclude:

@@ -17,15 +17,15 @@ from elbowroom.files.yaml_file import read_yaml
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.machine.together import together
-from elbowroom.motion import Motion
+from elbowroom.motion import Motion, Override
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.sensing import Margin
 from elbowroom.site import seven_scenes
 from elbowroom.site.camera_entry import CameraSettings, build_camera, mended_poses
 from elbowroom.site.machine_entry import motions_of
 from elbowroom.site.messages import one_line
-from elbowroom.site.paths import existing_folder
-from elbowroom.site.recording_entry import SevenScenes, StamplessFolder
+from elbowroom.site.paths import existing_bag, existing_folder
+from elbowroom.site.recording_entry import BagRecording, SevenScenes, StamplessFolder
 from elbowroom.site.schema import SimulatedEntry, SiteEntry
 from elbowroom.site.zone_entry import with_zones
 
@@ -129,6 +129,9 @@ class Site:
             self.max_age_ns,
             self.explain_tolerance_m,
             witness_angle_deg=self.entry.witness_angle_deg,
+            people_speed_m_s=self.entry.people_speed_m_s,
+            nothing_moves=self.entry.nothing_moves,
+            pass_ns=round((self.entry.pass_time_ms or 0.0) * 1e6),
         )
 
     def margin(self) -> Margin:
@@ -315,8 +318,21 @@ class Site:
         """
         return self._blame(None, lambda: motions_of(machine, self.entry.joints))
 
+    def override(self, machine: Machine) -> Override:
+        """How fast an operator who holds on may creep where nobody sees.
+
+        Args:
+            machine: the machine of this site.
+
+        Raises:
+            SiteError: as `motions`.
+        """
+        joints = self.entry.joints
+        speeds = {name: joints[name].speed_of(machine.joint(name)) for name in joints}
+        return self.entry.override.build(speeds)
+
     def recording_folder(self) -> Path:
-        """The folder of the recording.
+        """The folder of the recording; of a bag its folder, or its file.
 
         Raises:
             SiteError: the site names none, or it is absent.
@@ -327,6 +343,8 @@ class Site:
                 f"{self.path}: recording: missing; this command reads one (`elbowroom simulate` makes one of a "
                 "modelled room)"
             )
+        if isinstance(recording, BagRecording):
+            return self._blame("recording.file", lambda: existing_bag(recording.file, self.path.parent))
         return self._blame("recording.folder", lambda: existing_folder(recording.folder, self.path.parent))
 
     @property
@@ -341,7 +359,7 @@ class Site:
         try:
             self.recording_folder()
         except SiteError as error:
-            if "no folder" in str(error):
+            if "no folder" in str(error):  # of a bag: "no folder or file"
                 return str(error).removeprefix(f"{self.path}: ")
             raise
         return None
