@@ -80,10 +80,7 @@ def ask(
     print(f"{verdict.motion.name}: {verdict.level.value}")
     print(_travel(motion, verdict))
     if verdict.place_in_world is not None:
-        x, y, z = verdict.place_in_world
-        met = verdict.other_link or verdict.zone
-        what = verdict.cause.value + (f", {met}" if met else "")
-        print(f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
+        print(_what_ends(verdict, verdict.place_in_world))
     if verdict.creep is not None:
         print(_creeping(verdict, verdict.creep))
     if verdict.escapes:
@@ -95,6 +92,14 @@ def ask(
     for line in _by_the_sites_word(machine, room.allowances):
         print(line)
     print(NOT_CERTIFIED)
+
+
+def _what_ends(verdict: Verdict, place: tuple[float, float, float]) -> str:
+    """What ends the travel, and where."""
+    met = verdict.other_link or verdict.zone
+    x, y, z = place
+    what = verdict.cause.value + (f", {met}" if met else "")
+    return f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m."
 
 
 def _by_the_sites_word(machine: Machine, allowances: Sequence[str]) -> Iterator[str]:
