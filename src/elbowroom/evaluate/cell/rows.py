@@ -119,9 +119,9 @@ def _truths(cell: Cell, moment: Moment) -> list[Contact]:
 def _machines(cell: Cell) -> dict[str, Machine]:
     """As the site declares what links may be near, and without a word of it, where it declares anything."""
     machine = cell.machine
-    if not machine.stands:
+    if not (machine.stands or machine.contacts):
         return {"none": machine}
-    return {"declared": machine, "none": replace(machine, stands=())}
+    return {"declared": machine, "none": replace(machine, stands=(), contacts=())}
 
 
 def _space_of(cell: Cell, moment: Moment, noise: bool, seed: int) -> FreeSpace:
