@@ -137,7 +137,7 @@ A UR5 (package example-robot-data) on a table with a bin, a person beside it, si
 RealSense D435, voxels of 2 cm, poses at random and at work (the tool down over the table) in turn. Of the motions of
 shoulder and elbow whose way is clear over the whole reach by exact geometry (coal), the share that stops, by what stops
 it. *milder*: levels milder than the truth, where the way ends at something of the room; *of its own links*: where it
-ends at another link. *declared*: the site lets shoulder and upper arm be near the table
+ends at another link. *declared*: the site lets the arm's links be near the table
 ([safety](safety.md#what-it-touches-and-carries)); *none*: it does not.
 """,
         "elbowroom evaluate cell",
