@@ -152,6 +152,17 @@ def test_the_age_at_the_end_is_that_of_frames_that_were_used(a_cycle):
     assert aged(a_cycle, 100).run(taken(now - 10**9, now_ns=now)).late is None
 
 
+def test_a_pass_that_took_longer_than_frames_were_aged_for_is_a_stop(a_cycle):
+    now = 10**9
+    for took_ms, level in ((99, Level.CLEAR), (101, Level.STOP)):
+        each = aged(a_cycle, took_ms)
+        each.terms = Terms(pass_ns=100_000_000)
+        result = each.run(taken(now, now_ns=now))
+        assert {verdict.level for verdict in result.verdicts} == {level}
+    assert result.verdicts[0].cause is Cause.STALE
+    assert "took 101 ms, and space was judged for 100 ms (pass_time_ms)" in result.late
+
+
 def test_without_a_limit_no_pass_is_too_long(a_cycle):
     assert aged(a_cycle, 10**4, None).run(taken(1)).level is Level.CLEAR
 

@@ -7,6 +7,7 @@ import yaml
 
 from elbowroom.errors import SiteError
 from elbowroom.site import Site
+from elbowroom.site.notes import notes_of
 from elbowroom.site.site import NEW_SITE
 
 SITE = {
@@ -54,6 +55,13 @@ def load(tmp_path, path, value):
         ("joints.long.max_speed_m_s", 150, "looks like millimetres a second: 0.15"),
         ("joints.long.braking_time_s", 500, "looks like milliseconds: 0.5"),
         ("max_frame_age_ms", 0.2, "looks like seconds: 200"),
+        ("pass_time_ms", 0.1, "looks like seconds: 100"),
+        ("people_speed_m_s", 1600, "looks like millimetres a second: 1.6"),
+        ("people_speed_m_s", 15, "looks like kilometres an hour: 4.16667"),
+        ("people_speed_m_s", 0.1, "0.5 to 10 m/s"),
+        ("people_speed_m_s", 0, "nothing_moves"),
+        ("nothing_moves", True, "people_speed_m_s 0 alone"),
+        ("camera_defaults.clock_bound_ms", 5e6, "looks like nanoseconds: 5"),
         ("machine.explain_tolerance_m", 10, "looks like millimetres: 0.01"),
         ("calibration.board.square_m", 90, "looks like millimetres: 0.09"),
     ],
@@ -86,3 +94,21 @@ def test_what_is_in_use_is_allowed(tmp_path, path, value):
 
 def test_the_site_that_one_starts_from_is_allowed():
     Site.load(NEW_SITE)
+
+
+def test_how_fast_people_are_and_what_a_clock_may_be_off_are_said_by_the_site(tmp_path):
+    site = load(tmp_path, "camera_defaults.clock_bound_ms", 5.0)
+    assert site.terms().people_speed_m_s == 1.6 and site.terms().pass_ns == 0
+    assert [camera.clock_bound_ns for camera in site.cameras()] == [5_000_000]
+    assert load(tmp_path, "people_speed_m_s", 2.0).terms().people_speed_m_s == 2.0
+    assert load(tmp_path, "pass_time_ms", 80).terms().pass_ns == 80_000_000
+
+
+def test_a_room_where_nothing_moves_says_so_in_every_summary(tmp_path):
+    site = Site.load(load(tmp_path, "people_speed_m_s", 1.6).path)
+    assert not any("nothing_moves" in note for note in notes_of(site))
+    content = yaml.safe_load(site.path.read_text())
+    site.path.write_text(yaml.safe_dump({**content, "people_speed_m_s": 0, "nothing_moves": True}))
+    (still,) = Site.load(site.path).terms().allowances
+    assert still.startswith("nothing but the machine moves here")
+    assert still in notes_of(Site.load(site.path))

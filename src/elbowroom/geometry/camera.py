@@ -34,6 +34,7 @@ class DepthCamera:
         flying_pixels: whether steps in depth carve only to the nearer side; None: only where there is a noise model.
         mask: pixels that say nothing whatever they deliver, as if outside the image, shape (height, width), bool; None:
             none. They free nothing and dispute nothing.
+        clock_bound_ns: by how much its stamps may be off the room's clock, or off the middle of exposure [ns].
 
     Raises:
         CameraError: a value that no camera can have.
@@ -51,6 +52,7 @@ class DepthCamera:
     max_depth_m: float = float("inf")
     flying_pixels: bool | None = None
     mask: NDArray[np.bool_] | None = None
+    clock_bound_ns: int = 0
 
     def __post_init__(self) -> None:
         if not self.name or "/" in self.name or "\\" in self.name:
@@ -67,6 +69,10 @@ class DepthCamera:
             raise CameraError(
                 f"camera {self.name}: depth from {self.min_depth_m} to {self.max_depth_m} m is no range; "
                 "min_depth_m must be at least 0 and below max_depth_m"
+            )
+        if self.clock_bound_ns < 0:
+            raise CameraError(
+                f"camera {self.name}: clock_bound_ns is {self.clock_bound_ns}, must be at least 0"
             )
         if self.mask is not None:
             object.__setattr__(self, "mask", _checked_mask(self.mask, self))

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
@@ -51,11 +51,13 @@ class SpaceCycle:
                 self.terms,
                 timer=lambda stage: timed(stage, stage_ms),
             )
-            late = lateness(snapshot, self.terms.max_age_ns, (self.clock_ns() - begun_ns) / 1e6)
+            late = lateness(snapshot, self.terms, (self.clock_ns() - begun_ns) / 1e6)
         except Exception as error:
             return self.failed(error, snapshot, stage_ms)
         now_ns = snapshot.now_ns or 0
-        return CycleResult(self._number(), now_ns, space.released(), (), stage_ms, oldest_ms, late=late)
+        skew_ms = snapshot.fresh(self.terms.max_age_ns).skew_ms
+        result = CycleResult(self._number(), now_ns, space.released(), (), stage_ms, oldest_ms)
+        return replace(result, late=late, skew_ms=skew_ms)
 
     def failed(
         self, error: Exception, snapshot: Snapshot | None, stage_ms: dict[str, float] | None = None

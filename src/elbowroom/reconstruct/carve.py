@@ -62,6 +62,31 @@ def carve(
     return carve_images(grid, room_images(cameras, frames), explained, terms, complete=complete)
 
 
+def carve_aged(
+    grid: VoxelGrid,
+    cameras: Sequence[DepthCamera],
+    frames: Sequence[DepthFrame],
+    aged_m: Mapping[str, float],
+    *,
+    detail: Detail = "pixel",
+    margin: Margin | None = None,
+    complete: bool = False,
+) -> Evidence:
+    """As `carve`, of frames since which things may have moved: a voxel is through if it is, grown by so much.
+
+    Args:
+        grid, cameras, frames: as of `carve`.
+        aged_m: by camera, how far anything may have moved since its frame [m]; one that is missing: not at all.
+        detail, margin, complete: as of `carve`.
+
+    Raises:
+        InputError, CameraError, FrameError: as `carve`.
+    """
+    terms = Terms(detail=detail, margin=margin or Margin())
+    images = room_images(cameras, frames, aged_m)
+    return carve_images(grid, images, Explained({}, None), terms, complete=complete)
+
+
 def carve_images(
     grid: VoxelGrid,
     images: RoomImages,

@@ -1,7 +1,7 @@
 """Frames matched with their cameras and made pinhole: what carving and explaining start from."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Self
 
@@ -23,11 +23,14 @@ class RoomImages:
         cameras: pinhole, all of the group.
         least_m, greatest_m: by camera, bounds of depth per pixel, shape (height, width) [m]; those without a frame
             are missing. Without distortion both are the frame's own image.
+        aged_m: by camera, how far anything may have moved since its image was exposed [m]; one that is missing: not at
+            all.
     """
 
     cameras: tuple[DepthCamera, ...]
     least_m: Mapping[str, Image]
     greatest_m: Mapping[str, Image]
+    aged_m: Mapping[str, float] = field(default_factory=dict)
 
     def of(self, *names: str) -> Self:
         """Those of some cameras alone."""
@@ -35,11 +38,21 @@ class RoomImages:
             tuple(camera for camera in self.cameras if camera.name in names),
             {camera: image for camera, image in self.least_m.items() if camera in names},
             {camera: image for camera, image in self.greatest_m.items() if camera in names},
+            {camera: far for camera, far in self.aged_m.items() if camera in names},
         )
 
 
-def room_images(cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]) -> RoomImages:
+def room_images(
+    cameras: Sequence[DepthCamera],
+    frames: Sequence[DepthFrame],
+    aged_m: Mapping[str, float] | None = None,
+) -> RoomImages:
     """Matches frames with cameras and brings distorted images to pinhole images.
+
+    Args:
+        cameras: of a group.
+        frames: at most one of each of them.
+        aged_m: by camera, how far anything may have moved since its frame [m]; None: not at all.
 
     Raises:
         CameraError: a camera named twice, or a frame of an unknown camera.
@@ -55,7 +68,9 @@ def room_images(cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]) ->
             _, least[camera.name], greatest[camera.name] = rectify(camera, frame)
         else:
             least[camera.name] = greatest[camera.name] = frame.depth_m
-    return RoomImages(tuple(pinhole_of(camera) for camera in cameras), least, greatest)
+    known = {frame.camera for frame in frames}
+    aged = {name: far for name, far in (aged_m or {}).items() if name in known and far > 0}
+    return RoomImages(tuple(pinhole_of(camera) for camera in cameras), least, greatest, aged)
 
 
 @lru_cache(maxsize=256)

@@ -11,6 +11,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.images import Image, RoomImages
 from elbowroom.reconstruct.kernels import pyramid as pyramid
+from elbowroom.reconstruct.kernels.aged import still_through
 from elbowroom.reconstruct.kernels.box import ALL
 from elbowroom.reconstruct.kernels.camera import Texels
 from elbowroom.reconstruct.kernels.cone import VOXEL
@@ -60,7 +61,7 @@ def is_seen_in_parts(
             return False
         layout, name = layout_of(grid, images.cameras, margin), images.cameras[row].name
         bounds_m = images.least_m[name], images.greatest_m[name]
-        parts = _Parts(first, edge, in_cameras[row])
+        parts = _Parts(first, edge, in_cameras[row], images.aged_m.get(name, 0.0))
         seen |= _parts_seen(layout, row, bounds_m, model_depth.get(name), parts)
         if seen.all():
             return True
@@ -74,11 +75,13 @@ class _Parts(NamedTuple):
         first: centre of the first, world frame [m].
         edge: of a part [m].
         in_camera: centres of all parts in the camera's axes, shape (3, parts) [m].
+        aged_m: how far anything may have moved since the camera's image [m].
     """
 
     first: NDArray[np.float64]
     edge: float
     in_camera: NDArray[np.float64]
+    aged_m: float
 
     @property
     def corners(self) -> NDArray[np.float64]:
@@ -152,10 +155,19 @@ def _parts_seen(
         parts: before it.
     """
     camera, record, corners = layout.cameras[row], layout.records[row], parts.corners
-    if corners[2].min() <= NEAREST_M:
+    nearest = corners[2].min() - parts.aged_m
+    if nearest <= NEAREST_M:
         return np.zeros(len(STEPS), dtype=np.bool_)
-    window = _window(camera, float(record["lateral_px"]) + SPARE_PX, corners)
+    # as far as the growth reaches in the image, wherever in it the voxel is
+    grown_px = (
+        parts.aged_m
+        / nearest
+        * max(camera.intrinsics.fx, camera.intrinsics.fy)
+        / float(record["least_cosine"])
+    )
+    window = _window(camera, float(record["lateral_px"]) + SPARE_PX + grown_px, corners)
     part = cut_out(record, *window)
+    part["aged_m"] = parts.aged_m
     least_m, greatest_m = (np.ascontiguousarray(image[window]) for image in bounds_m)
     model = None if model_m is None else np.ascontiguousarray(model_m[window])
     trust, doubt = (np.empty(least_m.shape, dtype=np.uint32) for _ in range(2))
@@ -164,8 +176,11 @@ def _parts_seen(
         put_mask(camera.mask[window], (trust, doubt))
     texels = Texels(trust.reshape(-1), doubt.reshape(-1), _tiles(trust), _tiles(doubt), NO_TEXELS)
     x, y, z = parts.first.tolist()
-    words = settle_word(part, texels, ALL, Boxes(x, y, z, parts.edge, 0), np.empty(1, VOXEL)[0])
-    return np.unpackbits(np.array(words[:1]).view(np.uint8), bitorder="little").view(np.bool_)
+    boxes, scratch = Boxes(x, y, z, parts.edge, 0), np.empty(1, VOXEL)[0]
+    through = np.uint64(settle_word(part, texels, ALL, boxes, scratch)[0])
+    if parts.aged_m > 0:
+        through = np.uint64(still_through(part, texels, through, boxes, scratch))
+    return np.unpackbits(np.array([through]).view(np.uint8), bitorder="little").view(np.bool_)
 
 
 def _window(

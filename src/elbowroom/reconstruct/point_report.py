@@ -13,6 +13,7 @@ class Sight(Enum):
     EDGE = "sees past a part of it only"
     BLIND = "looks there without a valid return"
     HIDDEN = "looks there, but something nearer hides it"
+    AGED = "saw through it, so long ago that something may have come since"
     OUTSIDE = "does not have all of it in its image"
 
 

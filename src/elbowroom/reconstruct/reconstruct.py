@@ -13,14 +13,16 @@ from elbowroom.errors import ValueWarning
 from elbowroom.geometry import DepthCamera, VoxelGrid, parallel
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
+from elbowroom.reconstruct.ages import aged_m
 from elbowroom.reconstruct.carve import carve_images
+from elbowroom.reconstruct.declared import declared_words
 from elbowroom.reconstruct.explained import explain
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.images import frames_by_camera, room_images
 from elbowroom.reconstruct.looking import found_in_space, require_plausible
 from elbowroom.reconstruct.resolve import decide
 from elbowroom.reconstruct.source import ImageSource
-from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG, Terms
+from elbowroom.reconstruct.terms import PEOPLE_SPEED_M_S, WITNESS_ANGLE_DEG, Terms
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 
 Timer = Callable[[str], AbstractContextManager[None]]
@@ -43,6 +45,8 @@ def reconstruct(
     body_growth_m: float | None = None,
     focus: NDArray[np.bool_] | None = None,
     witness_angle_deg: float = WITNESS_ANGLE_DEG,
+    people_speed_m_s: float = PEOPLE_SPEED_M_S,
+    nothing_moves: bool = False,
     threads: int | None = None,
     timer: Timer | None = None,
     looks: bool = True,
@@ -68,6 +72,9 @@ def reconstruct(
         focus: blocks of 4 voxels that are looked at, of `motion.blocks_in_reach`; all others stay unseen. None: all.
         witness_angle_deg: by rule `three`, cameras nearer to each other than this, as seen from the grid, are one
             witness [deg]; 0: each is one.
+        people_speed_m_s: the most that anything but the machine moves [m/s]: what a camera saw to be free holds at
+            `now_ns`, or at the newest frame's time, for what such a thing cannot have reached since.
+        nothing_moves: nothing but the machine moves here; goes with a speed of 0, and only with that.
         threads: None: all cores. The result does not depend on it.
         timer: called with the name of each stage, returns a context manager around it; None: nobody measures.
         looks: whether values are looked at, at the first moments of these cameras: units, numbers that stand for no
@@ -93,6 +100,8 @@ def reconstruct(
         explain_tolerance_m,
         body_growth_m,
         witness_angle_deg=witness_angle_deg,
+        people_speed_m_s=people_speed_m_s,
+        nothing_moves=nothing_moves,
     )
     snapshot = Snapshot.taken(frames, None if machine is None else joints, now_ns, max_age_ns)
     is_first = False
@@ -132,14 +141,20 @@ def free_space_of(
     stage = timer or _untimed
     frames_by_camera(cameras, snapshot.frames)  # a frame past its age must be of this room, too
     fresh = snapshot.fresh(terms.max_age_ns)
-    images = room_images(cameras, fresh.frames)
+    images = room_images(cameras, fresh.frames, aged_m(cameras, fresh, terms))
     with stage("explain"):
         explained = explain(grid, machine, images, fresh, terms)
     with stage("carve"):
         evidence = carve_images(grid, images, explained, terms, complete=terms.needs_counts, focus=focus)
     with stage("resolve"):
         space = decide(evidence, cameras, machine, fresh.joints_at_newest, terms)
-    return replace(space, source=ImageSource(images, explained.model_depth, terms, space.free_words, focus))
+    source = ImageSource(images, explained.model_depth, terms, space.free_words, focus)
+    space = replace(space, source=source, looked_at=focus)
+    if machine is None or not machine.contacts:
+        return space
+    with stage("contacts"):
+        near = declared_words(grid, cameras, images, fresh, machine, terms, focus)
+    return replace(space, declared=near)
 
 
 @contextmanager

@@ -61,6 +61,14 @@ def counting_of(camera: DepthCamera, record: np.record) -> Counting:
     return Counting(float(camera.min_depth_m), float(camera.deepest_m), float(record["quantum"]), margin)
 
 
+def aged(records: Records) -> Records:
+    """The same records with boxes grown to all sides by how far anything may have moved since each image."""
+    grown = records.copy()
+    grown["half_extent"] += records["aged_m"][:, None, None]
+    grown["half_diagonal"] += records["aged_m"][:, None]
+    return grown
+
+
 def cut_out(record: np.record, rows: slice, columns: slice) -> np.record:
     """The record of a part of a camera's image, whose texels and tiles stand alone; it has no windows.
 
@@ -86,6 +94,7 @@ def _put_pose_and_lens(record: np.record, camera: DepthCamera) -> None:
         record[name] = getattr(camera.intrinsics, name)
     record["width"], record["height"] = camera.width, camera.height
     record["radial"] = camera.depth_kind == "radial"
+    record["flies"] = bool(camera.flying_pixels)
 
 
 def _put_margin(record: np.record, camera: DepthCamera, margin: Margin, grid: VoxelGrid) -> None:

@@ -1,6 +1,7 @@
 """What one camera saw at one voxel: asked again of its image."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +39,11 @@ def sight_of(
     """
     (camera,) = images.cameras
     own = {name: model for name, model in model_depth.items() if name == camera.name}
-    evidence = carve_images(voxel, images, Explained(own, None), terms, complete=True)
+    evidence, aged = (
+        carve_images(voxel, each, Explained(own, None), terms, complete=True)
+        for each in (replace(images, aged_m={}), images)
+    )
+    is_aged = evidence.through[0].any() and not aged.through[0].any()
     distance_m = float(np.linalg.norm(centre_in_world - camera.centre_in_world))
     in_camera = camera.camera_from_world[:3, :3] @ centre_in_world + camera.camera_from_world[:3, 3]
     place = _place(camera, in_camera, voxel.voxel_size_m)
@@ -54,7 +59,7 @@ def sight_of(
     near, far = _reach(camera, depth_m, voxel.voxel_size_m)
     return CameraSight(
         camera.name,
-        _sight(evidence, True, past),
+        Sight.AGED if is_aged else _sight(evidence, True, past),
         distance_m,
         value if np.isfinite(value) and value > 0 else None,
         (near, far),

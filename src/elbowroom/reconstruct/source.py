@@ -15,8 +15,8 @@ from elbowroom.reconstruct.point_report import PointReport, Sight
 from elbowroom.reconstruct.sight import sight_of, surface_about
 from elbowroom.reconstruct.terms import Terms
 
-WILLING = (Sight.HIDDEN, Sight.BLIND, Sight.EDGE)
-"""What a camera says that would see the voxel if what hides or blinds it were gone."""
+WILLING = (Sight.HIDDEN, Sight.BLIND, Sight.EDGE, Sight.AGED)
+"""What a camera says that would see the voxel if what hides or blinds it were gone, or if its image were newer."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,6 +11,8 @@ from elbowroom.geometry.margin import Margin
 WITNESS_ANGLE_DEG = 2.0
 """Two cameras side by side, 10 cm apart, at 3 m; of hand-held views it takes a twenty-fifth of what they find free."""
 MOST_ANGLE_DEG = 45.0
+PEOPLE_SPEED_M_S = 1.6
+"""How fast a person is taken to walk where nobody measured it (ISO 13855:2010, ISO/TS 15066:2016)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,9 +31,14 @@ class Terms:
             witness (`witnesses`) [deg]; 0: each is one.
         look_again: voxels in the way that no one camera sees all of are looked at again in parts. False: what the
             volume says holds, so that who has images and who has only the volume say the same.
+        people_speed_m_s: the most that anything but the machine moves: what a camera saw to be free holds for what
+            such a thing cannot have reached since [m/s].
+        nothing_moves: somebody vouches that nothing but the machine moves here: only then that speed is 0.
+        pass_ns: how long after the snapshot verdicts count, at most: a pass that is assumed to take so long [ns].
 
     Raises:
-        InputError: an unknown rule or detail, or an age below zero.
+        InputError: an unknown rule or detail, an age or a time of a pass below zero, or a speed that is not above zero
+            though something moves, or not 0 though nothing does.
         MachineError: a tolerance or growth that cannot be.
     """
 
@@ -43,6 +50,9 @@ class Terms:
     body_growth_m: float | None = None
     look_again: bool = True
     witness_angle_deg: float = WITNESS_ANGLE_DEG
+    people_speed_m_s: float = PEOPLE_SPEED_M_S
+    nothing_moves: bool = False
+    pass_ns: int = 0
 
     def __post_init__(self) -> None:
         if self.rule not in RULES:
@@ -57,11 +67,47 @@ class Terms:
             )
         if not self.explain_tolerance_m >= 0:
             raise MachineError(f"explain_tolerance_m is {self.explain_tolerance_m}, must be at least 0 [m]")
+        require_speed(self.people_speed_m_s, self.nothing_moves)
+        if self.pass_ns < 0:
+            raise InputError(f"pass_ns: is {self.pass_ns}, must be at least 0")
         growth = self.body_growth_m
         if growth is not None and not (np.isfinite(growth) and growth > 0):
             raise MachineError(f"body_growth_m is {growth}, must be at least a quarter voxel [m]")
 
     @property
+    def allowances(self) -> tuple[str, ...]:
+        """What somebody vouches for, and what nobody checks: a line each."""
+        if not self.nothing_moves:
+            return ()
+        return (
+            "nothing but the machine moves here (nothing_moves, people_speed_m_s 0): what a camera saw to be free is "
+            "taken to be so for as long as its image counts",
+        )
+
+    @property
     def needs_counts(self) -> bool:
         """Whether the rule needs every camera asked of every voxel, and counted: all but `three` do."""
         return self.rule != "three"
+
+
+def require_speed(people_speed_m_s: float, nothing_moves: bool) -> None:
+    """Refuses a speed of people that does not go with whether anything moves.
+
+    Args:
+        people_speed_m_s: the most that anything but the machine moves [m/s].
+        nothing_moves: whether somebody vouches that nothing does.
+
+    Raises:
+        InputError: not a number of at least 0; 0 though something may move, or more though nothing does.
+    """
+    if not (np.isfinite(people_speed_m_s) and people_speed_m_s >= 0):
+        raise InputError(f"people_speed_m_s: is {people_speed_m_s}, must be at least 0 [m/s]")
+    if people_speed_m_s == 0 and not nothing_moves:
+        raise InputError(
+            "people_speed_m_s: 0 says that nothing but the machine ever moves here; if that is so, say nothing_moves "
+            f"as well, else {PEOPLE_SPEED_M_S:g} m/s is usual"
+        )
+    if people_speed_m_s > 0 and nothing_moves:
+        raise InputError(
+            f"nothing_moves: goes with people_speed_m_s 0 alone, it is {people_speed_m_s:g} m/s; leave one of them out"
+        )

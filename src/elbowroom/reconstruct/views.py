@@ -15,7 +15,7 @@ from elbowroom.reconstruct.kernels import texels as texels
 from elbowroom.reconstruct.kernels.camera import Views
 from elbowroom.reconstruct.kernels.texels import Counting
 from elbowroom.reconstruct.layout import SQUARES, Buffers, Layout
-from elbowroom.reconstruct.records import margin_of, pitch_of
+from elbowroom.reconstruct.records import aged, margin_of, pitch_of
 
 STEP = Margin(sigmas=3.0)
 STEP_WITHOUT_NOISE = Margin(range_linear=0.005)
@@ -65,13 +65,15 @@ def fill(layout: Layout, images: RoomImages, model_depth: Mapping[str, Image]) -
             if mask is not None:
                 put_mask(mask, own)
                 record["explained"], apart = True, (0, mask.shape[0], 0, mask.shape[1])
+            record["aged_m"] = images.aged_m.get(name, 0.0)
         else:
             record["blank"] = True
             own[0][:], own[1][:] = 0, 0
         _fill_levels(record, buffers, layout.tiles[c], own, apart)
 
     spread(build, range(len(layout.cameras)))
-    return Views(records, buffers.texels, buffers.windows), buffers
+    order = np.argsort(records["aged_m"], kind="stable")
+    return Views(records, aged(records), order, buffers.texels, buffers.windows), buffers
 
 
 def _own_texels(layout: Layout, buffers: Buffers, c: int) -> Pair:

@@ -97,6 +97,7 @@ class CameraSettings(Entry):
     max_depth_m: Annotated[Positive, up_to(300, "m", MILLIMETRES)] | None = None
     flying_pixels: Flag | None = None
     mask: Text | None = None
+    clock_bound_ms: Annotated[NotNegative, up_to(1e4, "ms", (1e-6, "nanoseconds"))] = 0.0
 
     @model_validator(mode="after")
     def _one_source_of_intrinsics(self) -> "CameraSettings":
@@ -242,6 +243,7 @@ def build_camera(
         mask=None
         if settings.get("mask") is None
         else read_mask(expand(settings["mask"], beside), settings["width"], settings["height"]),
+        clock_bound_ns=round(settings.get("clock_bound_ms", 0.0) * 1e6),
     )
 
 

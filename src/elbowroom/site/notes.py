@@ -3,6 +3,7 @@
 from elbowroom.site.machine_notes import notes_of_machine
 from elbowroom.site.recording_entry import SevenScenes
 from elbowroom.site.site import Site
+from elbowroom.site.zone_notes import notes_of_zones
 
 
 def notes_of(site: Site) -> tuple[str, ...]:
@@ -14,6 +15,7 @@ def notes_of(site: Site) -> tuple[str, ...]:
     entry, notes = site.entry, []
     if not site.has_stamps:
         notes.append("frames have no times: no limit on their age")
+        notes.append("nobody knows what moved since frames without times: what they show is taken to hold")
         if entry.max_frame_age_ms is not None:
             notes.append("max_frame_age_ms has no effect on frames without times")
     elif entry.max_frame_age_ms is None:
@@ -24,12 +26,14 @@ def notes_of(site: Site) -> tuple[str, ...]:
         notes.append(
             "detail point, the thesis' test of voxel centres, is for comparison: it frees occupied voxels"
         )
+    notes += site.terms().allowances
     machine = site.machine()
     if machine is not None:
         if machine.unchecked_links:
             notes.append(f"links that are not checked: {', '.join(machine.unchecked_links)}")
         notes += notes_of_machine(machine, site)
         notes += machine.allowances
+        notes += notes_of_zones(machine, site.grid())
         if machine.as_seen is not machine:
             seen = ", ".join(link.name for link in machine.links if link.seen is not None)
             notes.append(

@@ -10,6 +10,7 @@ CENTIMETRES = (0.01, "centimetres")
 MILLISECONDS = (0.001, "milliseconds")
 SECONDS = (1000.0, "seconds")
 MM_A_SECOND = (0.001, "millimetres a second")
+KM_AN_HOUR = (1 / 3.6, "kilometres an hour")
 Guess = tuple[float, str]
 
 
@@ -50,6 +51,23 @@ def _checked(
         raise ValueError(f"{f'{least:g} to' if least else 'at most'} {most:g} {unit}{meant}")
 
     return checked
+
+
+LEAST_SPEED_M_S, LARGEST_SPEED_M_S = 0.5, 10.0
+"""Of people: a slow walk, and more than anybody runs in a room."""
+
+
+def speed_of_people(value: float) -> float:
+    """The most that anything but the machine moves [m/s]; 0 says that nothing does.
+
+    Raises:
+        ValueError: people do not move like that; with the unit that it most likely is in.
+    """
+    if value == 0:
+        return value
+    return _checked(LEAST_SPEED_M_S, LARGEST_SPEED_M_S, "m/s", (MM_A_SECOND, KM_AN_HOUR), LEAST_SPEED_M_S)(
+        value
+    )
 
 
 LARGEST_UNIT_M, LEAST_UNIT_M = 0.01, 1.5e-6

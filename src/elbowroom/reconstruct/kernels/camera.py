@@ -22,6 +22,7 @@ _FIELDS = np.dtype(
         ("height", "i8"),
         ("margin", _MARGIN),
         ("lateral_px", "f8"),
+        ("aged_m", "f8"),
         ("quantum", "f8"),
         ("ray", "f8", (3, 3)),
         ("ray_half_width", "f8", 3),
@@ -36,6 +37,7 @@ _FIELDS = np.dtype(
         ("first_texel", "i8"),
         ("first_tile", "i8"),
         ("radial", "?"),
+        ("flies", "?"),
         ("blank", "?"),
         ("explained", "?"),
     ],
@@ -45,7 +47,8 @@ _FIELDS = np.dtype(
 CAMERA = np.dtype((np.record, _FIELDS))
 """One camera.
 
-Pose: camera_from_world, centre_in_world [m]. Lens: fx, fy, cx, cy [px], width, height, and whether depth is radial.
+Pose: camera_from_world, centre_in_world [m]. Lens: fx, fy, cx, cy [px], width, height, whether depth is radial, and
+whether pixels fly.
 Margin: of depth (`geometry.kernels.noise.DepthMargin`), of direction [px], and the quantum that counts depth [m].
 
 Rays: how a pixel's direction turns in the world, d_a = ray[0, a] + ray[1, a] u + ray[2, a] v along axis a, its half
@@ -55,7 +58,8 @@ Boxes, of a voxel (0) and of a block of 4 voxels (1): half extents along the cam
 offset: from child 0 to each of 64 children, in the camera's axes, x times fx and y times fy.
 
 Where its pixels are: how many levels of windows, the finest of them, where each begins and its row length; where its
-texels and tiles begin. Of this moment: whether nothing was delivered, whether the machine explains some of its pixels.
+texels and tiles begin. Of this moment: whether nothing was delivered, whether the machine explains some of its pixels,
+and aged_m: how far anything may have moved since it was exposed [m].
 """
 
 
@@ -75,8 +79,14 @@ class Texels(NamedTuple):
 
 
 class Views(NamedTuple):
-    """All cameras of a carve: records, their texels, and windows over what pixels free (`kernels.pyramid`)."""
+    """All cameras of a carve: records, their texels, and windows over what pixels free (`kernels.pyramid`).
+
+    aged: the same records with boxes grown by what anything may have moved since; order: in which cameras are asked,
+    the newest first, which saves asking and leaves the same bits.
+    """
 
     cameras: np.ndarray
+    aged: np.ndarray
+    order: np.ndarray
     texels: Texels
     windows: np.ndarray

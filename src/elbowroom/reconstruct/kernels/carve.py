@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 
 from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
+from elbowroom.reconstruct.kernels.aged import still_through
 from elbowroom.reconstruct.kernels.box import ALL, LANES
 from elbowroom.reconstruct.kernels.cone import VOXEL
 from elbowroom.reconstruct.kernels.look import Look, ask, contested, measured_at_centre, sort_out
@@ -32,17 +33,20 @@ class Scratch(NamedTuple):
 
     lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.cone`; in arrays, or nothing would hold their
     memory. By camera of a cube: through, mixed (n,): blocks that it sees through, and those that must be asked voxel by
-    voxel; undecided (n,): blocks with voxels left for the pixel test; unsettled, stopped (n, 64): which voxels, and
-    which of these it surely does not see through.
+    voxel; past (n,): blocks that it saw through when it was exposed, of which it is asked whether that still holds;
+    undecided (n,): blocks with voxels left for the pixel test; unsettled, stopped (n, 64): which voxels, and which of
+    these it surely does not see through; ageing (n, 64): voxels that it saw through, of which it must be asked as well.
     """
 
     lanes: np.ndarray
     voxel: np.ndarray
     through: np.ndarray
     mixed: np.ndarray
+    past: np.ndarray
     undecided: np.ndarray
     unsettled: np.ndarray
     stopped: np.ndarray
+    ageing: np.ndarray
 
 
 @njit(cache=True, nogil=True)
@@ -62,6 +66,8 @@ def carve_cubes(cubes, lattice, views, answers):
         np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
+        np.empty(cameras, dtype=np.uint64),
+        np.empty((cameras, 64), dtype=np.uint64),
         np.empty((cameras, 64), dtype=np.uint64),
         np.empty((cameras, 64), dtype=np.uint64),
     )
@@ -69,11 +75,11 @@ def carve_cubes(cubes, lattice, views, answers):
         cube = cube_at(lattice, number)
         _ask_blocks(cube, views, answers, scratch)
         # camera by camera, so that the part of its image that the cube covers stays in the cache
-        for c in range(cameras):
+        for c in views.order:
             _ask_voxels(cube, c, views, answers, scratch)
         # first those that may see through: where three do, the others need not be asked, nor where there is a surface
         for turn in range(2):
-            for c in range(cameras):
+            for c in views.order:
                 _ask_pixels(cube, c, turn, views, answers, scratch)
         for word in range(cube.word, cube.word + 64):
             if not answers.complete:
@@ -90,8 +96,16 @@ def _ask_blocks(cube, views, answers, scratch):
     # not a literal: numba would compile all that `ask` calls once more
     keep_partly = np.bool_(True)
     for c in range(through.size):
-        look = ask(views.cameras[c], views.windows, blocks, keep_partly, scratch.lanes[0])
-        through[c], mixed[c] = look.through, look.unsure
+        scratch.past[c] = NOTHING
+        if views.cameras[c].aged_m > 0.0:
+            still = ask(views.aged[c], views.windows, blocks, keep_partly, scratch.lanes[0]).through
+            through[c], mixed[c] = still, NOTHING
+            if still != ALL:
+                look = ask(views.cameras[c], views.windows, blocks, keep_partly, scratch.lanes[0])
+                mixed[c], scratch.past[c] = look.unsure, look.through & ~still
+        else:
+            look = ask(views.cameras[c], views.windows, blocks, keep_partly, scratch.lanes[0])
+            through[c], mixed[c] = look.through, look.unsure
     for lane in range(64):
         word = cube.word + lane
         here = np.uint64(1) << np.uint64(lane)
@@ -106,7 +120,8 @@ def _ask_blocks(cube, views, answers, scratch):
 def _ask_voxels(cube, c, views, answers, scratch):
     """Asks one camera of the voxels of those blocks that it neither sees through nor says nothing of."""
     camera = views.cameras[c]
-    blocks, undecided = scratch.mixed[c], NOTHING
+    is_aged = camera.aged_m > 0.0
+    blocks, undecided = scratch.mixed[c] | scratch.past[c], NOTHING
     while blocks:
         lane = lowest_bit(blocks)
         here = np.uint64(1) << np.uint64(lane)
@@ -117,15 +132,32 @@ def _ask_voxels(cube, c, views, answers, scratch):
             open_voxels &= ~answers.planes[THREE, word]
         if not open_voxels:
             continue
-        look = ask(camera, views.windows, voxels_of(cube, lane), answers.fine[word], scratch.lanes[0])
-        note_through(answers, word, look.through & open_voxels)
-        unsure = look.unsure & open_voxels
-        if not unsure:
-            continue
+        scratch.unsettled[c, lane] = scratch.stopped[c, lane] = scratch.ageing[c, lane] = NOTHING
+        through = open_voxels
+        if scratch.mixed[c] & here:
+            through = _look(cube, (c, lane), open_voxels, views, answers, scratch)
+        if is_aged:
+            through = _still(cube, (c, lane), through, views, answers, scratch)
+        note_through(answers, word, through)
+        if scratch.unsettled[c, lane] | scratch.ageing[c, lane]:
+            undecided |= here
+    scratch.undecided[c] = undecided
+
+
+@uncounted(cache=True)
+def _look(cube, at, open_voxels, views, answers, scratch):
+    """Of the voxels of a block that are asked those that a camera sees through by its windows; notes what it disputes.
+
+    Where the pixel test decides, `scratch.unsettled` says of which voxels it is to be asked.
+    """
+    c, lane = at
+    camera, word = views.cameras[c], cube.word + lane
+    look = ask(camera, views.windows, voxels_of(cube, lane), answers.fine[word], scratch.lanes[0])
+    unsure = look.unsure & open_voxels
+    if unsure:
         if camera.blank:
             note_disputed(answers, word, unsure, NOTHING, unsure)
         elif answers.fine[word]:
-            undecided |= here
             surface, stopped = NOTHING, NOTHING
             if not look.partly:
                 surface, stopped = sort_out(camera, views.texels, cube.edge, unsure, scratch.lanes[0])
@@ -135,7 +167,24 @@ def _ask_voxels(cube, c, views, answers, scratch):
         else:
             left = Look(look.through, unsure, look.partly, look.reach)
             _dispute(camera, word, left, views.texels, answers, scratch.lanes[0])
-    scratch.undecided[c] = undecided
+    return look.through & open_voxels
+
+
+@uncounted(cache=True)
+def _still(cube, at, through, views, answers, scratch):
+    """Of voxels that a camera saw through those of which that holds by its windows, whatever has moved since.
+
+    Where the pixel test decides, `scratch.ageing` says of which others it is to be asked.
+    """
+    c, lane = at
+    word = cube.word + lane
+    maybe = through | (scratch.unsettled[c, lane] & ~scratch.stopped[c, lane])
+    if not maybe:
+        return NOTHING
+    look = ask(views.aged[c], views.windows, voxels_of(cube, lane), answers.fine[word], scratch.lanes[0])
+    if answers.fine[word]:
+        scratch.ageing[c, lane] = through & ~look.through
+    return look.through & maybe
 
 
 @uncounted(cache=True)
@@ -153,7 +202,7 @@ def _dispute(camera, word, look, texels, answers, lanes):
 @uncounted(cache=True)
 def _ask_pixels(cube, c, turn, views, answers, scratch):
     """Asks one camera pixel by pixel of voxels left to that: in turn 0 those it may see through, then others."""
-    planes = answers.planes
+    planes, camera = answers.planes, views.cameras[c]
     blocks = scratch.undecided[c]
     while blocks:
         lane = lowest_bit(blocks)
@@ -161,14 +210,17 @@ def _ask_pixels(cube, c, turn, views, answers, scratch):
         word = cube.word + lane
         stopped = scratch.stopped[c, lane]
         rest = scratch.unsettled[c, lane] & (~stopped if turn == 0 else stopped)
+        ageing = scratch.ageing[c, lane] if turn == 0 else NOTHING
         if not answers.complete:
             rest &= ~planes[THREE, word]
+            ageing &= ~planes[THREE, word]
             if turn == 1:
                 rest &= ~planes[SURFACE, word]
-        if not rest:
+        if not rest | ageing:
             continue
-        seen, disputed, surface, blind = settle_word(
-            views.cameras[c], views.texels, rest, voxels_of(cube, lane), scratch.voxel[0]
-        )
+        boxes = voxels_of(cube, lane)
+        seen, disputed, surface, blind = settle_word(camera, views.texels, rest, boxes, scratch.voxel[0])
         note_disputed(answers, word, disputed, surface, blind)
+        if camera.aged_m > 0.0:
+            seen = still_through(camera, views.texels, seen | ageing, boxes, scratch.voxel[0])
         note_through(answers, word, seen)

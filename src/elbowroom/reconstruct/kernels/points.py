@@ -7,7 +7,9 @@ from elbowroom.geometry.kernels.bits import uncounted
 from elbowroom.geometry.kernels.noise import margin_at
 from elbowroom.geometry.kernels.pinhole import pixel_of
 from elbowroom.geometry.kernels.rigid import moved
+from elbowroom.reconstruct.kernels.aged import still_through
 from elbowroom.reconstruct.kernels.box import PLANE_EPS
+from elbowroom.reconstruct.kernels.cone import VOXEL
 from elbowroom.reconstruct.kernels.pixel import DISPUTES, IS_BLIND, IS_SURFACE, THROUGH
 from elbowroom.reconstruct.kernels.place import box_in, cube_at, voxels_of
 from elbowroom.reconstruct.kernels.planes import NOTHING, make_canonical, note_disputed, note_through
@@ -17,6 +19,7 @@ from elbowroom.reconstruct.kernels.texels import NEUTRAL, NO_RETURN, greatest_of
 @njit(cache=True, nogil=True)
 def carve_points(cubes, lattice, views, answers):
     """The thesis' test of centres, every voxel with every camera; arguments as of `kernels.carve.carve_cubes`."""
+    scratch = np.empty(1, VOXEL)
     for number in cubes:
         cube = cube_at(lattice, number)
         for lane in range(64):
@@ -28,6 +31,8 @@ def carve_points(cubes, lattice, views, answers):
                 seen, disputed, surface, blind = _settle_centres(
                     views.cameras[c], views.texels.doubt_texels, answers.asked[word], boxes
                 )
+                if views.cameras[c].aged_m > 0.0:
+                    seen = still_through(views.cameras[c], views.texels, seen, boxes, scratch[0])
                 note_through(answers, word, seen)
                 note_disputed(answers, word, disputed, surface, blind)
             if not answers.complete:

@@ -19,10 +19,10 @@ from elbowroom.sources import Room
 from elbowroom.view.screen.run_log import RunLog
 from elbowroom.view.screen.watched import Watched, watched_of
 from elbowroom.view.screen.words import (
-    CAUSE_WORDS,
     LEVEL_WORDS,
     MARKS,
     NOT_CERTIFIED,
+    cause_text,
     counts_text,
     health_text,
     place_first,
@@ -177,7 +177,7 @@ class TerminalView:
 
     def line(self, result: CycleResult) -> str:
         """One pass in one plain line."""
-        age = "" if result.age_ms is None else f" age {result.age_ms:.0f} ms"
+        age = "" if result.age_ms is None else f" age {result.age_ms:.0f} ms{_skew(result.skew_ms)}"
         head = (
             f"{result.stamp_ns / 1e9:8.2f} s {self.log.rate_hz:5.1f} Hz cycle {result.cycle_ms:.0f} ms{age}"
         )
@@ -204,6 +204,7 @@ class TerminalView:
         text.append("  frame age ")
         style = "bold" if result.late is None else STYLES[Level.STOP]
         text.append("unknown" if result.age_ms is None else f"{age:.0f} ms", style)
+        text.append(_skew(result.skew_ms))
         text.append("  cycle ")
         text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
         text.append(f" = {stages}", "dim")
@@ -247,9 +248,14 @@ class TerminalView:
         return [
             *cells,
             Text.assemble((filled, BAR_STYLES[level]), (rest, "dim")),
-            Text("joint limit" if at_limit else CAUSE_WORDS[verdict.cause]),
+            Text("joint limit" if at_limit else _why(verdict)),
             Text(place_text(verdict) if wide else place_first(verdict), "dim"),
         ]
+
+
+def _why(verdict: Verdict) -> str:
+    """What ends it; of one that nothing ends, whether it leads out of what the machine stands close beside."""
+    return "leads away" if verdict.escapes and verdict.cause is Cause.NONE else cause_text(verdict)
 
 
 def _stops(result: CycleResult) -> list[str]:
@@ -266,3 +272,8 @@ def _looked_at(verdict: Verdict) -> float:
     """How far a verdict could have said to go [m or rad along the joint]."""
     motion = verdict.motion
     return motion.looked_at if isinstance(motion, Motion) else motion.reach or float("inf")
+
+
+def _skew(skew_ms: float | None) -> str:
+    """How far apart the frames of a pass were, in words; nothing where that rounds to nothing."""
+    return "" if skew_ms is None or skew_ms < 0.5 else f" skew {skew_ms:.0f} ms"

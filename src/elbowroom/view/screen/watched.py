@@ -53,5 +53,5 @@ def watched_of(room: Room) -> Watched:
         source=room.source.name,
         unchecked_links=room.machine.unchecked_links if room.machine else (),
         bodiless_links=room.machine.bodiless_links if room.machine else (),
-        allowances=room.machine.allowances if room.machine else (),
+        allowances=room.allowances,
     )
