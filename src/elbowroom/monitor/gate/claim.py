@@ -75,8 +75,8 @@ class Claim:
 def speed_of(verdict: Verdict) -> float:
     """The greatest share of full speed from which the machine surely rests one braking distance before the block.
 
-    S may hold a reaction time, whose way shrinks as the speed does: from a share f of full speed it rests within f S. So
-    at a free travel d between S and 2 S it is (d - S) / S. 0 at and within S, full speed from 2 S on.
+    S may hold a reaction time, whose way shrinks as the speed does: from a share f of full speed it rests within f S.
+    So at a free travel d between S and 2 S it is (d - S) / S. 0 at and within S, full speed from 2 S on.
 
     Args:
         verdict: of one motion.
