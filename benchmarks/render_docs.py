@@ -285,8 +285,8 @@ moments boxes were moved, played again and again; its first camera's reference i
         """
 Right: moments of the recordings, of the package's rooms and of random simulated sites; anything that is said of
 them is a false alarm. Wrong: random sites, each made wrong in each kind
-([what is looked for](safety.md#values-are-looked-at)). The poses of `kinect_board_2cam` are guesses by eye:
-its warning is right.
+([what is looked for](safety.md#values-are-looked-at)). That the cameras of `kinect_board_2cam` stood where it says is
+not verified: its warning may well be right.
 """,
         "elbowroom evaluate looks",
         tables.looks_tables,
