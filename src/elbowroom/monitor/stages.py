@@ -16,8 +16,8 @@ def timed(stage: str, stage_ms: dict[str, float]) -> Iterator[None]:
 
 
 def raise_interrupt(error: BaseException) -> None:
-    """Raises the interrupt that an error stands for, if it does: one that comes while compiled code runs is wrapped in a
-    `SystemError`, and a wish to end is no fault of a pass.
+    """Raises the interrupt that an error stands for, if it does: one that comes while compiled code runs is wrapped in
+    a `SystemError`, and a wish to end is no fault of a pass.
 
     Raises:
         KeyboardInterrupt: the error was caused by it.
