@@ -306,11 +306,12 @@ and no others. The recordings, the simulated room and random sites, described ri
         "latch.json",
         "The latch",
         """
-Whether the [gate](safety.md#the-gate) is latched where it has to be. *killed*: a gate with faults, resets and ends at random gets SIGKILL
-within 60 ms of its start, again and again in one folder; what it had said to have latched has to be there, by name. *cut off*: latches of all
-kinds at each byte in turn. *one bit changed*: one at random. *older*: each file that a run of faults and resets leaves on its way, as if a power
-cut had undone all later ones. *unlatched, rightly*: the gate had ended as it was asked to with nothing latched, or was killed before it had begun, when
-nothing can move.
+Whether the [gate](safety.md#the-gate) is latched where it has to be. *killed*: a gate with faults, resets and ends at
+random gets SIGKILL within 60 ms of its start, again and again in one folder; what it had said to have latched has to
+be there, by name. *cut off*: latches of all kinds at each byte in turn. *one bit changed*: one at random. *older*:
+each file that a run of faults and resets leaves on its way, as if a power cut had undone all later ones. *unlatched,
+rightly*: the gate had ended as it was asked to with nothing latched, or was killed before it had begun, when nothing
+can move.
 """,
         "elbowroom evaluate latch",
         tables.latch_tables,
