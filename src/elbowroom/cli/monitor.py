@@ -20,6 +20,7 @@ from elbowroom.cli.options import (
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
+    from elbowroom.monitor import Gate
     from elbowroom.site import Site
     from elbowroom.sources import Room
 
@@ -29,6 +30,13 @@ Knocks = Annotated[
         metavar="WHAT:SIZE@SECONDS",
         help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
         "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
+    ),
+]
+Callback = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE.py:FUNCTION",
+        help="A Python function that the gate's watchdog calls with each decision, and with stop where none came.",
     ),
 ]
 GateFolder = Annotated[
@@ -67,6 +75,7 @@ def monitor(
     threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
     knock: Knocks = None,
     gate: GateFolder = None,
+    callback: Callback = None,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
@@ -95,11 +104,17 @@ def monitor(
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
 
+    from elbowroom.monitor.gate.made import gate_of
     from elbowroom.site import Site
     from elbowroom.sources import live, open_room
 
     with options_named(
-        joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock", noise="--noise"
+        joints="--joints",
+        callback="--callback",
+        cameras="--cameras",
+        resolution="--resolution",
+        knocks="--knock",
+        noise="--noise",
     ):
         given = Site.simulated_room() if site is None else Site.load(site)
         room = open_room(
@@ -112,7 +127,7 @@ def monitor(
             resolution=size_px,
             knocks=knock or (),
         )
-        _watch(live(room), seconds, json, out, gate)
+        _watch(live(room), seconds, json, out, gate_of(room, gate, callback))
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -131,7 +146,7 @@ def _noisy(site: "Site", noise: str) -> "Site":
 
 
 def _watch(
-    room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None, gate_dir: Path | None
+    room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None, gate: "Gate | None"
 ) -> None:
     """Runs the loop over a room, with the faces that were asked for."""
     from dataclasses import replace
@@ -141,7 +156,6 @@ def _watch(
     from elbowroom.cli.progress import Steps
     from elbowroom.files.json_rows import json_rows
     from elbowroom.monitor import Face
-    from elbowroom.monitor.gate.made import gate_of
     from elbowroom.monitor.rows import Rows
     from elbowroom.monitor.start.compiling import compile_kernels
     from elbowroom.monitor.start.start import started
@@ -150,7 +164,6 @@ def _watch(
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
-    gate = gate_of(room, gate_dir)
     unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]

@@ -75,8 +75,10 @@ def cell_rows(
         InputError: a site that is no cell; see `cell_of` and `cell_scenes`.
     """
     cell, done = cell_of(site, voxel_size_m), 0
+    names = cell.machine.link_names
+    own_pairs = [(names[a], names[b]) for a, b in watched_rows(cell.machine)]
     for number, drawn in enumerate(cell_scenes(cell, seed, tuple(kinds))):
-        truths = _truths(cell, drawn.moment)
+        truths = _truths(cell, drawn.moment, own_pairs)
         if any(truth.travel < TOUCHING for truth in truths):
             continue
         space = _space_of(cell, drawn.moment, noise, seed + number)
@@ -104,12 +106,10 @@ def _settings(cell: Cell, noise: bool, seed: int) -> dict[str, object]:
     }
 
 
-def _truths(cell: Cell, moment: Moment) -> list[Contact]:
-    """How far each motion really can go."""
+def _truths(cell: Cell, moment: Moment, own: Sequence[tuple[str, str]]) -> list[Contact]:
+    """How far each motion really can go; `own`: links that must not touch each other."""
     machine, joints = cell.machine, moment.joints
     exact = ExactTravel(machine, moment.solids)
-    names = machine.link_names
-    own = [(names[a], names[b]) for a, b in watched_rows(machine)]
     return [
         _earlier(exact.until_contact(joints, motion), exact.until_own_contact(joints, motion, own))
         for motion in cell.motions
