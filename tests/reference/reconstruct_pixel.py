@@ -95,17 +95,30 @@ def say_of_voxel(image, centre, edge):
     hidden = blocked & speaks & ~blind & is_before(greatest)
     measured_here = blocked & speaks & ~blind & ~hidden & ~is_past(least)
     if camera.flying_pixels:
-        short, beyond = (
-            np.floor(max((near - margin) / quantum - 2, 0)),
-            np.floor((far + margin) / quantum + 2),
-        )
+        short = np.floor(max((near - margin) / quantum - 2, 0))
+        beyond = np.floor((far + margin) / quantum + 2)
         silent = (image.doubt[0] >= beyond) | (image.doubt[1] <= short)
-        alone = np.array([is_alone(silent, row, column) for row, column in zip(v, u, strict=True)])
+        # of a pixel that is explained, where the machine is
+        explained = (image.doubt[0] == NEUTRAL[0]) & (image.doubt[1] == NEUTRAL[1])
+        measured = np.where(explained, image.trust[1], image.doubt[1])
+        between = lies_between((measured > 0) & (measured <= short))
+        silent |= between
+        alone = between[v, u] | np.array([is_alone(silent, *at) for at in zip(v, u, strict=True)])
         blind &= ~alone
         measured_here &= ~alone
     if measured_here.any():
         return DISPUTES | SURFACE
     return DISPUTES | BLIND if blind.any() else 0
+
+
+def lies_between(before):
+    """Which pixels lie between two on either side that see something before a voxel; none at the image's edge."""
+    found = np.zeros_like(before)
+    middle = found[1:-1, 1:-1]
+    rows, columns = middle.shape
+    for (a, b), (c, d) in (((0, 0), (2, 2)), ((0, 1), (2, 1)), ((0, 2), (2, 0)), ((1, 0), (1, 2))):
+        middle |= before[a : a + rows, b : b + columns] & before[c : c + rows, d : d + columns]
+    return found
 
 
 def is_alone(silent, row, column):

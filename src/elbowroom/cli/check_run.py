@@ -77,14 +77,8 @@ def ask(
                 "allowances": room.allowances,
             }
         )
-    print(f"{verdict.motion.name}: {verdict.level.value}")
-    print(_travel(motion, verdict))
-    if verdict.place_in_world is not None:
-        print(_what_ends(verdict, verdict.place_in_world))
-    if verdict.creep is not None:
-        print(_creeping(verdict, verdict.creep))
-    if verdict.escapes:
-        print("It leads out of blocked space that the machine stands in or close beside.")
+    for line in _said(motion, verdict):
+        print(line)
     for line in [*reasons, *_numbers(found), *map(_sentence, found.advice)]:
         print(line)
     if pictures:
@@ -94,12 +88,19 @@ def ask(
     print(NOT_CERTIFIED)
 
 
-def _what_ends(verdict: Verdict, place: tuple[float, float, float]) -> str:
-    """What ends the travel, and where."""
-    met = verdict.other_link or verdict.zone
-    x, y, z = place
-    what = verdict.cause.value + (f", {met}" if met else "")
-    return f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m."
+def _said(motion: Motion, verdict: Verdict) -> Iterator[str]:
+    """The verdict in words."""
+    yield f"{verdict.motion.name}: {verdict.level.value}"
+    yield _travel(motion, verdict)
+    if verdict.place_in_world is not None:
+        x, y, z = verdict.place_in_world
+        met = verdict.other_link or verdict.zone
+        what = verdict.cause.value + (f", {met}" if met else "")
+        yield f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m."
+    if verdict.creep is not None:
+        yield _creeping(verdict, verdict.creep)
+    if verdict.escapes:
+        yield "It leads out of blocked space that the machine stands in or close beside."
 
 
 def _by_the_sites_word(machine: Machine, allowances: Sequence[str]) -> Iterator[str]:

@@ -158,7 +158,7 @@ class _Scene:
                 tuple(met.place_in_world.tolist()),
                 Cause.MACHINE if met.other in self.machine.link_names else Cause.SURFACE,
                 met.other,
-                reaches and met.travel > 0,
+                escapes=reaches and met.travel > 0,
             )
         if block is None:
             return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE, escapes=reaches)

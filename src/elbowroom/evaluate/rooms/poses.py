@@ -23,7 +23,7 @@ COMPARED = (
 """What is kept of a comparison; joints, places and solids follow from seed and number of the pose."""
 DUE = (
     Due("milder", "≤", 0),
-    Due("stop_where_clear_pct", "≤", 3.0, where(noise=False)),
+    Due("stop_where_clear_pct", "≤", 3.0, lambda row: not row.get("noise")),
     Due("stop_where_clear_pct", "≤", 8.0, where(noise=True)),
 )
 

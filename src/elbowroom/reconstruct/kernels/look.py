@@ -158,22 +158,29 @@ def sort_out(camera, texels, edge, unsure, lanes):
 
 @uncounted(cache=True)
 def _may_be_alone(camera, texels, lanes, lane, at, reach):
-    """Whether no pixel about the middle one of a voxel surely measured something in the voxel, or nothing at all.
+    """Whether the middle pixel of a voxel may be one that disputes nothing (`pixel._is_alone`).
+
+    Surely not, if no pixel about it sees anything before the voxel, and one beside it something in it, or nothing.
 
     Args:
         camera, texels, lanes, lane: as of `sort_out`.
         at, reach: depth of the voxel's centre, and what lies so near to it is surely in it [m].
     """
     u, v = int(lanes.u[lane]), int(lanes.v[lane])
-    for row in range(max(v - 1, 0), min(v + 1, camera.height - 1) + 1):
-        for column in range(max(u - 1, 0), min(u + 1, camera.width - 1) + 1):
+    if u < 1 or v < 1 or u > camera.width - 2 or v > camera.height - 2:
+        return True
+    near = np.float64(lanes.near[lane]) + ROUNDING_M
+    alone = True
+    for row in range(v - 1, v + 2):
+        for column in range(u - 1, u + 2):
             texel = texels.doubt_texels[camera.first_texel + row * camera.width + column]
-            if (row == v and column == u) or texel == NEUTRAL:
-                continue
             greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
-            if greatest == NO_RETURN or abs(greatest * camera.quantum - at) < reach:
-                return False
-    return True
+            depth = greatest * camera.quantum
+            if texel == NEUTRAL or depth <= near:
+                return True
+            if (row == v) != (column == u) and (greatest == NO_RETURN or abs(depth - at) < reach):
+                alone = False
+    return alone
 
 
 @uncounted(cache=True)

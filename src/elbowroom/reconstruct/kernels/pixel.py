@@ -143,15 +143,42 @@ def bounds_about(camera, texels, pixels):
 
 
 @uncounted(cache=True)
-def _is_alone(camera, texels, depths, pixel):
-    """Whether all eight pixels about one say nothing of a voxel, each by itself; none at the image's edge is alone."""
-    u, v = pixel.u, pixel.v
+def _is_before(texels, at, depths):
+    """Whether a pixel sees something, be it the machine, that lies wholly before a voxel."""
+    measured = texels.doubt_texels[at]
+    greatest = greatest_of(texels.trust_texels[at] if measured == NEUTRAL else measured)
+    return 0 < greatest <= depths.hidden_to
+
+
+@uncounted(cache=True)
+def _is_between(camera, texels, depths, u, v):
+    """Whether a pixel lies between two, on either side of it, that see something before a voxel; none at the edge."""
     if u < 1 or v < 1 or u > camera.width - 2 or v > camera.height - 2:
         return False
-    for row in range(v - 1, v + 2):
-        at = camera.first_texel + row * camera.width
-        for column in range(u - 1, u + 2):
-            if (row != v or column != u) and not _says_nothing(texels.doubt_texels[at + column], depths):
+    at, across = camera.first_texel + v * camera.width + u, camera.width
+    for step in (1, across - 1, across, across + 1):
+        if _is_before(texels, at - step, depths) and _is_before(texels, at + step, depths):
+            return True
+    return False
+
+
+@uncounted(cache=True)
+def _is_alone(camera, texels, depths, pixel):
+    """Whether nothing that a camera can resolve is seen of a voxel in a pixel, for what is seen about it.
+
+    It lies between two that see something nearer, or none of the eight pixels about it says anything of the voxel
+    either. None at the image's edge is alone.
+    """
+    if pixel.u < 1 or pixel.v < 1 or pixel.u > camera.width - 2 or pixel.v > camera.height - 2:
+        return False
+    if _is_between(camera, texels, depths, pixel.u, pixel.v):
+        return True
+    for v in range(pixel.v - 1, pixel.v + 2):
+        for u in range(pixel.u - 1, pixel.u + 2):
+            measured = texels.doubt_texels[camera.first_texel + v * camera.width + u]
+            if (v != pixel.v or u != pixel.u) and not (
+                _says_nothing(measured, depths) or _is_between(camera, texels, depths, u, v)
+            ):
                 return False
     return True
 
@@ -160,7 +187,7 @@ def _is_alone(camera, texels, depths, pixel):
 def _ask_pixel(camera, texels, depths, voxel, pixel):
     """What one pixel whose cone meets the voxel says of it: 0, or BLOCKED with what else it says.
 
-    Where pixels fly one alone disputes nothing: a surface that the camera can resolve is in a pixel beside it as well.
+    Where pixels fly, one alone disputes nothing.
     """
     quantum, margin = camera.quantum, depths.margin
     steep_near, steep_far = steepness(camera, pixel.u, pixel.v)
