@@ -5,6 +5,7 @@ from result_tables.cells import Row, any_tables
 from result_tables.drift import drift_tables
 from result_tables.placement import placement_tables, sweep_tables
 from result_tables.robots import robot_tables
+from result_tables.skew import skew_tables
 from result_tables.space import room_tables, sevenscenes_tables
 from result_tables.speed import bench_tables, start_tables
 from result_tables.verdicts import alone_tables, hand_tables, poses_tables, travel_tables
@@ -22,6 +23,7 @@ __all__ = [
     "robot_tables",
     "room_tables",
     "sevenscenes_tables",
+    "skew_tables",
     "start_tables",
     "sweep_tables",
     "travel_tables",

@@ -10,6 +10,7 @@ from elbowroom.cli.evaluate.placement import placement
 from elbowroom.cli.evaluate.robots import robots
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
 from elbowroom.cli.evaluate.scale import scale_budget, scale_cameras
+from elbowroom.cli.evaluate.skew import skew
 from elbowroom.cli.evaluate.thesis import all_parts, calibration, more, motions, reconstruction, scale
 
 evaluate_app = typer.Typer(
@@ -47,4 +48,5 @@ evaluate_app.command(epilog=_example("contradictions --sites 5 --right 20 --json
 evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
 evaluate_app.command(epilog=_example("robots packages --json robots.json"))(robots)
 evaluate_app.command(epilog=_example("hand --scenes 5 --json hand.json"))(hand)
+evaluate_app.command(epilog=_example("skew --quick --json skew.json"))(skew)
 evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

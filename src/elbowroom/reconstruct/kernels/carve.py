@@ -214,7 +214,11 @@ def _ask_pixels(cube, c, turn, views, answers, scratch):
         blocks &= ~(np.uint64(1) << np.uint64(lane))
         word = cube.word + lane
         stopped = scratch.stopped[c, lane]
-        rest = scratch.ageing[c, lane] if turn == 0 else scratch.unsettled[c, lane] & (~stopped if turn == 1 else stopped)
+        rest = (
+            scratch.ageing[c, lane]
+            if turn == 0
+            else scratch.unsettled[c, lane] & (~stopped if turn == 1 else stopped)
+        )
         if not answers.complete:
             rest &= ~planes[THREE, word]
             if turn == 2:
