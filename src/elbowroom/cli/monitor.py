@@ -1,5 +1,6 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -22,6 +23,16 @@ from elbowroom.errors import InputError
 if TYPE_CHECKING:
     from elbowroom.site import Site
     from elbowroom.sources import Room
+
+
+SkewMs = Annotated[
+    float,
+    typer.Option(
+        min=0,
+        max=1000,
+        help="In a simulated room, expose cameras up to so long before the moment, each at a time of its own.",
+    ),
+]
 
 
 def monitor(
@@ -57,6 +68,7 @@ def monitor(
             "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
         ),
     ] = None,
+    skew_ms: SkewMs = 0.0,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
@@ -83,8 +95,9 @@ def monitor(
     from elbowroom.site import Site
     from elbowroom.sources import open_room
 
+    named = {"knocks": "--knock", "skew_ms": "--skew-ms"}
     with options_named(
-        joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock", noise="--noise"
+        joints="--joints", cameras="--cameras", resolution="--resolution", noise="--noise", **named
     ):
         given = Site.simulated_room() if site is None else Site.load(site)
         room = open_room(
@@ -97,7 +110,7 @@ def monitor(
             resolution=size_px,
             knocks=knock or (),
         )
-        _watch(room, seconds, json, out)
+        _watch(_skewed(room, skew_ms) if skew_ms else room, seconds, json, out)
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -113,6 +126,21 @@ def _noisy(site: "Site", noise: str) -> "Site":
             f"noise: for simulated rooms, and {site.path} is none: it says what noise its cameras have"
         )
     return with_noise(site, noise)
+
+
+def _skewed(room: "Room", skew_ms: float) -> "Room":
+    """A simulated room whose cameras are exposed at times of their own.
+
+    Raises:
+        InputError: the room is not simulated.
+    """
+    from elbowroom.sources.simulated import Simulated
+
+    if not isinstance(room.source, Simulated):
+        raise InputError(
+            f"skew_ms: for simulated rooms, and {room.site.path} is none: its stamps say when its images were taken"
+        )
+    return replace(room, source=replace(room.source, skew_ms=skew_ms))
 
 
 def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None) -> None:

@@ -41,10 +41,10 @@ def test_what_moves_is_declared_free_without_the_law_and_never_with_it(scenes):
 
 
 def test_the_price_is_points_of_found_that_ages_take():
-    rows = list(price.price_rows(0.2, draws=1))
+    rows = list(price.price_rows(0.2, draws=1, spreads_ms=(17.0, 133.0)))
     assert {row["room"] for row in rows} == {"simulated room"}
     by_spread = {
         r["spread_ms"]: r["price_points"] for r in rows if r["detail"] == "pixel" and r["law_m_s"] == 1.6
     }
-    assert 0 <= by_spread[17.0] <= by_spread[67.0] <= by_spread[133.0]
+    assert 0 <= by_spread[17.0] <= by_spread[133.0]
     assert by_spread[133.0] > 0

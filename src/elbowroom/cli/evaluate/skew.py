@@ -26,11 +26,11 @@ def skew(places: Places = 2, quick: Quick = False, seed: Seed = 1, json: JsonFil
     from elbowroom.evaluate.due import sentence
     from elbowroom.evaluate.skew import moving, price
 
-    both = {"law": "{law_m_s:g} m/s", "spread": "{spread_ms:g} ms", "detail": "{detail}"}
-    seen = {"what": "{what}", "speed": "{speed_m_s:g} m/s", "noise": yes_or_no("noise")}
-    false = {"rule": "{rule}", "touched": "{touched}", "free": "{false_free_voxels}"}
+    both: dict[str, Any] = {"law": "{law_m_s:g} m/s", "spread": "{spread_ms:g} ms", "detail": "{detail}"}
+    seen: dict[str, Any] = {"what": "{what}", "speed": "{speed_m_s:g} m/s", "noise": yes_or_no("noise")}
+    false: dict[str, Any] = {"rule": "{rule}", "touched": "{touched}", "free": "{false_free_voxels}"}
     show_moving = as_table({**seen, **both, **false}, sentence(moving.DUE))
-    lost = {"found": "{found_pct:.2f} %", "lost": "{price_points:.2f} points"}
+    lost: dict[str, Any] = {"found": "{found_pct:.2f} %", "lost": "{price_points:.2f} points"}
     show_price = as_table({"room": "{room}", **both, **lost}, sentence(price.DUE))
 
     def rows() -> Iterator[dict[str, Any]]:

@@ -37,7 +37,11 @@ class _Room(NamedTuple):
 
 
 def price_rows(
-    voxel_size_m: float = 0.02, setups: Sequence[int] = (), draws: int = 3, seed: int = 1
+    voxel_size_m: float = 0.02,
+    setups: Sequence[int] = (),
+    draws: int = 3,
+    seed: int = 1,
+    spreads_ms: Sequence[float] = SPREADS_MS[1:],
 ) -> Iterator[dict[str, object]]:
     """The simulated room by spread, and setups at 67 ms: found without ages and with them, rule `three`.
 
@@ -46,6 +50,7 @@ def price_rows(
         setups: numbers of setups.
         draws: so often ages are dealt out anew; rows have the mean.
         seed: of the first.
+        spreads_ms: of ages in the simulated room [ms].
 
     Yields:
         Rows of room, voxel_size_m, law_m_s, spread_ms, detail, found_pct, price_points.
@@ -54,7 +59,7 @@ def price_rows(
     at = room.at(ROOM_AT_S)
     simulated = _room("simulated room", at, voxel_size_m, (2.4,))
     for detail in ("pixel", "footprint"):
-        yield from _prices(simulated, detail, [s for s in SPREADS_MS if s], draws, seed)
+        yield from _prices(simulated, detail, spreads_ms, draws, seed)
     for each in SETUPS:
         if each.number in setups:
             moment = setup(each.number).at(room.machine)
