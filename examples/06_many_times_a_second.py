@@ -11,7 +11,7 @@ from elbowroom.monitor import Cycle
 from elbowroom.site import Site
 from elbowroom.sources.room import open_room
 
-room = open_room(Site.simulated_room(), cameras=8, resolution=(160, 120))
+room = open_room(Site.simulated_room(), cameras=18)
 machine, motions = room.machine_and_motions()
 cycle = Cycle(room.grid, room.cameras, machine, motions, room.terms)
 

@@ -8,10 +8,11 @@ What travels is a few bits a voxel, not images.
 import numpy as np
 
 import elbowroom as er
+from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
 
 grid = er.VoxelGrid.covering((-2, -2, 0), (2, 2, 2.5), 0.05)
-cameras = wall_cameras(8, width=320, height=240)
+cameras = wall_cameras(8, height_m=(2.4, 0.4), width=320, height=240, noise=NOISE_PRESETS["tof"])
 room = InterventionRoom()
 frames = render(cameras, room.at(time_s=5.0))
 

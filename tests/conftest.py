@@ -8,6 +8,10 @@ import numba
 import numpy as np
 import pytest
 
+from elbowroom.geometry.parallel import default_threads
+from elbowroom.monitor.start.compiling import run_jobs
+from elbowroom.monitor.start.kernel_jobs import JOBS
+
 if numba.config.DISABLE_JIT:
     # as in compiled code: whole numbers wrap, and floats divide by zero, without a word
     np.seterr(all="ignore")
@@ -16,21 +20,23 @@ PROJECT = Path(__file__).resolve().parents[1]
 EXAMPLES = PROJECT / "examples"
 
 
-MANY = 500
-"""A run of fewer tests compiles what it comes to use."""
-
-
-def pytest_collection_finish(session: pytest.Session) -> None:
-    """Compiles on all cores before the first test what a whole run would compile one test after the other."""
-    if len(session.items) < MANY or session.config.option.collectonly or numba.config.DISABLE_JIT:
+def pytest_configure(config: pytest.Config) -> None:
+    """Compiles on all cores before the whole suite what it would compile one test after the other."""
+    is_worker = hasattr(config, "workerinput")
+    if is_worker or config.option.collectonly or numba.config.DISABLE_JIT or not _is_whole(config):
         return
-    from elbowroom.geometry.parallel import default_threads
-    from elbowroom.monitor.start.compiling import run_jobs
-    from elbowroom.monitor.start.kernel_jobs import JOBS
-
     wanted = [job for job in JOBS if not job.is_kept]
     if wanted:
         run_jobs(wanted, default_threads(), lambda name, state: None)
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """The whole suite is spread over all cores; to start processes for a few named files takes longer than they do."""
+    return default_threads() if _is_whole(config) else 0
+
+
+def _is_whole(config: pytest.Config) -> bool:
+    return config.args_source is pytest.Config.ArgsSource.TESTPATHS
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -3,12 +3,21 @@
 from result_tables.calibration import calibration_tables
 from result_tables.cells import Row, any_tables
 from result_tables.drift import drift_tables
+from result_tables.latch import latch_tables
+from result_tables.looks import contradiction_tables, looks_tables
 from result_tables.placement import placement_tables, sweep_tables
 from result_tables.robots import robot_tables
 from result_tables.skew import skew_tables
 from result_tables.space import room_tables, sevenscenes_tables
-from result_tables.speed import bench_tables, start_tables
-from result_tables.verdicts import alone_tables, hand_tables, poses_tables, travel_tables
+from result_tables.speed import bench_tables, machine_tables, start_tables
+from result_tables.verdicts import (
+    alone_tables,
+    cell_tables,
+    escape_tables,
+    hand_tables,
+    poses_tables,
+    travel_tables,
+)
 
 __all__ = [
     "Row",
@@ -16,8 +25,14 @@ __all__ = [
     "any_tables",
     "bench_tables",
     "calibration_tables",
+    "cell_tables",
+    "contradiction_tables",
     "drift_tables",
+    "escape_tables",
     "hand_tables",
+    "latch_tables",
+    "looks_tables",
+    "machine_tables",
     "placement_tables",
     "poses_tables",
     "robot_tables",

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from elbowroom.evaluate.due import due_of
-from elbowroom.evaluate.speed import start
+from elbowroom.evaluate.speed import fine_machine, start
 from elbowroom.evaluate.speed.bench import DUE
 from result_tables.cells import Cell, Row, centimetres, of, same, table
 
@@ -48,6 +48,22 @@ def start_tables(rows: Sequence[Row]) -> list[str]:
             "processor time, median ms": of("cpu_median_ms", 0),
             "before, median ms": of("before_ms", 0),
             "before, processor time ms": of("before_cpu_ms", 0),
+        },
+    )
+
+
+def machine_tables(rows: Sequence[Row]) -> list[str]:
+    """What triangles of a machine's meshes cost."""
+    return table(
+        rows,
+        {
+            **same("case", "triangles"),
+            "of which are drawn": of("drawn_triangles"),
+            **same("cameras", "rounds"),
+            "median ms": of("median_ms", 2, due=fine_machine.DUE),
+            "worst ms": of("max_ms", 2),
+            "processor time, median ms": of("cpu_median_ms", 2),
+            "times as long as the least": of("times_as_long", 2),
         },
     )
 

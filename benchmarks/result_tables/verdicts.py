@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+from elbowroom.evaluate.cell import rows as cell
+from elbowroom.evaluate.escape import escape
 from elbowroom.evaluate.hand import hand
 from elbowroom.evaluate.rooms import alone, poses, travel
 from result_tables.cells import Row, centimetres, of, same, table
@@ -23,6 +25,24 @@ def alone_tables(rows: Sequence[Row]) -> list[str]:
     )
 
 
+def cell_tables(rows: Sequence[Row]) -> list[str]:
+    """Truly clear motions of an arm that stop, by joints, poses and cause."""
+    return table(
+        _summaries(rows),
+        {
+            "contact with the table": of("contact"),
+            "joints": of("joints"),
+            "poses": of("kind_of_pose"),
+            **same("motions"),
+            "milder than the truth": of("milder_level", due=cell.DUE),
+            "of its own links": of("milder_own"),
+            "truly clear": of("truly_clear"),
+            "of these stop %": of("stop_where_clear_pct", 1, due=cell.DUE),
+            **{f"by {cause.name.lower()}": of(f"stopped_by_{cause.name.lower()}") for cause in cell.STOPPING},
+        },
+    )
+
+
 def hand_tables(rows: Sequence[Row]) -> list[str]:
     """Levels of motions that meet a hand, and of the machine alone, by what explains."""
     return table(
@@ -34,6 +54,23 @@ def hand_tables(rows: Sequence[Row]) -> list[str]:
             **same("stop", "decelerate", "inform"),
             "clear": of("clear", due=hand.DUE),
             "machine alone, stop %": of("alone_stop_pct", 1, due=hand.DUE),
+        },
+    )
+
+
+def escape_tables(rows: Sequence[Row]) -> list[str]:
+    """Motions beside an object: refused, or let go too far, by machine."""
+    return table(
+        _summaries(rows),
+        {
+            **same("machine", "poses", "motions"),
+            "least gap [mm]": of("least_gap_mm", 2),
+            "lead away": of("leads_away"),
+            "of these stop": of("refused"),
+            "%": of("refused_pct", 1, due=escape.DUE),
+            "escape": of("escapes"),
+            "beyond the truth": of("beyond", due=escape.DUE),
+            "contact on the way": of("touching", due=escape.DUE),
         },
     )
 

@@ -8,9 +8,11 @@ from elbowroom.geometry import (
     VoxelGrid as VoxelGrid,
 )
 from elbowroom.machine import (
+    Contact as Contact,
     Machine as Machine,
     Part as Part,
     Stand as Stand,
+    Zone as Zone,
 )
 from elbowroom.machine.c_arm import ceiling_c_arm as ceiling_c_arm
 from elbowroom.motion import (

@@ -8,7 +8,9 @@
     │   ├── MachineError     a URDF, a mesh, a joint that is unknown or out of its limits
     │   ├── JointsError      joints over time that are malformed, or not known at the time that is asked for
     │   ├── SiteError        a site file or a recording's folder
+    │   ├── BagError         a rosbag2 or MCAP file, or a message in it, that is not what it says it is
     │   ├── CalibrationError a board, a capture, or what was seen in it does not fix a pose
+    │   │   └── NoResultError  something was found that cannot be taken for a result
     │   └── ImplausibleError values that read as valid and cannot be meant so: a unit, a lens, a pose, a sentinel
     ├── EvidenceError        evidence that cannot be merged or resolved
     └── PackageError         an optional package is not installed
@@ -51,8 +53,16 @@ class SiteError(InputError):
     """A site file or a recording's folder that cannot be used."""
 
 
+class BagError(InputError):
+    """A rosbag2 or MCAP file, or a message in it, that cannot be read; the text names the topic and what came."""
+
+
 class CalibrationError(InputError):
     """A board or a capture from which a pose cannot be had; the message says what to capture instead."""
+
+
+class NoResultError(CalibrationError):
+    """What a calibration found is none: a camera moved by metres, or hardly known; the message says what it may be."""
 
 
 class ImplausibleError(InputError):

@@ -12,10 +12,13 @@ PACKAGES = {
     "coal": ("exact mesh distance needs coal", "evaluate"),
     "cv2": ("calibration needs OpenCV", "calibrate"),
     "distributed": ("a cluster needs Dask", "cluster"),
+    "lz4": ("reading this bag, whose chunks are compressed with lz4, needs lz4", "bag"),
     "matplotlib": ("charts need Matplotlib", "evaluate"),
     "ortools": ("finding a placement needs CP-SAT of OR-Tools", "placement"),
+    "pymodbus": ("the Modbus output needs pymodbus", "modbus"),
     "small_gicp": ("calibration by the machine needs small_gicp", "calibrate"),
     "xacro": ("expanding a xacro file needs xacro", "xacro"),
+    "zstandard": ("reading this bag, which is compressed with zstd, needs zstandard", "bag"),
 }
 """What needs each of them, and the extra of elbowroom that names its version."""
 

@@ -9,6 +9,7 @@ import pytest
 from elbowroom.cli import run
 from elbowroom.monitor import load_references
 from elbowroom.site import Site
+from reference.table_cell import POSE, table_cell
 
 SMALL_ROOM = """# a comment that stays
 name: small room
@@ -103,3 +104,19 @@ def test_the_site_itself_is_never_overwritten_nor_written_where_its_paths_break(
         assert run(["calibrate", "commission", str(commissioned), "--out", str(out), "--frames", "5"]) != 0
         assert said in capsys.readouterr().err
     assert not (tmp_path / "x.yaml").exists() and not (tmp_path / "x.watch.npz").exists()
+
+
+def test_images_that_cannot_be_meant_so_are_not_commissioned_and_are_written_aside_by_force(tmp_path, capsys):
+    cell = table_cell(tmp_path)
+    assert run(["simulate", str(cell), "--moments", "5", "--still", "--joints", POSE]) == 0
+    cell.write_text(cell.read_text().replace("depth_scale_m: 0.001", "depth_scale_m: 0.004"))
+    new, joints = tmp_path / "watched.yaml", ["--joints", POSE]
+    assert run(["calibrate", "commission", str(cell), "--out", str(new), *joints]) == 1
+    error = capsys.readouterr().err.splitlines()[-1]
+    assert "this is no result" in error and "Most likely the unit of depth" in error
+    assert not list(tmp_path.glob("watched*"))
+    assert run(["calibrate", "commission", str(cell), "--out", str(new), "--force-file", *joints]) == 1
+    assert sorted(path.name for path in tmp_path.glob("watched*")) == [
+        "watched.doubted.watch.npz",
+        "watched.doubted.yaml",
+    ]

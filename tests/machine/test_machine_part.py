@@ -103,3 +103,13 @@ def test_a_mesh_is_read_in_its_unit(gripper, tmp_path):
 def test_what_cannot_be_carried_is_said(gripper, make, words):
     with pytest.raises(MachineError, match=words):
         make(gripper)
+
+
+def test_a_part_that_lies_in_links_that_do_not_carry_it_is_refused(gripper):
+    """What always touches is not compared: so a part may not be said to be where another link always is."""
+    with pytest.raises(
+        MachineError, match="part log lies in base, arm, right in all poses, which do not carry it"
+    ):
+        gripper.with_part("left", Part.box("log", (3, 3, 3)))
+    # the link that carries it and what hangs on that it may lie in
+    assert gripper.with_part("arm", Part.box("part", (0.1, 0.15, 0.1)), POSE).parts == ("part",)

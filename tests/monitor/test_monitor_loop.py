@@ -1,11 +1,12 @@
 """The loop: every face is told of every pass and of the end, and whatever fails is a stop for all of them."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from elbowroom.errors import FrameError
+from elbowroom.errors import FrameError, InputError
 from elbowroom.finding import Finding
 from elbowroom.geometry import VoxelGrid
 from elbowroom.monitor import Checks, Cycle, Health, Loop, Pass, cycle, loop
@@ -329,3 +330,80 @@ def test_each_snapshot_waits_for_its_time_before_it_is_judged():
         Script(at(1), at(2)), pace=lambda snapshot: told.append(snapshot.now_ns + 10 * len(face.shown))
     ).run([face])
     assert told == [1, 12]
+
+
+# the gate
+
+
+class AGate:
+    """Notes in one list what it is told, as the faces beside it do."""
+
+    def __init__(self, told: list[str], refuses: bool = False) -> None:
+        self.told, self.refuses = told, refuses
+        self.faults: list[str | None] = []
+
+    def begin(self) -> None:
+        if self.refuses:
+            raise InputError("another monitor runs with this gate")
+        self.told.append("gate begins")
+
+    def decide(self, result):
+        self.told.append("gate decides")
+        self.faults.append(result.fault)
+        return f"decision {len(self.faults)}"
+
+    def end(self) -> None:
+        self.told.append("gate ends")
+
+
+class Noting(Listener):
+    """A face that notes its order beside the gate."""
+
+    def __init__(self, told: list[str], fails_at: int | None = None) -> None:
+        super().__init__(fails_at)
+        self.told = told
+
+    def show(self, done: Pass) -> None:
+        self.told.append(f"face shows {done.decision}")
+        super().show(done)
+
+    def end(self) -> None:
+        self.told.append("face ends")
+        super().end()
+
+
+def test_the_gate_decides_before_any_face_and_ends_before_them():
+    told: list[str] = []
+    replace(a_loop(Script(at(1), at(2))), gate=AGate(told)).run([Noting(told)])
+    assert told == [
+        "gate begins",
+        "gate decides",
+        "face shows decision 1",
+        "gate decides",
+        "face shows decision 2",
+        "gate ends",
+        "face ends",
+    ]
+
+
+def test_a_run_that_fails_is_a_fault_for_the_gate():
+    told: list[str] = []
+    gate = AGate(told)
+    with pytest.raises(OSError, match="disk full"):
+        replace(a_loop(Script(at(1), at(2))), gate=gate).run([Noting(told, fails_at=0)])
+    assert gate.faults[0] is None and "disk full" in gate.faults[1]
+    assert told[-3:] == ["face shows decision 2", "gate ends", "face ends"]
+
+
+def test_a_gate_that_cannot_begin_begins_nothing():
+    told: list[str] = []
+    face = Noting(told)
+    with pytest.raises(InputError, match="another monitor"):
+        replace(a_loop(Script(at(1))), gate=AGate(told, refuses=True)).run([face])
+    assert told == [] and face.begun == []
+
+
+def test_without_a_gate_there_is_no_decision():
+    face = Listener()
+    a_loop(Script(at(1))).run([face])
+    assert face.shown[0].decision is None

@@ -92,6 +92,23 @@ def test_a_voxel_that_stands_out_of_a_stand_still_blocks(arm):
     assert check_motion(space, cut, HOME, Motion("slide", 1, 0.05)).free_travel == 0.0
 
 
+def test_what_stands_on_what_a_machine_stands_on_blocks_it(arm):
+    """A cup beside the cart: where it stands out of the box, the column beneath and those beside it are blocked."""
+    slab = table(upper=(0.5, 0.3, 0.25))
+    stand = Stand.box(["cart"], (-0.41, -0.31, -0.11), (0.51, 0.31, 0.31))
+    low, high = ((0.3, -0.05, 0.25), (0.4, 0.05, 0.29)), ((0.3, -0.05, 0.25), (0.4, 0.05, 0.34))
+    standing, slide = arm.standing_on(stand), Motion("slide", 1, 0.05)
+    assert check_motion(space_of(arm, HOME, slab), standing, HOME, slide).level is Level.CLEAR
+    assert (
+        check_motion(space_of(arm, HOME, slab, touched_by_box(GRID, *low)), standing, HOME, slide).level
+        is Level.CLEAR
+    )
+    found = check_motion(space_of(arm, HOME, slab, touched_by_box(GRID, *high)), standing, HOME, slide)
+    assert (found.link, found.cause) == ("cart", Cause.SURFACE)
+    # it blocks low down as well, where the cart's underside is
+    assert found.free_travel <= 0.3 - 0.05 - 0.15 + 1e-9
+
+
 def test_a_stand_frees_nothing(arm):
     space = space_of(arm, HOME, table())
     standing = arm.standing_on(Stand.box(["cart"], *ANYWHERE))

@@ -151,7 +151,7 @@ def test_monitor_runs_a_layout_of_the_simulated_room(tmp_path):
         Site.simulated_room()
         .path.read_text()
         .replace("voxel_size_m: 0.05", "voxel_size_m: 0.25")
-        .replace("96x72", "48x36")
+        .replace("160x120", "48x36")
     )
     (tmp_path / "room.yaml").write_text(text)
     written = str(tmp_path / "placed.yaml")

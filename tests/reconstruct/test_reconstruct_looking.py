@@ -10,6 +10,7 @@ from elbowroom.errors import ImplausibleError, InputError, ValueWarning
 from elbowroom.geometry import VoxelGrid
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.looking import FIRST, require_plausible
+from elbowroom.reconstruct.nothing_seen import nothing_seen
 from elbowroom.sensing import DepthFrame
 from reference import values_room as room
 
@@ -53,9 +54,32 @@ def test_a_depth_at_the_greatest_range_frees_nothing():
         assert not space.free.any()
 
 
-def test_a_grid_in_which_nothing_is_a_surface_is_said():
-    """A box in mid-air, before walls that are not far: no unit tells, and still nothing in it was seen."""
-    grid = VoxelGrid((-0.6, -0.6, 1.9), (12, 12, 3), 0.1)
+IN_MID_AIR = VoxelGrid((-0.6, -0.6, 1.9), (12, 12, 3), 0.1)
+"""Before walls that are not far: no unit tells, and nothing in it is seen."""
+
+
+def test_a_grid_in_which_nothing_is_a_surface_is_said_where_cameras_agree_on_what_lies_behind():
     with pytest.warns(ValueWarning, match="nothing in it is a surface"):
-        space = reconstruct(grid, room.cameras(), frames(), rule="any")
+        space = reconstruct(IN_MID_AIR, room.cameras(), frames(), rule="any")
     assert space.free.all()
+
+
+def test_a_grid_in_which_nothing_is_a_surface_is_refused_where_nobody_vouches_for_the_depths():
+    for _ in range(FIRST + 1):
+        with pytest.raises(ImplausibleError, match="no two cameras agree on what is there"):
+            reconstruct(IN_MID_AIR, room.cameras()[:1], frames()[:1], rule="any")
+    assert reconstruct(IN_MID_AIR, room.cameras()[:1], frames()[:1], rule="any", looks=False).free.all()
+
+
+@pytest.mark.parametrize(("lower", "size"), [((-1.9, -1.9, 0.0), 22), ((-0.6, -0.6, 0.0), 12)])
+def test_a_grid_in_which_a_floor_or_a_box_is_seen_needs_nobody_to_vouch(lower, size):
+    grid = VoxelGrid(lower, (size, size, 10), 0.1)
+    assert not nothing_seen(grid, room.cameras()[:1], frames()[:1])
+
+
+def test_what_leaves_much_without_a_return_does_not_read_free_and_is_no_fault():
+    (camera,), (frame,) = room.cameras()[:1], frames()[:1]
+    depth = frame.depth_m.copy()
+    depth[::2] = 0
+    assert nothing_seen(IN_MID_AIR, [camera], [frame])
+    assert not nothing_seen(IN_MID_AIR, [camera], [DepthFrame("ne", 0, depth)])

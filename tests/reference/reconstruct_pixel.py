@@ -94,9 +94,24 @@ def say_of_voxel(image, centre, edge):
     blind = blocked & speaks & (greatest == NO_RETURN)
     hidden = blocked & speaks & ~blind & is_before(greatest)
     measured_here = blocked & speaks & ~blind & ~hidden & ~is_past(least)
+    if camera.flying_pixels:
+        short, beyond = (
+            np.floor(max((near - margin) / quantum - 2, 0)),
+            np.floor((far + margin) / quantum + 2),
+        )
+        silent = (image.doubt[0] >= beyond) | (image.doubt[1] <= short)
+        alone = np.array([is_alone(silent, row, column) for row, column in zip(v, u, strict=True)])
+        blind &= ~alone
+        measured_here &= ~alone
     if measured_here.any():
         return DISPUTES | SURFACE
     return DISPUTES | BLIND if blind.any() else 0
+
+
+def is_alone(silent, row, column):
+    """Whether all eight pixels about one say nothing of a voxel; never at the image's edge."""
+    about = silent[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
+    return about.shape == (3, 3) and bool(about.sum() - silent[row, column] == 8)
 
 
 def squares_meeting(points, u, v, wide):

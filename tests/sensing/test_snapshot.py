@@ -69,3 +69,18 @@ def test_where_the_machine_was_at_the_newest_frame():
     }
     assert Snapshot((frame("c", 9), frame("a", 7)), now, positions).joints_at_newest == now
     assert Snapshot((), now, positions).joints_at_newest == now
+
+
+def test_what_a_clock_may_be_off_is_part_of_every_age():
+    frames = (frame("a", 10**6), frame("b", 3 * 10**6))
+    plain, bounded = (
+        Snapshot(frames, now_ns=5 * 10**6),
+        Snapshot(frames, now_ns=5 * 10**6, clock_bounds_ns={"a": 10**6}),
+    )
+    assert (plain.oldest_age_ms, bounded.oldest_age_ms) == (4.0, 5.0)
+    assert plain.skew_ms == bounded.skew_ms == 2.0
+    for limit in range(0, 7 * 10**6, 5 * 10**5):
+        assert set(bounded.fresh(limit).frames) <= set(plain.fresh(limit).frames)
+    assert [f.camera for f in bounded.fresh(4 * 10**6).frames] == ["b"]
+    assert bounded.fresh(5 * 10**6).clock_bounds_ns == {"a": 10**6}
+    assert Snapshot(frames[:1]).skew_ms is None

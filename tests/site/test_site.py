@@ -204,3 +204,6 @@ def test_the_new_site_is_valid_and_so_are_the_keys_that_it_shows_in_comments(fol
     block = "\n".join(line.removeprefix("# ") for line in text[start:].splitlines()[:4])
     content = yaml.safe_load(text) | yaml.safe_load(block)
     assert Site.load(folder.write(content)).has_stamps
+    gate = "\n".join(line.removeprefix("# ") for line in text[text.index("# gate:") :].splitlines())
+    site = Site.load(folder.write(content | yaml.safe_load(gate)))
+    assert site.entry.gate is not None and site.entry.gate.modbus.port == 5020

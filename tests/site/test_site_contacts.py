@@ -19,6 +19,9 @@ CARRIED = {
 }
 
 
+TABLE = {"name": "table", "links": ["hand"], "lower_m": [-1, -1, -0.1], "upper_m": [9, 9, 9]}
+
+
 @pytest.fixture
 def urdf(arm_urdf):
     return str(arm_urdf)
@@ -70,9 +73,143 @@ def test_contacts_stands_and_parts_are_read(folder, plain, urdf):
             "mesh_scale only with mesh",
         ),
         ({"explain_with": "both"}, "explain_with"),
+        (
+            {"stands_on": [{"links": ["hand"], "lower_m": [-9, -9, -9], "upper_m": [9, 9, 9]}]},
+            "whole way of hand",
+        ),
+        ({"contacts": [{**TABLE, "lower_m": [-9, -9, -9]}]}, "whole way of hand"),
+        ({"contacts": [{**TABLE, "links": []}]}, "links"),
+        ({"contacts": [{**TABLE, "links": ["nobody"]}]}, "link 'nobody' does not exist"),
+        ({"contacts": [{**TABLE, "name": "hand"}]}, "that of a link"),
+        ({"contacts": [{**TABLE, "near_m": 100}]}, "near_m"),
+        ({"contacts": [{**TABLE, "mesh": "a.stl"}]}, "either lower_m and upper_m, or mesh"),
+        ({"contacts": [{"name": "t", "links": ["hand"], "mesh": "none.stl"}]}, "no such file"),
+        ({"own_links": "none.yaml"}, "no such file"),
+        ({"srdf": "none.srdf"}, "no such file"),
+        ({"srdf": "none.srdf", "own_links": "none.yaml"}, "either own_links or srdf"),
     ],
 )
 def test_what_cannot_be_meant_is_refused_in_a_line(folder, plain, urdf, more, words):
     with pytest.raises((SiteError, MachineError), match=words) as error:
         site_of(folder, plain, urdf=urdf, **more).machine()
+    assert "\n" not in str(error.value)
+
+
+HIGH = {
+    "name": "high",
+    "kind": "not_watched",
+    "lower_m": [-9, -9, 9],
+    "upper_m": [9, 9, 9.5],
+    "links": ["hand"],
+}
+
+
+def test_zones_are_read_and_said(folder, plain, urdf):
+    trimesh.creation.box((0.1, 0.2, 0.1)).export(folder.path / "bore.stl")
+    zones = [
+        {"name": "door", "kind": "kept_out", "lower_m": [-0.5, -0.5, 0], "upper_m": [0.5, 0.5, 0.5]},
+        {"name": "bore", "kind": "kept_out", "mesh": "bore.stl"},
+        {**HIGH, "reason": "no camera looks there"},
+    ]
+    site = Site.load(folder.write({**plain, "machine": {"urdf": urdf}, "zones": zones}))
+    assert [zone.name for zone in site.machine().zones] == ["door", "bore", "high"]
+    notes = "\n".join(notes_of(site))
+    assert "Kept out of, by the site's word: door, (-0.5, -0.5, 0) to (0.5, 0.5, 0.5) m" in notes
+    assert "Not watched for hand, by the site's word: high" in notes
+    assert "zone high lies outside the watched box: it changes nothing" in notes
+
+
+@pytest.mark.parametrize(
+    ("zone", "words"),
+    [
+        ({**HIGH}, "links and a reason"),
+        ({**HIGH, "reason": "why", "links": []}, "links and a reason"),
+        ({**HIGH, "kind": "kept_out", "reason": "why"}, "no links where all are kept out"),
+        ({**HIGH, "reason": "why", "upper_m": None}, "either lower_m and upper_m, or mesh"),
+        ({**HIGH, "reason": "why", "links": ["nobody"]}, "link 'nobody' does not exist"),
+        ({**HIGH, "reason": "why", "lower_m": [-9, -9, -9]}, "hand never leave it"),
+        ({"name": "a", "kind": "kept_out", "mesh": "none.stl"}, "no such file"),
+        ({"name": "a", "kind": "forbidden", "lower_m": [0, 0, 0], "upper_m": [1, 1, 1]}, "kind"),
+    ],
+)
+def test_a_zone_that_cannot_be_meant_is_refused_in_a_line(folder, plain, urdf, zone, words):
+    content = {key: value for key, value in zone.items() if value is not None}
+    with pytest.raises((SiteError, MachineError), match=words) as error:
+        Site.load(folder.write({**plain, "machine": {"urdf": urdf}, "zones": [content]})).machine()
+    assert "\n" not in str(error.value)
+
+
+def test_contacts_are_read_and_said(folder, plain, urdf):
+    trimesh.creation.box((1, 1, 0.1)).export(folder.path / "table.stl")
+    up = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 2], [0, 0, 0, 1]]
+    site = site_of(
+        folder,
+        plain,
+        urdf=urdf,
+        contacts=[
+            {
+                **TABLE,
+                "upper_m": [1, 1, 0],
+                "near_m": 0.05,
+                "zone": {"lower_m": [0, 0, 0], "upper_m": [1, 1, 1]},
+            },
+            {
+                "name": "shelf",
+                "links": ["base"],
+                "mesh": "table.stl",
+                "world_from_mesh": up,
+                "may_touch": True,
+            },
+        ],
+    )
+    table, shelf = site.machine().contacts
+    assert (table.near_m, table.may_touch, shelf.may_touch) == (0.05, False, True)
+    assert 1.94 < shelf.surface.vertices[:, 2].min() < 1.96
+    notes = "\n".join(notes_of(site))
+    assert (
+        "May be near table, (-1, -1, -0.1) to (1, 1, 0) m, by the site's word: hand, within 50 mm, in a part"
+        in notes
+    )
+    assert "May touch shelf" in notes
+
+
+def test_zones_need_a_machine(folder, plain):
+    with pytest.raises(SiteError, match="zones only with a machine"):
+        Site.load(folder.write({**plain, "zones": [{**HIGH, "reason": "why"}]}))
+
+
+def shifted(x):
+    return [[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+
+
+def test_several_machines_are_one_to_all_that_asks(folder, plain, urdf):
+    machines = [
+        {"name": "left", "urdf": urdf, "joint_prefix": "left_", "stands_on": [CARRIED | {"links": ["base"]}]},
+        {"name": "right", "urdf": urdf, "world_from_base": shifted(1.0)},
+    ]
+    content = {key: value for key, value in plain.items() if key not in ("machine", "joints")}
+    machine = Site.load(folder.write({**content, "machines": machines})).machine()
+    assert {name.split("/")[0] for name in machine.link_names} == {"room", "left", "right"}
+    assert len(set(machine.joint_names)) == len(machine.joint_names)
+    assert machine.stands[0].links == ("left/base",)
+    placed = machine.world_from_links(machine.nearest_to_zero())
+    assert placed["right/base"][0, 3] - placed["left/base"][0, 3] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"machines": [{"name": "a", "urdf": "U"}, {"name": "b", "urdf": "U"}]}, "a and b both have a joint"),
+        ({"machines": [{"name": "a", "urdf": "U"}, {"name": "a", "urdf": "U"}]}, "a is there more than once"),
+        ({"machines": [{"urdf": "U"}]}, "name"),
+        ({"machines": [{"name": "a/b", "urdf": "U"}]}, "name"),
+        ({"machines": [{"name": "a", "urdf": "U"}], "machine": {"urdf": "U"}}, "either machine or machines"),
+    ],
+)
+def test_machines_that_cannot_be_told_apart_are_refused(folder, plain, urdf, more, words):
+    content = {key: value for key, value in plain.items() if key not in ("machine", "joints")} | more
+    for entry in (*content["machines"], *([content["machine"]] if "machine" in content else [])):
+        entry["urdf"] = urdf
+    with pytest.raises((SiteError, MachineError), match=words) as error:
+        Site.load(folder.write(content)).machine()
     assert "\n" not in str(error.value)

@@ -1,6 +1,7 @@
 # ruff: noqa: E501  (tables of one case a line)
 import numpy as np
 import pytest
+from PIL import Image
 
 from elbowroom.errors import InputError
 from elbowroom.sensing import JointRecord
@@ -150,6 +151,21 @@ def test_stampless_folders_that_cannot_be_read(folder, plain, recording, expecte
 def test_two_frames_of_one_camera_at_one_time_are_refused(folder, stamped):
     folder.image(f"rec/north/0{10 * MS}.png")
     assert f"two frames of camera north at {10 * MS} ns" in refusal(Site.load(folder.write(stamped)))
+
+
+@pytest.mark.parametrize("ends", [(".pgm", ".pgm"), (".pgm", ".png")])
+def test_images_may_be_pgm_and_both_kinds_may_lie_together(folder, stamped, ends):
+    as_png = [f.depth_m for each in moments(Site.load(folder.write(stamped))) for f in each.frames]
+    for path, end in zip(sorted((folder.path / "rec").glob("*/*.png")), ends * 3, strict=True):
+        with Image.open(path) as image:
+            raw = np.asarray(image)
+        path.unlink()
+        Image.fromarray(raw.astype(np.uint16)).save(path.with_suffix(end))
+    again = [f.depth_m for each in moments(Site.load(folder.write(stamped))) for f in each.frames]
+    np.testing.assert_array_equal(again, as_png)
+    folder.image(f"rec/north/{10 * MS}.png" if ends[1] == ".pgm" else "rec/colour/1.pgm")
+    text = refusal(Site.load(folder.write(stamped)))
+    assert "two frames of camera north" in text or "colour: images of an unknown camera" in text
 
 
 def test_names_that_are_no_times_are_refused(folder, stamped):

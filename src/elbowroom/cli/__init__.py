@@ -6,14 +6,16 @@ from collections.abc import Sequence
 
 import typer
 
-from elbowroom.errors import ElbowroomError
+from elbowroom.errors import ElbowroomError, NoResultError
 
+NO_RESULT = 1
 FAILED = 2
 INTERRUPTED = 130
 
 
 def main(argv: Sequence[str] | None = None) -> None:
-    """Runs the command line and exits with its code: 0 done, 2 an error in one line on stderr, 130 on Ctrl-C.
+    """Runs the command line and exits with its code: 0 done, 1 what was found or checked is not as it should be, 2 an
+    error, both in one line on stderr, 130 on Ctrl-C.
 
     Args:
         argv: the words after the program's name; None: those of this process.
@@ -31,6 +33,8 @@ def run(argv: Sequence[str] | None = None) -> int:
             code = app(
                 args=None if argv is None else list(argv), prog_name="elbowroom", standalone_mode=False
             )
+        except NoResultError as error:
+            return _fail(str(error), NO_RESULT)
         except ElbowroomError as error:
             return _fail(str(error))
         except (KeyboardInterrupt, typer.Abort):
@@ -53,9 +57,9 @@ def run(argv: Sequence[str] | None = None) -> int:
     return code if isinstance(code, int) else 0
 
 
-def _fail(message: str) -> int:
+def _fail(message: str, code: int = FAILED) -> int:
     print(f"elbowroom: {' '.join(message.split())}", file=sys.stderr)
-    return FAILED
+    return code
 
 
 def _show_warning(message: Warning | str, *_: object, **__: object) -> None:

@@ -8,6 +8,7 @@ from elbowroom.cli.calibrate.app import calibrate_app
 from elbowroom.cli.check import check
 from elbowroom.cli.evaluate.app import evaluate_app
 from elbowroom.cli.evaluate.bench import bench
+from elbowroom.cli.gate import gate_app
 from elbowroom.cli.monitor import monitor
 from elbowroom.cli.placement.app import placement_app
 from elbowroom.cli.reconstruct import reconstruct
@@ -34,6 +35,7 @@ app.command(
         "elbowroom monitor --noise tof --resolution 640x480",
         "elbowroom monitor --knock cam03:1deg@5",
         "elbowroom monitor my_room.yaml",
+        "elbowroom monitor my_room.yaml --gate my_gate",
     )
 )(monitor)
 app.command(
@@ -60,6 +62,7 @@ app.command(
 )(bench)
 app.add_typer(calibrate_app, name="calibrate")
 app.add_typer(evaluate_app, name="evaluate")
+app.add_typer(gate_app, name="gate")
 app.add_typer(placement_app, name="placement")
 app.add_typer(site_app, name="site")
 

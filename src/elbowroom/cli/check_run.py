@@ -11,7 +11,7 @@ from elbowroom.files.json_rows import json_rows
 from elbowroom.machine import Machine
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.monitor.why.why import Why, why
-from elbowroom.motion import Cause, Motion, Verdict, check_motion
+from elbowroom.motion import Cause, Creep, Motion, Verdict, check_motions, with_creep
 from elbowroom.reconstruct import FreeSpace, warm_up
 from elbowroom.reconstruct.point_report import Sight
 from elbowroom.reconstruct.source import ImageSource
@@ -52,7 +52,9 @@ def ask(
             steps.begin("reconstructing")
             space = room.space_of(snapshot)
             steps.begin("checking the motion")
-            verdict = check_motion(space, machine, snapshot.joints or {}, motion)
+            checked = check_motions(space, machine, snapshot.joints or {}, [motion])
+            override = room.site.override(machine)
+            (verdict,) = with_creep(space, machine, snapshot.joints or {}, checked, override)
         found = why(space, machine, snapshot.joints or {}, verdict)
         reasons = _reasons(found, verdict)
         pictures = _pictures(space, found, out)
@@ -79,10 +81,13 @@ def ask(
     print(_travel(motion, verdict))
     if verdict.place_in_world is not None:
         x, y, z = verdict.place_in_world
-        what = verdict.cause.value + (f", {verdict.other_link}" if verdict.other_link else "")
+        met = verdict.other_link or verdict.zone
+        what = verdict.cause.value + (f", {met}" if met else "")
         print(f"What ends it: {what}; {verdict.link} at x {x:.3f}, y {y:.3f}, z {z:.3f} m.")
-    if verdict.overridable:
-        print("An operator who holds on may drive on at low speed, since nobody sees that space.")
+    if verdict.creep is not None:
+        print(_creeping(verdict, verdict.creep))
+    if verdict.escapes:
+        print("It leads out of blocked space that the machine stands in or close beside.")
     for line in [*reasons, *_numbers(found), *map(_sentence, found.advice)]:
         print(line)
     if pictures:
@@ -109,6 +114,26 @@ def _travel(motion: Motion, verdict: Verdict) -> str:
     return f"Free travel: {free} of {looked_at} looked at; it brakes within {brakes}."
 
 
+def _creeping(verdict: Verdict, creep: Creep) -> str:
+    """How far an operator may creep, how fast, and what ends that."""
+    travel, speed, brakes = (
+        travel_text(value, verdict.free_travel_unit)
+        for value in (creep.travel, creep.speed, creep.braking_distance)
+    )
+    ends = "nothing else is in the way as far as was looked"
+    if creep.cause is not Cause.NONE:
+        ends = f"then {creep.cause.value}: {creep.link}"
+    if creep.place_in_world is not None:
+        x, y, z = creep.place_in_world
+        ends += f" at x {x:.3f}, y {y:.3f}, z {z:.3f} m"
+    if creep.travel <= 0:
+        return f"Nobody sees that space, and there is no room to creep at {speed}/s, which brakes in {brakes}: {ends}."
+    return (
+        f"Nobody sees that space: an operator who holds on may creep {travel}, at {speed}/s at most, where it brakes "
+        f"within {brakes}; {ends}."
+    )
+
+
 def _numbers(found: Why) -> list[str]:
     """A line for each camera that has the voxel in its image and does not see through it."""
     seen = () if found.report is None else found.report.cameras
@@ -129,6 +154,8 @@ def _reasons(found: Why, verdict: Verdict) -> list[str]:
             f"{verdict.link} and {verdict.other_link} may be meant to touch: then name both in the site's machine: "
             "allowed_contacts."
         ]
+    if verdict.cause is Cause.KEPT_OUT:
+        return [f"{verdict.zone} is a zone that the site keeps all links out of, whatever is seen there."]
     return [] if found.report is None else str(found.report).splitlines()
 
 

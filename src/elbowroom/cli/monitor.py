@@ -24,6 +24,22 @@ if TYPE_CHECKING:
     from elbowroom.site import Site
     from elbowroom.sources import Room
 
+Knocks = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="WHAT:SIZE@SECONDS",
+        help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
+        "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
+    ),
+]
+GateFolder = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR",
+        help="Decide by a gate whose latch and controls lie in this folder; see `elbowroom gate --help`.",
+    ),
+]
+
 
 SkewMs = Annotated[
     float,
@@ -60,15 +76,9 @@ def monitor(
     detail: Detail = None,
     joints: JointsText = None,
     threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
-    knock: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="WHAT:SIZE@SECONDS",
-            help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
-            "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
-        ),
-    ] = None,
+    knock: Knocks = None,
     skew_ms: SkewMs = 0.0,
+    gate: GateFolder = None,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
@@ -77,14 +87,19 @@ def monitor(
     """Watch a room and say, per joint and direction, how far the machine may go.
 
     Without SITE: a simulated intervention room, where people walk and a C-arm
-    moves, before perfect cameras; --noise tof --resolution 640x480 shows it with
-    real ones. A site with a recording plays it once. Without a machine, or without
+    moves, before 21 small time-of-flight cameras at 2.4 and 0.4 m in turn; --noise
+    exact shows it before perfect ones. A site with a recording plays it once; a
+    bag as if its cameras were there now, the newest image of each counts. Without a machine, or without
     speeds of its joints, it says what is free. Ctrl-C ends with a summary.
 
     Cameras that were commissioned (`elbowroom calibrate commission`) are watched:
     one that moved, or a machine that is not where its joints say, stops every
     motion until the monitor is started again. A simulated room that was not
     commissioned does that itself at the start.
+
+    With --gate, or where the site has a key `gate`, faults latch until a person
+    resets (`elbowroom gate reset DIR`), speed rises slowly, a watchdog in a process
+    of its own says stop when this one falls silent, and a PLC may poll by Modbus.
 
     Not a certified safety function.
     """
@@ -93,7 +108,7 @@ def monitor(
     use_threads(threads)
 
     from elbowroom.site import Site
-    from elbowroom.sources import open_room
+    from elbowroom.sources import live, open_room
 
     named = {"knocks": "--knock", "skew_ms": "--skew-ms"}
     with options_named(
@@ -110,7 +125,7 @@ def monitor(
             resolution=size_px,
             knocks=knock or (),
         )
-        _watch(_skewed(room, skew_ms) if skew_ms else room, seconds, json, out)
+        _watch(live(_skewed(room, skew_ms) if skew_ms else room), seconds, json, out, gate)
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -143,13 +158,16 @@ def _skewed(room: "Room", skew_ms: float) -> "Room":
     return replace(room, source=replace(room.source, skew_ms=skew_ms))
 
 
-def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None) -> None:
+def _watch(
+    room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None, gate_dir: Path | None
+) -> None:
     """Runs the loop over a room, with the faces that were asked for."""
     from rich.console import Console
 
     from elbowroom.cli.progress import Steps
     from elbowroom.files.json_rows import json_rows
     from elbowroom.monitor import Face
+    from elbowroom.monitor.gate.made import gate_of
     from elbowroom.monitor.rows import Rows
     from elbowroom.monitor.start.compiling import compile_kernels
     from elbowroom.monitor.start.start import started
@@ -158,6 +176,7 @@ def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir:
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
+    gate = gate_of(room, gate_dir)
     unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
@@ -173,7 +192,7 @@ def _watch(room: "Room", seconds: float | None, json_file: Path | None, out_dir:
             simulator=room.site.simulated is not None,
         )
         with Steps(console, 4) as steps:
-            loop = started(room, steps.begin)
+            loop = replace(started(room, steps.begin), gate=gate)
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]

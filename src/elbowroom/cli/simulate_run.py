@@ -1,6 +1,6 @@
 """The run of `elbowroom simulate`: a modelled room in, a recording out."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,8 +24,9 @@ from elbowroom.sensing import DepthFrame
 from elbowroom.simulate import Moment, Walls, render, setup, true_occupancy, wall_cameras
 from elbowroom.simulate.crowd import Floor
 from elbowroom.simulate.floor import floor_height
-from elbowroom.simulate.inside import check_outside
+from elbowroom.simulate.inside import check_outside, hung_clear
 from elbowroom.simulate.scene import Course, InUse, Surroundings, scene_in
+from elbowroom.simulate.solid import Solid
 from elbowroom.sources.recorder import UNIT_M, Recording, write_site_of
 from elbowroom.sources.recording_folder import RecordingFolder, Units, refuse_foreign
 from elbowroom.view.draw.colour import View, colour_picture
@@ -109,12 +110,13 @@ def simulate_walls(asked: Asked, options: WallOptions, json: Path | None) -> Non
     assert asked.room is not None and asked.out is not None
     noise = asked.noise or "exact"
     box = _box(options.box, options.voxel_size_m)
-    cameras = _wall_cameras(options, box, noise)
+    solids = asked.room.solids(box)
+    cameras = _wall_cameras(options, box, noise, solids)
     out = folder(asked.out)
     refuse_foreign(out / "images")
     with json_rows(json) as add, Steps(Console(stderr=True), asked.moments + 3) as steps:
         steps.begin("reading the room")
-        around, joints = _walled(asked, options, box, cameras)
+        around, joints = _walled(asked, options, box, cameras, solids)
         if joints is None and asked.joints:
             raise InputError("--joints: without a machine there are none; leave out --joints or --no-machine")
         machine = None if joints is None else ceiling_c_arm()
@@ -251,11 +253,14 @@ def _check_outside(shot: Shot, options: str) -> None:
 
 
 def _walled(
-    asked: Asked, options: WallOptions, box: VoxelGrid, cameras: tuple[DepthCamera, ...]
+    asked: Asked,
+    options: WallOptions,
+    box: VoxelGrid,
+    cameras: tuple[DepthCamera, ...],
+    solids: tuple[Solid, ...],
 ) -> tuple[Surroundings, dict[str, float] | None]:
     """The room without a site, and where the C-arm is; None: it is not there."""
     assert asked.room is not None
-    solids = asked.room.solids(box)
     if asked.room.is_shipped:
         usual = dict(setup(asked.room.name).joints)
     else:
@@ -276,21 +281,22 @@ def _meets(vertices: np.ndarray, grid: VoxelGrid) -> bool:
     return bool(((vertices.max(axis=0) > grid.lower_m) & (vertices.min(axis=0) < grid.upper_m)).all())
 
 
-def _wall_cameras(options: WallOptions, grid: VoxelGrid, noise: str) -> tuple[DepthCamera, ...]:
+def _wall_cameras(
+    options: WallOptions, grid: VoxelGrid, noise: str, solids: Sequence[Solid]
+) -> tuple[DepthCamera, ...]:
+    """Along the walls; one that would hang inside a solid hangs beside it."""
     middle, half = (grid.lower_m + grid.upper_m) / 2, (grid.upper_m - grid.lower_m) / 2 - INSIDE_WALLS_M
     if min(half[:2]) <= 0:
         raise InputError(f"--box: {options.box} is too small for cameras in it")
-    return wall_cameras(
-        options.cameras,
-        options.heights_m,
-        size=options.size,
-        walls=Walls(
-            half_side_m=(float(half[0]), float(half[1])),
-            centre_m=(float(middle[0]), float(middle[1])),
-            aim_m=float(grid.lower_m[2] + 0.44 * (grid.upper_m - grid.lower_m)[2]),
-        ),
-        noise=noise_named(noise),
+    walls = Walls(
+        half_side_m=(float(half[0]), float(half[1])),
+        centre_m=(float(middle[0]), float(middle[1])),
+        aim_m=float(grid.lower_m[2] + 0.44 * (grid.upper_m - grid.lower_m)[2]),
     )
+    hung = wall_cameras(
+        options.cameras, options.heights_m, size=options.size, walls=walls, noise=noise_named(noise)
+    )
+    return hung_clear(hung, solids, walls)
 
 
 def _box(text: str, voxel_size_m: float) -> VoxelGrid:

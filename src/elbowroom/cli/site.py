@@ -1,4 +1,4 @@
-"""`elbowroom site new` and `elbowroom site check`."""
+"""`elbowroom site new` and `elbowroom site check`, and the others of `elbowroom site`."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -7,24 +7,31 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from elbowroom.cli.options import JsonFile, SitePath
+from elbowroom.cli.site_bag import from_bag, topics
 from elbowroom.cli.site_mask import mask
 from elbowroom.cli.site_moment import pose_to_draw, tight_notes
+from elbowroom.cli.site_own_links import own_links
+from elbowroom.cli.swept import say_swept, swept_row
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from elbowroom.finding import Finding
     from elbowroom.geometry import DepthCamera, VoxelGrid
     from elbowroom.site import Site
+    from elbowroom.sources.times.clock import ClockRow
 
 site_app = typer.Typer(
-    help="Write a site file, check one, or find masks.",
+    help="Write a site file, also by a bag of ROS 2; check one; find masks, or links that never meet.",
     epilog="Begin with: elbowroom site new my_room.yaml",
     no_args_is_help=True,
 )
 site_app.command(epilog="Example: elbowroom site mask my_room.yaml --out masks")(mask)
+site_app.command(epilog="Example: elbowroom site own-links my_room.yaml --out own_links.yaml")(own_links)
+site_app.command("from-bag", epilog="Example: elbowroom site from-bag my_bag --out my_room.yaml")(from_bag)
+site_app.command(epilog="Example: elbowroom site topics my_bag")(topics)
 
 
 @site_app.command(epilog="Example: elbowroom site new my_room.yaml")
@@ -67,6 +74,9 @@ def check(
     A recording that is not there yet is a note. Where there is one, or a key room,
     the motions are tried at its first moment: a link beside which a surface lies
     within the cameras' own margins is named, since it would be stopped for ever.
+
+    Of the space that the motions sweep it is said, by link, how much no camera sees,
+    whether all images end below or above it, and where one more camera would help.
     """
     from elbowroom.site import Site
 
@@ -89,6 +99,7 @@ def _findings(site: "Site") -> dict[str, Any]:
     from elbowroom.sources import (
         cameras_of,
         check_images,
+        clocks_of,
         dark_note,
         looked_at,
         silent_cameras,
@@ -100,6 +111,7 @@ def _findings(site: "Site") -> dict[str, Any]:
     grid, cameras, machine = site.grid(), cameras_of(site), site.machine()
     motions = site.motions(machine) if machine is not None else ()
     moments = images = times = None
+    clocks: dict[str, ClockRow] = {}
     notes = list(notes_of(site))
     absent = site.missing_recording
     if absent is not None:
@@ -112,6 +124,7 @@ def _findings(site: "Site") -> dict[str, Any]:
         notes += [finding.text for finding in time_findings(site)]
         meeting = times_of(site)
         times = None if meeting is None else times_row(meeting)
+        clocks = {name: estimate.row for name, estimate in clocks_of(site).items()}
     notes += tight_notes(site)
     found = looked_at(site)
     if not any(finding.stops for finding in found) and (dark := dark_note(site)) is not None:
@@ -132,7 +145,9 @@ def _findings(site: "Site") -> dict[str, Any]:
         "moments": moments,
         "images": images,
         "times": times,
+        "clocks": clocks,
         **memory_of(grid, cameras).row(),
+        **swept_row(site)[1],
         "notes": notes,
         "findings": [asdict(finding) for finding in (*found, *_of_the_model(site, found))],
     }
@@ -188,10 +203,27 @@ def _say(row: dict[str, Any]) -> None:
         print(f"{key:9} {text}")
         if key == "recording" and row["times"] is not None:
             print("".join(f"times     {span}\n" for span in row["times"]["spans"]), end="")
+            print(_clocks_text(row["clocks"]), end="")
+    say_swept(row)
     for note in row["notes"]:
         print(f"note      {note}")
     for finding in row["findings"]:
         print(f"{'STOP' if finding['stops'] else 'warning':9} {finding['text']}")
+
+
+def _clocks_text(clocks: "Mapping[str, ClockRow]") -> str:
+    """A line of what clocks are like where images come with times of receipt; nothing where they do not."""
+    if not clocks:
+        return ""
+    offsets, drifts, bounds = (
+        [row[key] for row in clocks.values()] for key in ("offset_ms", "drift_ppm", "bound_ms")
+    )
+    least, most = min(offsets), max(offsets)
+    later = f"{least:.3g}" if most - least < 1 else f"{least:.3g} to {most:.3g}"
+    return (
+        f"clocks    images come {later} ms after their stamps at the quickest, and that grows by up to "
+        f"{max(map(abs, drifts)):.0f} us a second; known within {max(bounds):.3g} ms\n"
+    )
 
 
 def _draw(site: "Site", out: Path) -> None:

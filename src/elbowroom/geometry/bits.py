@@ -41,6 +41,21 @@ def place_of(index: tuple[int, int, int], grid: VoxelGrid) -> tuple[int, np.uint
     return plain(word_of)(*index, cells.cubes_y, cells.cubes_z), plain(bit_of)(*index)
 
 
+def places_of(
+    i: NDArray[np.int64], j: NDArray[np.int64], k: NDArray[np.int64], grid: VoxelGrid
+) -> tuple[NDArray[np.int64], Words]:
+    """As `place_of` for many voxels: where their words are, and their bits; shapes as of the indices.
+
+    Args:
+        i, j, k: indices of the voxels, in the grid.
+        grid: the grid.
+    """
+    cubes = lattice(grid)
+    cube = ((i >> 4) * cubes.cubes_y + (j >> 4)) * cubes.cubes_z + (k >> 4)
+    word = cube * 64 + (((i >> 2) & 3) * 4 + ((j >> 2) & 3)) * 4 + ((k >> 2) & 3)
+    return word, np.uint64(1) << (((i & 3) * 4 + (j & 3)) * 4 + (k & 3)).astype(np.uint64)
+
+
 def pack(mask: NDArray[np.bool_], grid: VoxelGrid) -> Words:
     """A plane from a bool array of the grid's shape; bits beyond the grid are zero.
 

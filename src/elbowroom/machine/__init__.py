@@ -2,6 +2,7 @@
 
 from elbowroom.machine.body import body_words, default_growth
 from elbowroom.machine.c_arm import ceiling_c_arm
+from elbowroom.machine.contact import Contact
 from elbowroom.machine.explain import Explained, explain_frames
 from elbowroom.machine.joint import Joint, Mimic
 from elbowroom.machine.link import Link
@@ -9,9 +10,11 @@ from elbowroom.machine.machine import Machine
 from elbowroom.machine.part import Part
 from elbowroom.machine.samples import BodySamples, body_samples
 from elbowroom.machine.stand import Stand
+from elbowroom.machine.zone import Zone
 
 __all__ = [
     "BodySamples",
+    "Contact",
     "Explained",
     "Joint",
     "Link",
@@ -19,6 +22,7 @@ __all__ = [
     "Mimic",
     "Part",
     "Stand",
+    "Zone",
     "body_samples",
     "body_words",
     "ceiling_c_arm",

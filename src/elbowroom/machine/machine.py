@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.choices import ExplainWith
 from elbowroom.errors import MachineError, MachineWarning
 from elbowroom.finding import Finding
-from elbowroom.geometry import nearest_rigid
+from elbowroom.geometry import invert_rigid, nearest_rigid
+from elbowroom.machine.contact import Contact
 from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
 from elbowroom.machine.joint_state import (
@@ -26,9 +27,13 @@ from elbowroom.machine.joint_state import (
 )
 from elbowroom.machine.kernels.body import FIXED, Tree, place_links
 from elbowroom.machine.link import Link
+from elbowroom.machine.overlap import POSES, always_touching, is_within
+from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.part import Part
+from elbowroom.machine.poses import random_poses
 from elbowroom.machine.shape import Shape
 from elbowroom.machine.stand import Stand
+from elbowroom.machine.zone import Zone
 
 QUIET = ("package", "limits", "axes", "larger")
 """Kinds of findings that are kept with the machine, and are no slip that a warning is due for."""
@@ -51,7 +56,10 @@ class Machine:
         world_from_base: where the first link is, shape (4, 4), rigid.
         unchecked_links: links that may leave the grid by design and are not checked for collision.
         allowed_contacts: pairs of names of links that may touch, besides neighbours; a name may hold wildcards ("*").
+        own_links: pairs of links that are not compared, and the file that says so; None: none is named.
         stands: what some links may touch: a table, the floor.
+        contacts: fixed things that some links may be near.
+        zones: where a person says that links must not be, or that nobody watches.
         parts: names of the links that are carried (`with_part`).
         bodiless_links: links whose geometry was left out by somebody's word: they move without a body.
         tolerance: how far a position may lie beyond a limit, and a follower off its leader.
@@ -68,7 +76,10 @@ class Machine:
     world_from_base: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     unchecked_links: tuple[str, ...] = ()
     allowed_contacts: tuple[tuple[str, str], ...] = ()
+    own_links: OwnLinks | None = None
     stands: tuple[Stand, ...] = ()
+    contacts: tuple[Contact, ...] = ()
+    zones: tuple[Zone, ...] = ()
     parts: tuple[str, ...] = ()
     bodiless_links: tuple[str, ...] = ()
     tolerance: JointTolerance = field(default_factory=JointTolerance)
@@ -92,6 +103,14 @@ class Machine:
         object.__setattr__(self, "stands", tuple(self.stands))
         for stand in self.stands:
             self._require_links("stands_on", stand.links)
+        object.__setattr__(self, "contacts", tuple(self.contacts))
+        for contact in self.contacts:
+            self._require_links(f"contacts: {contact.name}", contact.links)
+        object.__setattr__(self, "zones", tuple(self.zones))
+        for zone in self.zones:
+            self._require_links(f"zones: {zone.name}", zone.links)
+        if self.own_links is not None:
+            object.__setattr__(self, "own_links", self.own_links.among(self.link_names))
         for pair in self.allowed_contacts:
             self._require_links("allowed_contacts", pair)
         first = _anywhere.setdefault(self._all_but_place(), self)
@@ -99,9 +118,14 @@ class Machine:
 
     def _all_but_place(self) -> tuple[Hashable, ...]:
         """What machines have in common that differ by their place alone."""
-        own = (tuple(map(id, values)) for values in (self.links, self.joints, self.stands, self.findings))
-        named = self.unchecked_links, self.allowed_contacts, self.parts, self.bodiless_links
-        return self.name, id(self.tree), *own, *named, self.tolerance
+        own = (
+            tuple(map(id, values))
+            for values in (self.links, self.joints, self.stands, self.zones, self.findings)
+        )
+        # things of contacts stand in the world, wherever the machine does
+        things = (*map(id, self.contacts), self.world_from_base.tobytes() if self.contacts else b"")
+        named = things, self.unchecked_links, self.allowed_contacts, self.parts, self.bodiless_links
+        return self.name, id(self.tree), id(self.own_links), *own, *named, self.tolerance
 
     @property
     def anywhere(self) -> "Machine":
@@ -249,6 +273,30 @@ class Machine:
         """
         return replace(self, stands=(*self.stands, *stands))
 
+    def near(self, *contacts: Contact) -> "Machine":
+        """The machine with fixed things of the room that some of its links may be near; those that it has stay.
+
+        Raises:
+            MachineError: a link that is named does not exist, or a thing of a name that is taken.
+        """
+        names = [contact.name for contact in (*self.contacts, *contacts)] + list(self.link_names)
+        doubled = sorted({name for name in names if names.count(name) > 1})
+        if doubled:
+            raise MachineError(f"contacts: the name {doubled[0]} is there more than once, or that of a link")
+        return replace(self, contacts=(*self.contacts, *contacts))
+
+    def with_zones(self, *zones: Zone) -> "Machine":
+        """The machine with zones of the room that a person declares; those that it has stay.
+
+        Raises:
+            MachineError: a link that is named does not exist, or two zones of one name.
+        """
+        names = [zone.name for zone in (*self.zones, *zones)]
+        doubled = sorted({name for name in names if names.count(name) > 1})
+        if doubled:
+            raise MachineError(f"zones: {doubled[0]} is there more than once; each needs a name of its own")
+        return replace(self, zones=(*self.zones, *zones))
+
     def allowing(self, *contacts: tuple[str, str]) -> "Machine":
         """The machine with pairs of links that may touch; those that it has stay. Names may hold wildcards.
 
@@ -257,13 +305,24 @@ class Machine:
         """
         return replace(self, allowed_contacts=(*self.allowed_contacts, *contacts))
 
+    def comparing(self, own_links: OwnLinks | None) -> "Machine":
+        """The machine with the pairs of links that are not compared; those that it had are replaced.
+
+        Raises:
+            MachineError: a link that is named does not exist.
+        """
+        return replace(self, own_links=own_links)
+
     @cached_property
     def allowances(self) -> tuple[str, ...]:
         """What somebody's word lets pass, a line each: every summary says it."""
         own = [pair for pair in self.allowed_contacts if not set(pair) & set(self.parts)]
         return (
+            *map(str, self.zones),
+            *map(str, self.contacts),
             *(f"Not stopped by anything there, by the site's word: {stand}" for stand in self.stands),
             *(f"May touch each other, by the site's word: {one} and {other}" for one, other in own),
+            *(() if self.own_links is None else (self.own_links.said,)),
         )
 
     def with_part(self, link: str, part: Part, link_from_part: ArrayLike | None = None) -> "Machine":
@@ -277,7 +336,8 @@ class Machine:
             link_from_part: where the part is on it, shape (4, 4), rigid; None: frames are one.
 
         Raises:
-            MachineError: no such link, a link of the part's name, or a pose that is not rigid.
+            MachineError: no such link, a link of the part's name, a pose that is not rigid, or a part that lies in
+                links that do not carry it.
         """
         self._require_links("part " + part.name, [link])
         if part.name in self.link_names:
@@ -296,13 +356,62 @@ class Machine:
         )
         carried = Link(part.name, part.surface.vertices, part.surface.faces.astype(np.int32))
         touched = [(part.name, self.link_names[other]) for other in self._held_with(row)]
-        return replace(
+        holding = replace(
             self,
             links=(*self.links, carried),
             tree=grown,
             allowed_contacts=(*self.allowed_contacts, *touched),
             parts=(*self.parts, part.name),
         )
+        holding._require_beside(part.name, [self.link_names.index(name) for _, name in touched])
+        return holding
+
+    def _require_beside(self, part: str, held_with: Sequence[int]) -> None:
+        """Refuses a part that lies in links in nearly all poses which do not carry it.
+
+        Args:
+            part: its name; it is the last link.
+            held_with: rows of the links that it may touch.
+        """
+        last = len(self.links) - 1
+        rows = [
+            (row, last)
+            for row, link in enumerate(self.links[:-1])
+            if link.has_geometry and row not in held_with
+        ]
+        poses = self.random_places(POSES)
+        always = always_touching(self.shape, rows, poses)
+        within = [
+            self.link_names[row]
+            for (row, _), touch in zip(rows, always, strict=True)
+            if touch or all(self._holds(last, row, placed) for placed in poses[:3])
+        ]
+        if within:
+            raise MachineError(
+                f"machine {self.name}: part {part} lies in {', '.join(within)} in all poses, which do not carry it: "
+                "give its place (link_from_part), a smaller shape, or the link that does carry it"
+            )
+
+    def _holds(self, part: int, row: int, placed: NDArray[np.float64]) -> bool:
+        """Whether one of a part and another link lies wholly in the other.
+
+        Args:
+            part, row: rows of the two.
+            placed: where links are, shape (n_links, 4, 4).
+        """
+        part_from_link = invert_rigid(placed[part]) @ placed[row]
+        return is_within(self.links[row], self.links[part], part_from_link) or is_within(
+            self.links[part], self.links[row], invert_rigid(part_from_link)
+        )
+
+    def random_places(self, count: int, seed: int = 0) -> NDArray[np.float64]:
+        """Where links are in poses drawn from the joints' limits, shape (count, n_links, 4, 4).
+
+        Args:
+            count: how many.
+            seed: of the draw.
+        """
+        return self.world_from_link_array(random_poses(self._commanded, count, seed))
 
     def without_part(self, name: str) -> "Machine":
         """The machine without a part that it was given, and without those that hang on it.

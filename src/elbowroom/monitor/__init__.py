@@ -2,6 +2,8 @@
 
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.face import Face, Pass
+from elbowroom.monitor.gate.gate import Gate
+from elbowroom.monitor.gate.state import Decision
 from elbowroom.monitor.health.checks import Checks
 from elbowroom.monitor.health.drift.reference import CameraReference
 from elbowroom.monitor.health.drift.reference_file import load_references, save_references
@@ -20,7 +22,9 @@ __all__ = [
     "Condition",
     "Cycle",
     "CycleResult",
+    "Decision",
     "Face",
+    "Gate",
     "Health",
     "Known",
     "LinkHealth",

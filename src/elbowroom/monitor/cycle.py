@@ -1,8 +1,8 @@
 """One pass: a snapshot in, a verdict for each motion out. Whatever goes wrong on the way is a stop."""
 
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,7 +11,16 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.stages import timed
-from elbowroom.motion import Cause, Level, Motion, Verdict, blocks_in_reach, check_motions
+from elbowroom.motion import (
+    Cause,
+    Level,
+    Motion,
+    Override,
+    Verdict,
+    blocks_in_reach,
+    check_motions,
+    with_creep,
+)
 from elbowroom.reconstruct import FreeSpace, Terms, free_space_of
 from elbowroom.sensing import Snapshot
 
@@ -28,6 +37,7 @@ class Cycle:
         terms: how strictly space is judged.
         focused: only the space where the motions can go is looked at, all other space stays unseen.
         keeps_images: results keep the images that their free space was made of, so that it can be explained.
+        override: how fast an operator may creep where nobody sees; None: of no stop it is said.
         clock_ns: by which the time that a pass takes is told [ns]; it never goes back.
 
     Raises:
@@ -42,6 +52,7 @@ class Cycle:
     focused: bool = True
     keeps_images: bool = False
     clock_ns: Callable[[], int] = time.perf_counter_ns
+    override: Override | None = None
     sequence: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -65,7 +76,7 @@ class Cycle:
             oldest_ms = snapshot.oldest_age_ms
             space = self._space_of(snapshot, stage_ms)
             with timed("motion", stage_ms):
-                given = _usable(check_motions(space, self.machine, snapshot.joints or {}, self.motions))
+                given = _usable(self._checked(space, snapshot.joints or {}))
             late = self._late(snapshot, begun_ns)
         except Exception as error:  # at this border a fault becomes a decision: stop
             return self.failed(error, snapshot, stage_ms)
@@ -75,9 +86,8 @@ class Cycle:
         fault = f"no usable verdict for {', '.join(missing)}" if missing else None
         verdicts = tuple(given.get(motion) or self._stop(motion) for motion in self.motions)
         kept = space if self.keeps_images else space.released()
-        return CycleResult(
-            self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault, late=late
-        )
+        result = CycleResult(self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault)
+        return replace(result, late=late, skew_ms=snapshot.fresh(self.terms.max_age_ns).skew_ms)
 
     def failed(
         self, error: Exception, snapshot: Snapshot | None, stage_ms: dict[str, float] | None = None
@@ -109,6 +119,12 @@ class Cycle:
             focus=reach,
             timer=lambda stage: timed(stage, stage_ms),
         )
+
+    def _checked(self, space: FreeSpace, joints: Mapping[str, float]) -> Sequence[Verdict]:
+        verdicts = check_motions(space, self.machine, joints, self.motions)
+        if self.override is None:
+            return verdicts
+        return with_creep(space, self.machine, joints, verdicts, self.override)
 
     def _number(self) -> int:
         self.sequence += 1

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol
 
+from elbowroom.monitor.gate.state import Decision
 from elbowroom.monitor.result import CycleResult
 from elbowroom.sensing import Snapshot
 from elbowroom.sources import Room
@@ -16,11 +17,13 @@ class Pass:
         snapshot: what came.
         result: what it was judged to be.
         source_ms: what it took to bring the snapshot [ms], simulating or reading.
+        decision: what the gate made of it; None: the run has no gate.
     """
 
     snapshot: Snapshot
     result: CycleResult
     source_ms: float
+    decision: Decision | None = None
 
 
 class Face(Protocol):

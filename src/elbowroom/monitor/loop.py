@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.face import Face, Pass
+from elbowroom.monitor.gate.gate import Gate
+from elbowroom.monitor.gate.state import Decision
 from elbowroom.monitor.health.checks import Checks
 from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.space_cycle import SpaceCycle
@@ -25,12 +27,14 @@ class Loop:
         cycle: judges; or, where no motion is asked, sees what is free.
         pace: called with each snapshot before it is judged; says for how long it is early [s], and so long the loop
             waits, unless the run ends before; None: nobody waits.
+        gate: decides after each pass, before any face is told, and stops the machine at the end; None: nobody does.
     """
 
     room: Room
     checks: Checks
     cycle: Cycle | SpaceCycle
     pace: Callable[[Snapshot], float | None] | None = None
+    gate: Gate | None = None
 
     def run(self, faces: Sequence[Face], seconds: float | None = None) -> None:
         """Judges one snapshot after the other until the time is over or the source ends.
@@ -42,10 +46,17 @@ class Loop:
             faces: who shows or keeps each pass, in the order in which they are told.
             seconds: how long, also where the pace waits; None: until the source ends. One pass is always made, if there
                 is a snapshot.
+
+        Raises:
+            InputError: the gate cannot begin; nothing else has begun then.
         """
         until = time.perf_counter() + (float("inf") if seconds is None else seconds)
         snapshot: Snapshot | None = None
-        with _ended(faces, self.room.source):
+        if self.gate is not None:
+            self.gate.begin()
+        with _ended(faces, self.room.source) as ending:
+            if self.gate is not None:
+                ending.callback(self.gate.end)  # before any face is told of the end
             try:
                 for face in faces:
                     face.begin(self.room)
@@ -53,8 +64,9 @@ class Loop:
                     if not self._waited(snapshot, until):
                         break
                     result = self.judge(snapshot)
+                    done = Pass(snapshot, result, source_ms, self._decision(result))
                     for face in faces:
-                        face.show(Pass(snapshot, result, source_ms))
+                        face.show(done)
                     if time.perf_counter() >= until:
                         break
             except Exception as error:
@@ -67,6 +79,10 @@ class Loop:
         known = self.checks.hear(snapshot)
         return self.cycle.run(snapshot, begun_ns).knowing(known)
 
+    def _decision(self, result: CycleResult) -> Decision | None:
+        """What the gate makes of a pass."""
+        return None if self.gate is None else self.gate.decide(result)
+
     def _waited(self, snapshot: Snapshot, until_s: float) -> bool:
         """Sleeps while a snapshot is early, if the run does not end before; whether it did not."""
         early_s = (self.pace(snapshot) if self.pace is not None else None) or 0.0
@@ -78,7 +94,8 @@ class Loop:
 
     def _say_stop(self, faces: Sequence[Face], snapshot: Snapshot | None, error: Exception) -> None:
         """Shows a failed pass to every face, also to those behind one that cannot show it."""
-        done = Pass(snapshot or Snapshot(()), self.cycle.failed(error, snapshot), 0.0)
+        result = self.cycle.failed(error, snapshot)
+        done = Pass(snapshot or Snapshot(()), result, 0.0, self._decision(result))
         for face in faces:
             with suppress(Exception):
                 face.show(done)

@@ -28,6 +28,7 @@ class CycleResult:
         findings: what the looks at the input found; while one of them stops, every verdict is stop.
         late: that frames were past their age when the verdicts were out, so that every one is stop, one sentence; None:
             they were in time, or there is no limit.
+        skew_ms: between the stamps of the oldest and the newest frame that was used [ms]; None: there are no two.
     """
 
     sequence: int
@@ -40,6 +41,7 @@ class CycleResult:
     health: Health | None = None
     findings: tuple[Finding, ...] = ()
     late: str | None = None
+    skew_ms: float | None = None
 
     def knowing(self, known: Known) -> Self:
         """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""

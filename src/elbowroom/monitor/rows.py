@@ -1,5 +1,6 @@
 """What a run comes to as rows of a file; `Rows` is the face that writes them."""
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -8,11 +9,16 @@ import numpy as np
 from elbowroom.files.json_rows import AddRow
 from elbowroom.geometry.parallel import thread_count
 from elbowroom.monitor.face import Pass
+from elbowroom.monitor.gate.told import GateRows
 from elbowroom.monitor.health.drift.watch import BODY
 from elbowroom.monitor.health.health import CameraHealth, LinkHealth
 from elbowroom.monitor.result import CycleResult
 from elbowroom.reconstruct.free_space import FreeSpace
-from elbowroom.sources import Room
+from elbowroom.sources import Played, Room, Source
+from elbowroom.sources.times.clock import ClockEstimate
+
+CLOCKS_EVERY_NS = 1_000_000_000
+"""What is known of clocks is told so often [ns]."""
 
 
 class Rows:
@@ -25,17 +31,31 @@ class Rows:
     def __init__(self, add: AddRow) -> None:
         self._add = add
         self._told: dict[str, str] = {}
+        self._source: Source | None = None
+        self._clocks_ns: int | None = None
+        self._gate = GateRows()
 
     def begin(self, room: Room) -> None:
         """Adds the row of the room."""
+        self._source = room.source
         self._add(room_row(room))
 
     def show(self, done: Pass) -> None:
         """Adds the rows of a pass."""
         for row in cycle_rows(done.result, done.source_ms):
             self._add(row)
-        for row in health_rows(done.result, self._told):
+        for row in (*health_rows(done.result, self._told), *self._gate.rows(done.result, done.decision)):
             self._add(row)
+        if isinstance(self._source, Played) and self._is_time(done.result.stamp_ns):
+            for row in clock_rows(done.result, self._source.clocks):
+                self._add(row)
+
+    def _is_time(self, now_ns: int) -> bool:
+        """Whether a second has gone by since clocks were told last."""
+        due = self._clocks_ns is None or not 0 <= now_ns - self._clocks_ns < CLOCKS_EVERY_NS
+        if due:
+            self._clocks_ns = now_ns
+        return due
 
     def end(self) -> None:
         """Whoever made the file closes it."""
@@ -72,6 +92,7 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
         "source_ms": source_ms,
         "oldest_age_ms": result.oldest_age_ms,
         "age_ms": result.age_ms,
+        "skew_ms": result.skew_ms,
         "late": result.late,
         "fault": result.fault,
         "stopped_by": result.stopped_by,
@@ -103,6 +124,17 @@ def health_rows(result: CycleResult, told: dict[str, str]) -> list[dict[str, Any
         if _is_news(told, f"link {link.link}", f"{link.is_off} {stop}"):
             rows.append({**shared, **_link_row(link), "stop": stop})
     return rows
+
+
+def clock_rows(result: CycleResult, clocks: Mapping[str, ClockEstimate]) -> list[dict[str, Any]]:
+    """A row of kind "clock" per camera: its clock beside that of the monitor.
+
+    Args:
+        result: of a pass.
+        clocks: what is known of them, by camera.
+    """
+    shared = {"kind": "clock", "sequence": result.sequence, "time_s": result.stamp_ns / 1e9}
+    return [{**shared, "camera": name, **estimate.row} for name, estimate in clocks.items()]
 
 
 def _is_news(told: dict[str, str], of: str, words: str) -> bool:

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
@@ -55,7 +55,9 @@ class SpaceCycle:
         except Exception as error:
             return self.failed(error, snapshot, stage_ms)
         now_ns = snapshot.now_ns or 0
-        return CycleResult(self._number(), now_ns, space.released(), (), stage_ms, oldest_ms, late=late)
+        skew_ms = snapshot.fresh(self.terms.max_age_ns).skew_ms
+        result = CycleResult(self._number(), now_ns, space.released(), (), stage_ms, oldest_ms)
+        return replace(result, late=late, skew_ms=skew_ms)
 
     def failed(
         self, error: Exception, snapshot: Snapshot | None, stage_ms: dict[str, float] | None = None

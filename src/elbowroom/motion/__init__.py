@@ -2,15 +2,18 @@
 
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.check import check_motion, check_motions, joint_motions
+from elbowroom.motion.creep import Override, with_creep
 from elbowroom.motion.focus import blocks_in_reach
 from elbowroom.motion.motion import JointPath, Motion
-from elbowroom.motion.verdict import Cause, Level, Verdict, most_cautious
+from elbowroom.motion.verdict import Cause, Creep, Level, Verdict, most_cautious
 
 __all__ = [
     "Cause",
+    "Creep",
     "JointPath",
     "Level",
     "Motion",
+    "Override",
     "Verdict",
     "blocks_in_reach",
     "braking_distance",
@@ -18,4 +21,5 @@ __all__ = [
     "check_motions",
     "joint_motions",
     "most_cautious",
+    "with_creep",
 ]

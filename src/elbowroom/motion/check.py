@@ -12,13 +12,14 @@ from elbowroom.geometry import bits, parallel
 from elbowroom.machine import Machine
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.course import Way, way_of
-from elbowroom.motion.ground import Ground, grounds_of
+from elbowroom.motion.ground import grounds_of, zone_of
 from elbowroom.motion.inside import blocks_inside
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.meeting import Meeting
 from elbowroom.motion.motion import JointPath, Motion
+from elbowroom.motion.shared import Start
 from elbowroom.motion.skin import skin_of
-from elbowroom.motion.sweep import Block, cluster_speeds, find_block, volume_of
+from elbowroom.motion.sweep import Block, cluster_speeds
 from elbowroom.motion.verdict import Cause, Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
 
@@ -34,11 +35,12 @@ def check_motion(
     """How far a motion may go until the swept body meets what is not free.
 
     The swept body is that of the checked links which the motion moves. The machine's own voxels should have
-    been taken out of the space (`reconstruct` does it; `FreeSpace.without`); a body that stands in blocked
-    space, or about it, has a free travel of 0. What lies outside the grid is blocked. Where a link would meet another
-    one that must not (`Machine.allowed_contacts`), that ends the travel as well. Joint limits cap the free travel, not
-    the level. A voxel in the way that is unseen, because no one camera sees all of it, is looked at again in parts if
-    the space still has what it was made of (`FreeSpace.is_free_in_parts`).
+    been taken out of the space (`reconstruct` does it; `FreeSpace.without`). Of a blocked voxel that a link reaches
+    into where it stands, what the body does not cover there blocks it (`motion.shared`), so what leads away goes; about
+    a blocked voxel that lies in it a link has a free travel of 0. What lies outside the grid is blocked. Where a link
+    would meet another one that must not (`Machine.allowed_contacts`), that ends the travel as well. Joint limits cap
+    the free travel, not the level. A voxel in the way that is unseen, because no one camera sees all of it, is looked
+    at again in parts if the space still has what it was made of (`FreeSpace.is_free_in_parts`).
 
     Args:
         space: the free space.
@@ -118,7 +120,8 @@ def joint_motions(
 class _Scene:
     """What the motions of one check share."""
 
-    grounds: tuple[Ground, ...]
+    space: FreeSpace
+    starts: tuple[Start, ...]
     machine: Machine
     skin: Skin
     meeting: Meeting
@@ -130,19 +133,20 @@ class _Scene:
     def of(cls, space: FreeSpace, machine: Machine, start: NDArray[np.float64]) -> Self:
         voxel_size_m = space.grid.voxel_size_m
         placed = machine.world_from_link_array(start[None])[0]
-        grounds = grounds_of(space, machine)
+        starts = tuple(Start.of(machine, ground, placed) for ground in grounds_of(space, machine))
         return cls(
-            grounds,
+            space,
+            starts,
             machine,
             skin_of(machine, voxel_size_m),
             Meeting.of(machine, placed),
-            blocks_inside(machine, grounds, placed),
+            blocks_inside(machine, tuple(start.ground for start in starts), placed),
             placed,
         )
 
     def verdict(self, motion: Motion | JointPath, way: Way) -> Verdict:
         speeds = cluster_speeds(self.machine, self.skin, self.world_from_link, way)
-        block = self._first_block(speeds, way)
+        block, reaches = self._first_block(speeds, way)
         met = self.meeting.first(way, way.length if block is None else block.travel)
         if met is not None:
             return Verdict(
@@ -152,11 +156,13 @@ class _Scene:
                 way.unit,
                 met.link,
                 tuple(met.place_in_world.tolist()),
-                Cause.MACHINE,
+                Cause.MACHINE if met.other in self.machine.link_names else Cause.SURFACE,
                 met.other,
+                reaches and met.travel > 0,
             )
         if block is None:
-            return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE)
+            return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE, escapes=reaches)
+        zone = zone_of(block, self.space, self.machine)
         return Verdict(
             motion,
             Level.at(block.travel, motion.braking_distance),
@@ -164,31 +170,34 @@ class _Scene:
             way.unit,
             self.machine.link_names[self.skin.link[block.cluster]],
             tuple(block.place_in_world.tolist()),
-            CAUSES[block.kind],
+            CAUSES[block.kind] if zone is None else Cause.KEPT_OUT,
+            escapes=reaches and block.travel > 0,
+            zone=zone,
         )
 
-    def _first_block(self, speeds: NDArray[np.float64], way: Way) -> Block | None:
-        """The first block on a way: of what is about the links, or of what is in them."""
-        found = [self._block_on(ground, speeds, way) for ground in self.grounds]
+    def _first_block(self, speeds: NDArray[np.float64], way: Way) -> tuple[Block | None, bool]:
+        """The first block on a way, of what is about the links or in them; whether they reach into any at the start."""
+        ends = [self._block_on(start, speeds, way) for start in self.starts]
+        found = [block for block, _ in ends]
         if way.length > 0 and self.inside:
             for row in np.unique(self.skin.link[speeds > 0]):
                 if row in self.inside:
                     cluster = int(np.searchsorted(self.skin.link, row))
                     found.append(self.inside[row]._replace(cluster=cluster))
         blocks = [block for block in found if block is not None]
-        return min(blocks, key=lambda block: (block.travel, block.kind), default=None)
+        reaches = way.length > 0 and any(reaches for _, reaches in ends)
+        return min(blocks, key=lambda block: (block.travel, block.kind), default=None), reaches
 
-    def _block_on(self, ground: Ground, speeds: NDArray[np.float64], way: Way) -> Block | None:
-        """The first block of a ground's links that is not free in parts, or the last of those that are looked at."""
-        space, volume = ground.space, ground.volume
-        own = np.where(ground.links[self.skin.link], speeds, 0.0)
+    def _block_on(self, start: Start, speeds: NDArray[np.float64], way: Way) -> tuple[Block | None, bool]:
+        """The first block of a ground's links that is not free in parts, or the last of those that are looked at; and
+        whether these links reach into blocked space at the start."""
         for looks in range(MOST_LOOKS + 1):
-            block = find_block(self.machine, self.skin, own, way, volume)
+            block = start.first_block(self.machine, self.skin, speeds, way)
+            space = start.ground.space
             if block is None or looks == MOST_LOOKS or not self._is_free_in_parts(space, block):
                 break
-            space = _with_free(space, block)
-            volume = volume_of(space)
-        return block
+            start = start.with_space(_with_free(space, block))
+        return block, start.holds(self.skin, np.where(start.ground.links[self.skin.link], speeds, 0.0))
 
     def _is_free_in_parts(self, space: FreeSpace, block: Block) -> bool:
         """Whether a block is a voxel that nobody disputes and that is free part by part."""

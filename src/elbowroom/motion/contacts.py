@@ -8,11 +8,17 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
+from elbowroom.machine.boxes import boxes_of
+from elbowroom.machine.kernels.apart import Bodies
 from elbowroom.machine.kernels.samples import cluster
+from elbowroom.machine.overlap import POSES, always_touching, bodies_of
 from elbowroom.machine.samples import COVER_IN_VOXELS, ROUNDING_M, BodySamples, body_samples
+from elbowroom.machine.shape import Shape
+from elbowroom.machine.things import with_things
+from elbowroom.machine.ways import moves
 from elbowroom.motion.field import fields_of
 from elbowroom.motion.kernels.field import Fields, slack_of
-from elbowroom.motion.kernels.meeting import RUN, Pairs, gaps_now
+from elbowroom.motion.kernels.meeting import RUN, Pairs
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.skin import bare_skin
 
@@ -22,16 +28,16 @@ FINEST = 1 / 8
 """A field's cells are no smaller than this share of the voxels that the samples would do for."""
 COARSER = 1.5
 """A field is much coarser than another whose cells are smaller than its own by this factor."""
-POSES, ALWAYS = 40, 0.95
-"""Links that lie in each other in this share of so many poses, drawn from the joints' limits, are meant to."""
 
 
 @kept
 def pairs_of(machine: Machine) -> Pairs:
     """The pairs of a machine's links that must not meet; made once per machine, then kept.
 
-    Left out are links and the next one up the tree that has a body, those that the machine's `allowed_contacts` name,
-    those that lie in each other in all poses, and pairs of unchecked links.
+    And links with the things of the machine's contacts, which are links of `with_things`.
+
+    Left out are links and the next one up the tree that has a body, those that the machine's `allowed_contacts` or
+    `own_links` name, those that touch in all poses, and pairs of unchecked links.
 
     Args:
         machine: whose links.
@@ -39,13 +45,29 @@ def pairs_of(machine: Machine) -> Pairs:
     Raises:
         MachineError: as `body_samples`.
     """
-    rows = [pair for pair in _may_not_touch(machine) if _can_move_apart(machine, *pair)]
+    rows = [*watched_rows(machine), *_near_things(machine)]
     edge = _voxel_for(machine)
     skin, width = _skin(body_samples(machine, edge, unchecked=True))
-    fields = fields_of(machine.links, {row for pair in rows for row in pair}, FINEST * edge)
-    always = _always_touch(machine, _pairs(skin, width, fields, rows))
-    apart = [pair for pair, touch in zip(rows, always, strict=True) if not touch]
-    return _pairs(skin, width, fields, apart)
+    whole = with_things(machine)
+    fields = fields_of(whole.links, {row for pair in rows for row in pair}, FINEST * edge)
+    return _pairs(skin, width, fields, bodies_of(whole.shape, rows))
+
+
+def _near_things(machine: Machine) -> list[tuple[int, int]]:
+    """The rows of links that may be near things, and those of the things that they may not touch."""
+    return [
+        (row, len(machine.links) + n)
+        for n, contact in enumerate(machine.contacts)
+        for row, link in enumerate(machine.links)
+        if link.has_geometry and contact.names(link.name) and moves(machine, row) and not contact.may_touch
+    ]
+
+
+def watched_rows(machine: Machine) -> list[tuple[int, int]]:
+    """The rows of the links of each pair that must not meet."""
+    rows = [pair for pair in _may_not_touch(machine) if can_move_apart(machine, *pair)]
+    always = always_touching(machine.shape, rows, machine.random_places(POSES))
+    return [pair for pair, touch in zip(rows, always, strict=True) if not touch]
 
 
 def _voxel_for(machine: Machine) -> float:
@@ -66,25 +88,27 @@ def _may_not_touch(machine: Machine) -> list[tuple[int, int]]:
         (a, b)
         for a, b in combinations(bodies, 2)
         if not (names[a] in machine.unchecked_links and names[b] in machine.unchecked_links)
-        and a not in (_next_body(machine, b),)
+        and a not in (next_body(machine, b),)
         and not is_allowed(machine, names[a], names[b])
     ]
 
 
 def is_allowed(machine: Machine, one: str, other: str) -> bool:
-    """Whether a machine's `allowed_contacts` let two links touch; names there may hold wildcards.
+    """Whether a machine's `allowed_contacts` let two links touch, or its `own_links` say not to compare them.
 
     Args:
         machine: whose links.
         one, other: their names, in either order.
     """
+    if machine.own_links is not None and machine.own_links.has(one, other):
+        return True
     return any(
         (fnmatchcase(one, a) and fnmatchcase(other, b)) or (fnmatchcase(one, b) and fnmatchcase(other, a))
         for a, b in machine.allowed_contacts
     )
 
 
-def _next_body(machine: Machine, row: int) -> int:
+def next_body(machine: Machine, row: int) -> int:
     """The next link up the tree that has a body; -1: none."""
     parent = int(machine.tree.parent[row])
     while parent >= 0 and not machine.links[parent].has_geometry:
@@ -92,8 +116,13 @@ def _next_body(machine: Machine, row: int) -> int:
     return parent
 
 
-def _can_move_apart(machine: Machine, a: int, b: int) -> bool:
-    """Whether a joint lies between two links."""
+def can_move_apart(machine: Machine, a: int, b: int) -> bool:
+    """Whether a joint lies between two links.
+
+    Args:
+        machine: whose links.
+        a, b: their rows.
+    """
     return _stiff_with(machine, a) != _stiff_with(machine, b)
 
 
@@ -104,17 +133,19 @@ def _stiff_with(machine: Machine, row: int) -> int:
     return row
 
 
-def _pairs(skin: Skin, width: NDArray[np.float64], fields: Fields, rows: list[tuple[int, int]]) -> Pairs:
+def _pairs(skin: Skin, width: NDArray[np.float64], fields: Fields, bodies: Bodies) -> Pairs:
     """The kernels' pairs: samples of the link farther from the base, of which each cluster has a speed of its own.
 
-    But where the other link's field is much coarser, it gives the samples.
+    But where the other link's field is much coarser, it gives the samples; things give none.
 
     Args:
-        skin, width, fields: as of `Pairs`.
-        rows: of the links of each pair.
+        skin, width, fields, bodies: as of `Pairs`.
     """
+    rows = list(zip(bodies.one.tolist(), bodies.other.tolist(), strict=True))
     clusters = {row: np.flatnonzero(skin.link == row) for pair in rows for row in pair}
-    by_side = [(b, a) if fields.edge[a] <= COARSER * fields.edge[b] else (a, b) for a, b in rows]
+    by_side = [
+        (b, a) if clusters[b].size and fields.edge[a] <= COARSER * fields.edge[b] else (a, b) for a, b in rows
+    ]
     members = [clusters[sampled] for sampled, _ in by_side]
     return Pairs(
         skin=skin,
@@ -125,6 +156,7 @@ def _pairs(skin: Skin, width: NDArray[np.float64], fields: Fields, rows: list[tu
         doubt=np.array([skin.cover + slack_of(fields.edge[b]) for _, b in by_side]),
         pair=np.repeat(np.arange(len(rows)), [len(own) for own in members]),
         cluster=np.concatenate([np.zeros(0, dtype=np.int64), *members]),
+        bodies=bodies,
     )
 
 
@@ -144,17 +176,23 @@ def _skin(samples: BodySamples) -> tuple[Skin, NDArray[np.float64]]:
     return bare_skin(samples, points), width
 
 
-def _always_touch(machine: Machine, pairs: Pairs) -> NDArray[np.bool_]:
-    """Of each pair, whether its links lie in each other in all but a few poses."""
-    rng = np.random.default_rng(0)
-    joints = [machine.joint(name) for name in machine.joint_names]
-    lower = np.array([max(joint.lower, -np.pi) for joint in joints])
-    upper = np.array([min(joint.upper, np.pi) for joint in joints])
-    placed = machine.world_from_link_array(rng.uniform(lower, upper, (POSES, len(joints))))
-    touch = np.zeros(len(pairs.sampled))
-    gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
-    for pose in placed:
-        gaps_now(pairs, pose, gaps, least)
-        touch += least + pairs.doubt <= 0.0
-    always: NDArray[np.bool_] = touch >= ALWAYS * POSES
-    return always
+@kept
+def parts_of(shape: Shape) -> Skin:
+    """The parts of all links, as `cluster_speeds` takes what moves: a ball for each."""
+    boxes = boxes_of(shape)
+    _, first = np.unique(boxes.part, return_index=True)
+    none = np.zeros(0, dtype=np.int64)
+    return Skin(
+        points=np.zeros((0, 3), dtype=np.float32),
+        cluster_of=none,
+        start=none,
+        stop=none,
+        link=boxes.link[first],
+        centre=boxes.centre[first],
+        radius=np.linalg.norm(boxes.half[first], axis=1),
+        cover=0.0,
+        off=0.0,
+        triangles=np.zeros((0, 3, 3)),
+        patches=none,
+        patch_start=none,
+    )

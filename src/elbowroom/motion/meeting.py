@@ -7,15 +7,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.machine import Machine
+from elbowroom.machine.kernels.apart import apart_now
 from elbowroom.machine.kernels.body import FIXED
-from elbowroom.motion.contacts import pairs_of
+from elbowroom.machine.overlap import TOUCH_M
+from elbowroom.machine.things import with_things
+from elbowroom.motion.contacts import pairs_of, parts_of
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels.meeting import Pairs, Steps, first_meeting, gaps_now
+from elbowroom.motion.kernels.closing import Travelling
+from elbowroom.motion.kernels.meeting import Now, Pairs, Steps, first_meeting, gaps_now
 from elbowroom.motion.kernels.mover import Mover
 from elbowroom.motion.sweep import cluster_speeds
 
 STEP_IN_COVERS = 2.0
-"""No step along a way is shorter than what moves links by this; in covering radii of their samples."""
+"""No step of samples is shorter than what moves them by so many covering radii of samples."""
 TOGETHER = 1 / 64
 """Looks that lie nearer to each other than this share of the way are done at one place."""
 
@@ -35,31 +39,35 @@ class Meeting:
     """The links of a machine that must not meet, and how far apart they are now.
 
     Args:
-        machine: the machine.
+        machine: the machine, with things that stand still beside it.
         pairs: of its links.
         world_from_link: where they are, shape (n_links, 4, 4).
-        gaps, least: of `gaps_now`.
+        now: how far apart they are there.
     """
 
     machine: Machine
     pairs: Pairs
     world_from_link: NDArray[np.float64]
-    gaps: NDArray[np.float64]
-    least: NDArray[np.float64]
+    now: Now
 
     @classmethod
     def of(cls, machine: Machine, world_from_link: NDArray[np.float64]) -> Self:
         """At one place of the machine, whose links are there: shape (n_links, 4, 4)."""
-        pairs = pairs_of(machine.anywhere)
+        pairs, whole = pairs_of(machine.anywhere), with_things(machine)
+        things = np.tile(machine.world_from_base, (len(machine.contacts), 1, 1))
+        placed = np.concatenate([world_from_link, things]) if len(things) else world_from_link
+        apart = np.empty(len(pairs.sampled))
+        apart_now(pairs.bodies, placed, pairs.bodies.met, apart)
+        apart[apart <= TOUCH_M] = 0.0
         gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
-        gaps_now(pairs, world_from_link, gaps, least)
-        return cls(machine, pairs, world_from_link, gaps, least)
+        gaps_now(pairs, placed, gaps, least)
+        return cls(whole, pairs, placed, Now(apart, gaps, least))
 
     def first(self, way: Way, length: float) -> Met | None:
         """Where two links first come so near that they may touch; None: nowhere.
 
-        Links that are so near already may come nearer by as much as is in doubt about their distance, a centimetre
-        or so.
+        Exact to a millimetre for links that are apart now. Links that touch already may lie deeper in each other by as
+        much as is in doubt about their depth, a centimetre or so.
 
         Args:
             way: where the motion leads.
@@ -67,36 +75,50 @@ class Meeting:
         """
         if not self.pairs.sampled.size or length <= 0:
             return None
-        speeds = cluster_speeds(self.machine, self.pairs.skin, self.world_from_link, way)
-        by_link = np.zeros(len(self.machine.links))
-        np.maximum.at(by_link, self.pairs.skin.link, speeds)
-        mover = Mover(
-            self.machine.tree,
-            self.machine.world_from_base,
-            self.pairs.skin,
-            way.course,
-            self._closing(speeds, by_link, way),
-        )
-        steps = Steps(STEP_IN_COVERS * self.pairs.skin.cover, TOGETHER)
-        travel, member, place = first_meeting(mover, self.pairs, length, self.gaps, self.least, steps)
-        if member < 0:
+        rates = np.append(way.rates, 0.0)[self.machine.tree.column]
+        rates[self.machine.tree.kind == FIXED] = 0.0
+        moves_with = _moves_with(rates, self.machine.tree.parent)
+        bodies = self.pairs.bodies
+        moving = moves_with[bodies.one] != moves_with[bodies.other]
+        if not moving.any():
             return None
-        pair = self.pairs.pair[member]
-        rows = sorted((self.pairs.sampled[pair], self.pairs.other[pair]), key=lambda row: -by_link[row])
+        travel, pair, place = self._first(way, length, moving)
+        if pair < 0:
+            return None
+        rows = sorted((bodies.one[pair], bodies.other[pair]), reverse=True)
+        parent = self.machine.tree.parent
+        rows.sort(key=lambda row: parent[row] < 0 or moves_with[row] == moves_with[0])
         one, other = (self.machine.link_names[row] for row in rows)
         return Met(float(travel), one, other, place)
 
-    def _closing(
-        self, speeds: NDArray[np.float64], by_link: NDArray[np.float64], way: Way
-    ) -> NDArray[np.float64]:
-        """How fast the distance of each member of the pairs changes at most; 0 where both links move as one."""
-        pairs, tree = self.pairs, self.machine.tree
-        rates = np.append(way.rates, 0.0)[tree.column]
-        rates[tree.kind == FIXED] = 0.0
-        moves_with = np.arange(rates.size)
-        for row, parent in enumerate(tree.parent):
-            if parent >= 0 and rates[row] == 0.0:
-                moves_with[row] = moves_with[parent]
-        apart = moves_with[pairs.sampled] != moves_with[pairs.other]
-        closing: NDArray[np.float64] = speeds[pairs.cluster] + by_link[pairs.other][pairs.pair]
-        return closing * apart[pairs.pair]
+    def _first(
+        self, way: Way, length: float, moving: NDArray[np.bool_]
+    ) -> tuple[float, int, NDArray[np.float64]]:
+        """As `first_meeting`; `moving`: the pairs whose links move against each other, shape (pairs,)."""
+        machine, pairs, skin = self.machine, self.pairs, self.pairs.skin
+        speeds = cluster_speeds(machine, skin, self.world_from_link, way)
+        by_link = np.zeros(len(machine.links))
+        np.maximum.at(by_link, skin.link, speeds)
+        closing = (speeds[pairs.cluster] + by_link[pairs.other][pairs.pair]) * moving[pairs.pair]
+        mover = Mover(machine.tree, machine.world_from_base, skin, way.course, closing)
+        by_part = cluster_speeds(machine, parts_of(machine.shape), self.world_from_link, way)
+        parts = Travelling(machine.tree, machine.world_from_base, way.course, by_part)
+        steps = Steps(STEP_IN_COVERS * skin.cover, TOGETHER)
+        found: tuple[float, int, NDArray[np.float64]] = first_meeting(
+            mover, parts, pairs, length, self.now, steps
+        )
+        return found
+
+
+def _moves_with(rates: NDArray[np.float64], parent: NDArray[np.int64]) -> NDArray[np.int64]:
+    """For each link the first up the tree that it moves as one with.
+
+    Args:
+        rates: of the joint above each link, 0 where it does not move, shape (n_links,).
+        parent: of each link, -1 for none, shape (n_links,).
+    """
+    moves_with = np.arange(rates.size)
+    for row, above in enumerate(parent):
+        if above >= 0 and rates[row] == 0.0:
+            moves_with[row] = moves_with[above]
+    return moves_with

@@ -10,6 +10,7 @@ from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED, SLIDES
 from elbowroom.motion.course import Way
 from elbowroom.motion.kernels.mover import Skin, bound_speeds
+from elbowroom.motion.kernels.shared import WORDS, Shared
 from elbowroom.motion.kernels.sweep import Halvings, first_block
 from elbowroom.motion.kernels.volume import Volume, block, gather_corners
 from elbowroom.reconstruct.free_space import FreeSpace
@@ -41,7 +42,28 @@ def volume_of(space: FreeSpace) -> Volume:
     corners = np.empty_like(words)
     gather_corners(words, lattice, np.empty_like(words), corners)
     return Volume(
-        lattice, words, corners, cubes, space.surface_words, space.blind_words, space.disputed_words
+        lattice, words, corners, cubes, space.surface_words, space.blind_words, space.disputed_words, _none()
+    )
+
+
+def marked(volume: Volume) -> Volume:
+    """A volume whose words were changed, with what is known of its corners and cubes.
+
+    Args:
+        volume: of which only the words hold.
+    """
+    corners = np.empty_like(volume.words)
+    gather_corners(volume.words, volume.lattice, np.empty_like(volume.words), corners)
+    return volume._replace(corners=corners, cubes=(volume.words.reshape(-1, 64) != 0).any(axis=1))
+
+
+def _none() -> Shared:
+    """No voxel that a link reaches into at the start."""
+    return Shared(
+        np.zeros(0, dtype=np.int64),
+        np.zeros((0, 0), dtype=np.bool_),
+        np.zeros((0, WORDS), dtype=np.uint64),
+        True,
     )
 
 

@@ -21,6 +21,7 @@ then the first. No verdict at all is an error, since nothing seen means stop.
 | WATCH              | no: what is known comes from a camera that is elsewhere    |
 | SURFACE            | no                                                         |
 | MACHINE            | no                                                         |
+| KEPT_OUT           | no: a person said so                                       |
 | BLIND              | no: losing evidence never makes a block overridable        |
 | OUTSIDE_GRID       | no                                                         |
 | UNSEEN             | yes                                                        |
@@ -70,6 +71,7 @@ class Cause(Enum):
     OUTSIDE_GRID = "the machine would leave the watched space"
     MACHINE = "another part of the machine"
     UNSEEN = "nobody sees that space"
+    KEPT_OUT = "a zone that the machine is kept out of"
     NONE = "nothing"
     FAULT = "this program failed, so nothing is known"
     STALE = "what was seen is too old by now"
@@ -80,6 +82,37 @@ class Cause(Enum):
     def rank(self) -> int:
         """0 for a fault, rising to 4 for what was seen: the lower, the more cautious."""
         return {Cause.FAULT: 0, Cause.STALE: 1, Cause.INPUT: 2, Cause.WATCH: 3}.get(self, 4)
+
+
+@dataclass(frozen=True, slots=True)
+class Creep:
+    """How far an operator who holds on may creep into space that nobody sees, by the motion's own unit.
+
+    Args:
+        speed: of the joint, at most [per second].
+        braking_distance: S at that speed.
+        travel: from where the machine stands: to what ends the way beyond the unseen space, less `braking_distance`.
+        cause: what ends it there; NONE: nothing within the motion's reach, or a joint limit.
+        link, place_in_world: as of `Verdict`.
+    """
+
+    speed: float
+    braking_distance: float
+    travel: float
+    cause: Cause
+    link: str | None = None
+    place_in_world: tuple[float, float, float] | None = None
+
+    def row(self) -> dict[str, Any]:
+        """As a row has it."""
+        return {
+            "speed": self.speed,
+            "braking_distance": self.braking_distance,
+            "travel": self.travel,
+            "cause": self.cause.name.lower(),
+            "link": self.link,
+            "place_m": self.place_in_world,
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +131,9 @@ class Verdict:
         cause: what the block is. NONE also where a joint limit, not a block, ends the travel. FAULT, STALE, INPUT
             and WATCH are no blocks: whatever the space is, nothing may move.
         other_link: the link of the machine that `link` meets, where that ends the travel; None: it is none.
+        escapes: the motion leads out of blocked space that its links reach into where they stand, or along it.
+        zone: the zone that `link` is kept out of, where that ends the travel; None: it is none.
+        creep: of a stop by unseen space, how far an operator may creep (`with_creep`); None: not at all, or not asked.
     """
 
     motion: Motion | JointPath
@@ -108,6 +144,9 @@ class Verdict:
     place_in_world: tuple[float, float, float] | None
     cause: Cause
     other_link: str | None = None
+    escapes: bool = False
+    zone: str | None = None
+    creep: Creep | None = None
 
     @classmethod
     def stop(cls, motion: Motion | JointPath, free_travel_unit: str, cause: Cause) -> Self:
@@ -151,6 +190,9 @@ class Verdict:
             "link": self.link,
             "place_m": self.place_in_world,
             "other_link": self.other_link,
+            "escapes": self.escapes,
+            "zone": self.zone,
+            "creep": None if self.creep is None else self.creep.row(),
         }
 
 

@@ -61,7 +61,7 @@ def candidates_of(
 ) -> tuple[Candidate, ...]:
     """Every kind of sensor at every mount with every aim, as the site's key `placement` says.
 
-    Where it lists no mounts, they are along the walls every half metre at 2.4 m and on the ceiling.
+    Where it lists no mounts, they are along the walls every half metre at 2.4 and 0.4 m and on the ceiling.
 
     Args:
         site: the file.

@@ -88,7 +88,7 @@ class FixedRoom:
             return cls(tuple(solids), (), INNER_WALLS_M)
         room = _read(entry, beside, box_m)
         for one in room.objects:
-            (solids if one.is_solid else surfaces).append(_static(one.name, one.mesh))
+            (solids if one.is_solid else surfaces).append(_static(one.name, one.mesh, one.is_solid))
         if walls is None and room.objects:
             corners = np.concatenate([one.mesh.vertices for one in room.objects])
             walls = np.array([corners.min(axis=0), corners.max(axis=0)])
@@ -171,8 +171,8 @@ def clear_sight(
     return ~scene.occluded(np.zeros_like(rays), rays, np.ones(len(rays)))
 
 
-def _static(name: str, mesh: Mesh) -> Solid:
-    return Solid(name, mesh, np.eye(4), is_static=True)
+def _static(name: str, mesh: Mesh, has_inside: bool = True) -> Solid:
+    return Solid(name, mesh, np.eye(4), is_static=True, has_inside=has_inside)
 
 
 def _shell(walls: NDArray[np.float64]) -> list[Solid]:

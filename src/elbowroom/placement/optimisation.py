@@ -40,6 +40,7 @@ class Goal:
         share_pct: share of valid points [%]; used if `cameras` is None.
         cameras: number of cameras, those that are there already among them; None: as few or cheap as can be.
         by_price: the cheapest layout rather than the one of fewest cameras.
+        by_motions: in scenes, the share is of what the motions sweep (`optimise_in_use`).
 
     Raises:
         InputError: a share that is none, fewer than one camera, or both price and number.
@@ -48,6 +49,7 @@ class Goal:
     share_pct: float = 98.9
     cameras: int | None = None
     by_price: bool = False
+    by_motions: bool = False
 
     def __post_init__(self) -> None:
         if not 0 < self.share_pct <= 100:

@@ -217,7 +217,11 @@ def _scene(
 
 
 def evidence_by_camera(
-    cameras: Sequence[DepthCamera], moment: Moment, settings: Settings, seed: int
+    cameras: Sequence[DepthCamera],
+    moment: Moment,
+    settings: Settings,
+    seed: int,
+    focus: NDArray[np.bool_] | None = None,
 ) -> list[Evidence]:
     """What each camera knows of a scene as `reconstruct` carves it; merged, it is what `reconstruct` decides by.
 
@@ -226,6 +230,7 @@ def evidence_by_camera(
         moment: the scene.
         settings: how space is declared free.
         seed: of the sensors' noise.
+        focus: blocks that are asked, as of `blocks_in_reach`; None: all.
     """
     frames = render(cameras, moment, seed=seed)
     grid, terms, images = settings.grid, settings.terms, room_images(cameras, frames)
@@ -237,6 +242,7 @@ def evidence_by_camera(
             explained,
             terms,
             complete=terms.needs_counts,
+            focus=focus,
         )
         for camera in cameras
     ]

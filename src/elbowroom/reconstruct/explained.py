@@ -7,12 +7,19 @@ from elbowroom.reconstruct.images import RoomImages
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.sensing import Snapshot
 
+TOLERANCE_SIGMAS = 5.5
+"""What is explained lies within so many sigmas of the model, besides the tolerance."""
 NOTHING = Explained({}, None)
 """Of a bare room."""
 
 
 def explain(
-    grid: VoxelGrid, machine: Machine | None, images: RoomImages, snapshot: Snapshot, terms: Terms
+    grid: VoxelGrid,
+    machine: Machine | None,
+    images: RoomImages,
+    snapshot: Snapshot,
+    terms: Terms,
+    sigmas: float = TOLERANCE_SIGMAS,
 ) -> Explained:
     """Which pixels show the machine, and what else was seen near its body.
 
@@ -22,6 +29,7 @@ def explain(
         images: of the room's cameras.
         snapshot: says where the machine was at the time of each image.
         terms: the tolerance, and by how much the body is grown.
+        sigmas: of the tolerance.
 
     Raises:
         InputError: a machine, and nobody knows where it is.
@@ -38,6 +46,7 @@ def explain(
         [images.least_m[camera.name] for camera in seen],
         [snapshot.joints_of.get(camera.name, snapshot.joints) for camera in seen],
         tolerance_m=terms.explain_tolerance_m,
+        tolerance_sigmas=sigmas,
         grid=grid,
         growth_m=terms.body_growth_m,
     )

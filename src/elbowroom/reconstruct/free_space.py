@@ -41,6 +41,9 @@ class FreeSpace:
         blind_words: blocked, disputed by a camera that delivered nothing valid there.
         disputed_words: blocked, and a camera that looks there could not say "through", for whatever reason.
         body_words: made free because the machine's own grown body covers it.
+        declared: for each of the machine's contacts, what is free for the links that may be near its thing; none: the
+            space was not made of images.
+        looked_at: blocks of 4 voxels that cameras were asked of, bool, in the planes' order; None: all.
         source: what it was made of, for `explain` and for looking again; None: it comes from elsewhere, or was let go
             of.
     """
@@ -52,6 +55,8 @@ class FreeSpace:
     disputed_words: Words
     body_words: Words = field(default_factory=lambda: np.zeros(0, dtype=np.uint64))
     source: Source | None = None
+    looked_at: NDArray[np.bool_] | None = None
+    declared: tuple[Words, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("free_words", "surface_words", "blind_words", "disputed_words", "body_words"):
@@ -94,6 +99,8 @@ class FreeSpace:
             self.disputed_words & keep,
             self.body_words | body,
             self.source,
+            self.looked_at,
+            self.declared,
         )
 
     @property

@@ -11,6 +11,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.contradiction.findings import contradictions
 from elbowroom.reconstruct.free_space import FreeSpace
+from elbowroom.reconstruct.nothing_seen import nothing_seen
 from elbowroom.sensing import DepthFrame
 from elbowroom.sensing.values import look_at_images, look_at_setting
 
@@ -33,7 +34,8 @@ def found_at(
     units_m: Mapping[str, float | None] | None = None,
     margin: Margin | None = None,
 ) -> tuple[Finding, ...]:
-    """All that is found at one moment: lenses and places, then images, then what cameras contradict each other in.
+    """All that is found at one moment: lenses and places, images, what cameras contradict each other in, and whether
+    anything ends in the grid.
 
     Where one of these stops, the next are not asked: what they would say follows from it.
 
@@ -47,7 +49,8 @@ def found_at(
     if any(finding.stops for finding in setting):
         return setting
     found = (*setting, *look_at_images(grid, cameras, frames, units_m))
-    return (*found, *contradictions(cameras, frames, margin or Margin(), found))
+    found = (*found, *contradictions(cameras, frames, margin or Margin(), found))
+    return (*found, *nothing_seen(grid, cameras, frames, margin, found))
 
 
 def require_plausible(

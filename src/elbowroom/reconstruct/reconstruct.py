@@ -15,6 +15,7 @@ from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.reconstruct.ages import aged_m
 from elbowroom.reconstruct.carve import carve_images
+from elbowroom.reconstruct.declared import declared_words
 from elbowroom.reconstruct.explained import explain
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.images import frames_by_camera, room_images
@@ -147,7 +148,13 @@ def free_space_of(
         evidence = carve_images(grid, images, explained, terms, complete=terms.needs_counts, focus=focus)
     with stage("resolve"):
         space = decide(evidence, cameras, machine, fresh.joints_at_newest, terms)
-    return replace(space, source=ImageSource(images, explained.model_depth, terms, space.free_words, focus))
+    source = ImageSource(images, explained.model_depth, terms, space.free_words, focus)
+    space = replace(space, source=source, looked_at=focus)
+    if machine is None or not machine.contacts:
+        return space
+    with stage("contacts"):
+        near = declared_words(grid, cameras, images, fresh, machine, terms, focus)
+    return replace(space, declared=near)
 
 
 @contextmanager

@@ -94,6 +94,7 @@ def _put_pose_and_lens(record: np.record, camera: DepthCamera) -> None:
         record[name] = getattr(camera.intrinsics, name)
     record["width"], record["height"] = camera.width, camera.height
     record["radial"] = camera.depth_kind == "radial"
+    record["flies"] = bool(camera.flying_pixels)
 
 
 def _put_margin(record: np.record, camera: DepthCamera, margin: Margin, grid: VoxelGrid) -> None:

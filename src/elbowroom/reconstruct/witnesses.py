@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import lru_cache, reduce
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
+from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.reconstruct.evidence import Evidence, merge
@@ -38,9 +38,19 @@ def witnesses(
     away = np.linalg.norm((places[:, None] + places[None, :]) / 2 - (lower + upper) / 2, axis=2)
     seen_from = np.maximum(away, np.linalg.norm(upper - lower) / 2)
     near = apart < np.radians(angle_deg) * seen_from
-    count, group = connected_components(near, directed=False)
-    members = (tuple(np.flatnonzero(group == number).tolist()) for number in range(count))
-    return tuple(those for those in members if len(those) > 1)
+    members = {tuple(np.flatnonzero(row).tolist()) for row in _reached(near)}
+    return tuple(sorted(those for those in members if len(those) > 1))
+
+
+def _reached(near: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Who is one with whom, also by others between them, bool (N, N); near: who is beside whom, and itself.
+
+    (`scipy.sparse.csgraph` has this, and takes a quarter of the time to the first free space to load.)
+    """
+    reached = near
+    while (farther := reached @ near).sum() > reached.sum():
+        reached = farther
+    return reached
 
 
 def as_one(parts: Sequence[Evidence], counted: bool) -> Evidence:

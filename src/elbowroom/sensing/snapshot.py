@@ -1,7 +1,7 @@
 """What came at one moment: frames, and where the machine was, asked once where frames come in."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 from elbowroom.errors import InputError
@@ -22,12 +22,15 @@ class Snapshot:
             nobody knows.
         joints_of: by camera, where the machine was at the time of its frame; a camera that is missing: as `joints`.
         now_ns: the time now [ns, the clock of the frames]; None: nothing has a time.
+        clock_bounds_ns: by camera, how much older its frame may be than its stamp says, since its clock is known no
+            better [ns]; a camera that is missing: not at all. It is part of every age.
     """
 
     frames: tuple[DepthFrame, ...]
     joints: Positions | None = None
     joints_of: Mapping[str, Positions] = field(default_factory=dict)
     now_ns: int | None = None
+    clock_bounds_ns: Mapping[str, int] = field(default_factory=dict)
 
     @classmethod
     def taken(
@@ -84,8 +87,8 @@ class Snapshot:
         Raises:
             InputError: an age limit without the time now, or one below zero.
         """
-        kept = young_enough(self.frames, self.now_ns, max_age_ns)
-        return type(self)(tuple(kept), self.joints, self.joints_of, self.now_ns)
+        kept = young_enough(self.frames, self.now_ns, max_age_ns, self.clock_bounds_ns)
+        return replace(self, frames=tuple(kept))
 
     @property
     def moment_ns(self) -> int | None:
@@ -102,12 +105,22 @@ class Snapshot:
     @property
     def oldest_age_ms(self) -> float | None:
         """Age of the oldest frame [ms]; None: no frame has a time, or nobody knows the time now."""
+        bounds = self.clock_bounds_ns
+        earliest = [f.stamp_ns - bounds.get(f.camera, 0) for f in self.frames if f.stamp_ns is not None]
+        return (self.now_ns - min(earliest)) / 1e6 if earliest and self.now_ns is not None else None
+
+    @property
+    def skew_ms(self) -> float | None:
+        """Between the stamps of the oldest and the newest frame [ms]; None: fewer than two have one."""
         stamps = [frame.stamp_ns for frame in self.frames if frame.stamp_ns is not None]
-        return (self.now_ns - min(stamps)) / 1e6 if stamps and self.now_ns is not None else None
+        return (max(stamps) - min(stamps)) / 1e6 if len(stamps) > 1 else None
 
 
 def young_enough(
-    frames: Sequence[DepthFrame], now_ns: int | None, max_age_ns: int | None
+    frames: Sequence[DepthFrame],
+    now_ns: int | None,
+    max_age_ns: int | None,
+    clock_bounds_ns: Mapping[str, int] | None = None,
 ) -> list[DepthFrame]:
     """The frames within their age limit: neither older, nor so far ahead of the clock, nor without a time.
 
@@ -115,17 +128,23 @@ def young_enough(
         frames: of any cameras.
         now_ns: the time now [ns, the clock of the frames].
         max_age_ns: the limit [ns]; None: every frame is young enough.
+        clock_bounds_ns: as of `Snapshot`; None: of no camera.
 
     Raises:
         InputError: an age limit without the time now, or one below zero.
     """
     if max_age_ns is None:
         return list(frames)
+    bounds = clock_bounds_ns or {}
     if now_ns is None:
         raise InputError("max_age_ns: an age limit needs the time, give now_ns")
     if max_age_ns < 0:
         raise InputError(f"max_age_ns: is {max_age_ns}, must be at least 0")
-    return [f for f in frames if f.stamp_ns is not None and abs(now_ns - f.stamp_ns) <= max_age_ns]
+    return [
+        f
+        for f in frames
+        if f.stamp_ns is not None and abs(now_ns - f.stamp_ns) + bounds.get(f.camera, 0) <= max_age_ns
+    ]
 
 
 def _asked(joints: JointRecord, frame: DepthFrame) -> Positions:

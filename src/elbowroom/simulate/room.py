@@ -55,6 +55,11 @@ class InterventionRoom:
         fixtures = tuple(s for s in room_furniture() if people or s.name != "patient") if furniture else ()
         self._static: tuple[Solid, ...] = shell() + fixtures
 
+    @property
+    def solids(self) -> tuple[Solid, ...]:
+        """What never moves: walls, floor, ceiling, furniture."""
+        return self._static
+
     def at(
         self,
         time_s: float,

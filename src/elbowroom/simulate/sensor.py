@@ -9,6 +9,7 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.parallel import spread
 from elbowroom.sensing import DepthFrame, NoiseModel
+from elbowroom.simulate.inside import check_outside
 from elbowroom.simulate.kernels import sensor as kernels
 from elbowroom.simulate.range_image import RangeImage, range_image
 from elbowroom.simulate.solid import Moment
@@ -47,7 +48,7 @@ def render(
             0.03 % was measured.
 
     Raises:
-        InputError: a share outside 0 to 1, a seed below 0.
+        InputError: a share outside 0 to 1, a seed below 0, a camera inside a solid that never moves.
         CameraError: a lens model that folds back within the image.
     """
     for name, share in (("flying_pixels", flying_pixels), ("missing", missing)):
@@ -55,6 +56,7 @@ def render(
             raise InputError(f"render: {name} is {share}, must be a share from 0 to 1")
     if seed < 0:
         raise InputError(f"render: seed is {seed}, must be 0 or more")
+    check_outside(cameras, moment.static_solids)
 
     def one(camera: DepthCamera) -> DepthFrame:
         image = range_image(camera, moment)

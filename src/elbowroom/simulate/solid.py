@@ -62,6 +62,7 @@ class Solid:
         is_static: never moves; such solids are the same objects in every moment of a room.
         is_dark: reflects little, so that a sensor often gets no return from it.
         colour: red, green, blue for pictures, 0 to 1, linear; None: grey.
+        has_inside: False: a mesh that is not closed, or closed about the room itself: cameras may be within it.
     """
 
     name: str
@@ -71,6 +72,7 @@ class Solid:
     is_static: bool = False
     is_dark: bool = False
     colour: tuple[float, float, float] | None = None
+    has_inside: bool = True
 
     def __post_init__(self) -> None:
         pose = np.array(self.world_from_solid, dtype=np.float64)

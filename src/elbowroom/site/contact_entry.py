@@ -1,14 +1,19 @@
 """What a machine may touch and what it carries, as a site file describes it."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from elbowroom.machine import Machine, Part, Stand
-from elbowroom.site.entry import Entry, Matrix, Point, Positive, Text
+from elbowroom.errors import SiteError
+from elbowroom.machine import Contact, Machine, Part, Stand, Zone
+from elbowroom.machine.contact import NEAR_M
+from elbowroom.machine.ways import never_out_of
+from elbowroom.site.entry import Entry, Flag, Matrix, Point, Positive, Text
 from elbowroom.site.paths import expand
+from elbowroom.site.ranges import MILLIMETRES, up_to
 
 
 class StandEntry(Entry):
@@ -25,6 +30,82 @@ class StandEntry(Entry):
             MachineError: it has no inside.
         """
         return Stand.box(self.links, self.lower_m, self.upper_m)
+
+
+class ZoneOfContact(Entry):
+    """The box in which links may be near a thing."""
+
+    lower_m: Point
+    upper_m: Point
+
+
+class ContactEntry(Entry):
+    """A fixed thing of the room that some links may be near: a box, or a mesh at a place."""
+
+    name: Text
+    links: Annotated[tuple[Text, ...], Field(min_length=1)]
+    lower_m: Point | None = None
+    upper_m: Point | None = None
+    mesh: Text | None = None
+    world_from_mesh: Matrix | None = None
+    near_m: Annotated[Positive, up_to(1.0, "m", MILLIMETRES)] = NEAR_M
+    zone: ZoneOfContact | None = None
+    may_touch: Flag = False
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> "ContactEntry":
+        box = self.lower_m is not None and self.upper_m is not None
+        if (self.lower_m is None) != (self.upper_m is None) or box == (self.mesh is not None):
+            raise ValueError("either lower_m and upper_m, or mesh")
+        if self.world_from_mesh is not None and self.mesh is None:
+            raise ValueError("world_from_mesh only with mesh")
+        return self
+
+    def build(self, beside: Path) -> Contact:
+        """The contact.
+
+        Args:
+            beside: the site file's folder.
+
+        Raises:
+            MachineError: a box without an inside, a zone without one, or a mesh that is not usable.
+            SiteError: a path that is none.
+        """
+        zone = None if self.zone is None else np.array([self.zone.lower_m, self.zone.upper_m])
+        if self.mesh is None:
+            assert self.lower_m is not None and self.upper_m is not None
+            made = Contact.box(self.name, self.links, self.lower_m, self.upper_m)
+        else:
+            made = Contact.from_mesh_file(
+                self.name, self.links, expand(self.mesh, beside), self.world_from_mesh
+            )
+        return replace(made, near_m=self.near_m, zone=zone, may_touch=self.may_touch)
+
+
+def require_protected(machine: Machine) -> None:
+    """Refuses contacts and stands that a moving link never leaves.
+
+    Args:
+        machine: with what it may touch.
+
+    Raises:
+        SiteError: there is one; says what would be unprotected.
+    """
+    for contact in machine.contacts:
+        covered = never_out_of(machine, contact.is_near, contact.names)
+        if covered:
+            raise SiteError(
+                f"contacts: {contact.name}: covers the whole way of {', '.join(covered)}: wherever these links go, "
+                "what lies close to it would be taken for it; name fewer links, a smaller near_m or a zone"
+            )
+    for stand in machine.stands:
+        inside = Zone.box("stand", "kept_out", stand.lower_m, stand.upper_m).has
+        covered = never_out_of(machine, inside, stand.names)
+        if covered:
+            raise SiteError(
+                f"stands_on: {stand}: covers the whole way of {', '.join(covered)}: wherever these links go, "
+                "nothing would stop them, a hand neither; name fewer links or a smaller box"
+            )
 
 
 class PartEntry(Entry):

@@ -15,8 +15,11 @@ from elbowroom.errors import MachineWarning, SiteError
 from elbowroom.machine import Joint, Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.machine.joint_state import JointTolerance
-from elbowroom.motion import Motion, braking_distance
-from elbowroom.site.contact_entry import PartEntry, StandEntry
+from elbowroom.machine.own_links import OwnLinks
+from elbowroom.machine.together import Member
+from elbowroom.motion import Motion, Override, braking_distance
+from elbowroom.motion.creep import REDUCED_SPEED_M_S, SHARE_OF_FULL_SPEED
+from elbowroom.site.contact_entry import ContactEntry, PartEntry, StandEntry, require_protected
 from elbowroom.site.entry import Entry, Flag, Matrix, NotNegative, Number, Positive, Text
 from elbowroom.site.paths import existing_folder, expand
 from elbowroom.site.ranges import MILLIMETRES, MILLISECONDS, MM_A_SECOND, up_to
@@ -29,8 +32,9 @@ class MachineEntry(Entry):
     """The machine: one that ships with the package, or a URDF; where its base stands; links not to check.
 
     `explain_tolerance_m` is how far from its model a measured point may lie and still be the machine itself, and
-    `explain_with` says which geometry that model is. `allowed_contacts` are pairs of links that may touch, `stands_on`
-    boxes of the room that some links may touch, `carries` parts that it holds. `limit_tolerance_deg` and
+    `explain_with` says which geometry that model is. `allowed_contacts` are pairs of links that may touch; `own_links`
+    or `srdf` is a file that names pairs that are not compared. `stands_on` are boxes of the room that some links may
+    touch, `contacts` fixed things that some may be near, `carries` parts that it holds. `limit_tolerance_deg` and
     `limit_tolerance_mm` are how far a joint may be said to be beyond a limit, `package_dirs` folders of packages,
     `without_body` links whose geometry is left out.
     On a `free_base` the machine drives or floats, and where it stands is among its joint positions.
@@ -43,7 +47,10 @@ class MachineEntry(Entry):
     explain_tolerance_m: Annotated[Positive, up_to(0.5, "m", MILLIMETRES)] | None = None
     explain_with: ExplainWith = "auto"
     allowed_contacts: tuple[tuple[Text, Text], ...] = ()
+    own_links: Text | None = None
+    srdf: Text | None = None
     stands_on: tuple[StandEntry, ...] = ()
+    contacts: tuple[ContactEntry, ...] = ()
     carries: tuple[PartEntry, ...] = ()
     free_base: Literal["planar", "floating"] | None = None
     package_dirs: tuple[Text, ...] = ()
@@ -60,6 +67,8 @@ class MachineEntry(Entry):
         own = sorted(self.model_fields_set & set(OF_A_URDF))
         if self.builtin is not None and own:
             raise ValueError(f"{own[0]} only with urdf")
+        if self.own_links is not None and self.srdf is not None:
+            raise ValueError("either own_links or srdf, not both")
         return self
 
     @property
@@ -80,12 +89,31 @@ class MachineEntry(Entry):
         Raises:
             SiteError, MachineError: a URDF, a link or a pose that is not usable.
         """
-        machine = self._bare(beside)
+        machine = self._bare(beside).comparing(self._own_links(beside))
         for part in self.carries:
             machine = part.on(machine, beside)
-        return machine.allowing(*self.allowed_contacts).standing_on(
-            *(stand.build() for stand in self.stands_on)
-        )
+        machine = machine.allowing(*self.allowed_contacts)
+        machine = machine.standing_on(*(stand.build() for stand in self.stands_on))
+        machine = machine.near(*(contact.build(beside) for contact in self.contacts))
+        require_protected(machine)
+        return machine
+
+    def standing(self, beside: Path) -> Machine:
+        """The machine at its place, on its free base if it has one.
+
+        Args:
+            beside: the site file's folder.
+
+        Raises:
+            SiteError, MachineError: as `build`.
+        """
+        machine = self.build(beside)
+        return machine if self.free_base is None else machine.with_free_base(self.free_base)
+
+    def _own_links(self, beside: Path) -> OwnLinks | None:
+        if self.own_links is not None:
+            return OwnLinks.from_yaml(expand(self.own_links, beside))
+        return None if self.srdf is None else OwnLinks.from_srdf(expand(self.srdf, beside))
 
     def _bare(self, beside: Path) -> Machine:
         base = None if self.world_from_base is None else np.array(self.world_from_base)
@@ -106,6 +134,24 @@ class MachineEntry(Entry):
                 explain_with=self.explain_with,
             )
         return replace(machine, tolerance=self.tolerance)
+
+
+class MemberEntry(MachineEntry):
+    """One of several machines: its name stands before its links', its `joint_prefix` before its joints'."""
+
+    name: Annotated[Text, Field(pattern=r"^[^/*?\[\]]+$")]
+    joint_prefix: Annotated[str, Field(max_length=1000)] = ""
+
+    def member(self, beside: Path) -> Member:
+        """The machine at its place, with its name.
+
+        Args:
+            beside: the site file's folder.
+
+        Raises:
+            SiteError, MachineError: as `build`.
+        """
+        return Member(self.name, self.standing(beside), self.joint_prefix)
 
 
 def _as_xacro(value: str | float | bool) -> str:
@@ -140,6 +186,21 @@ class JointEntry(Entry):
             return math.radians(self.max_speed_deg_s)
         does, key = ("slides", "max_speed_m_s") if joint.unit == "m" else ("turns", "max_speed_deg_s")
         raise SiteError(f"joints.{joint.name}: {joint.name} {does}, its speed is written {key}")
+
+
+class OverrideEntry(Entry):
+    """How fast an operator who holds on may creep where nobody sees: of the fastest point, and of full speed."""
+
+    max_speed_mm_s: Annotated[Positive, up_to(1000, "mm/s")] = 1e3 * REDUCED_SPEED_M_S
+    share_of_full_speed: Annotated[Number, Field(gt=0, le=1)] = SHARE_OF_FULL_SPEED
+
+    def build(self, speeds: Mapping[str, float]) -> Override:
+        """The override.
+
+        Args:
+            speeds: full speeds of the joints by name [m/s or rad/s].
+        """
+        return Override(self.max_speed_mm_s / 1e3, self.share_of_full_speed, speeds)
 
 
 def motions_of(machine: Machine, joints: Mapping[str, JointEntry]) -> tuple[Motion, ...]:

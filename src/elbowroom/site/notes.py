@@ -3,6 +3,7 @@
 from elbowroom.site.machine_notes import notes_of_machine
 from elbowroom.site.recording_entry import SevenScenes
 from elbowroom.site.site import Site
+from elbowroom.site.zone_notes import notes_of_zones
 
 
 def notes_of(site: Site) -> tuple[str, ...]:
@@ -32,6 +33,7 @@ def notes_of(site: Site) -> tuple[str, ...]:
             notes.append(f"links that are not checked: {', '.join(machine.unchecked_links)}")
         notes += notes_of_machine(machine, site)
         notes += machine.allowances
+        notes += notes_of_zones(machine, site.grid())
         if machine.as_seen is not machine:
             seen = ", ".join(link.name for link in machine.links if link.seen is not None)
             notes.append(
@@ -41,6 +43,11 @@ def notes_of(site: Site) -> tuple[str, ...]:
         if without:
             notes.append(f"joints without a speed, whose motions are not checked: {', '.join(without)}")
     notes += _masks(site)
+    if entry.gate is not None and entry.gate.modbus is not None and entry.gate.modbus.is_open:
+        host, port = entry.gate.modbus.host, entry.gate.modbus.port
+        notes.append(
+            f"gate: whoever reaches {host}:{port} can read what the machine may do, by the site's word"
+        )
     if isinstance(entry.recording, SevenScenes):
         notes.append("each frame is a camera of its own, all at one moment: the room must not have changed")
         if entry.recording.exclude:

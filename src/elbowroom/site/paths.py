@@ -75,6 +75,18 @@ def existing_folder(text: str, beside: Path) -> Path:
     return folder
 
 
+def existing_bag(text: str, beside: Path) -> Path:
+    """As `expand`, and there must be a folder or a file of that name.
+
+    Raises:
+        SiteError: there is none.
+    """
+    place = expand(text, beside)
+    if not place.exists():
+        raise SiteError(f"no folder or file {place} (written {text}); correct the path or fetch the bag")
+    return place
+
+
 def inside(folder: Path, text: str) -> str:
     """`text` if it is a relative path or pattern that stays within a folder.
 

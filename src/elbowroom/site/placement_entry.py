@@ -36,7 +36,7 @@ class AlongEntry(Entry):
     """Mounts at equal distances along the walls at some heights, on the ceiling, and on the room's mesh."""
 
     wall_spacing_m: Annotated[Positive, up_to(50, "m", MILLIMETRES)] | None = None
-    heights_m: tuple[Annotated[Number, up_to(100, "m", MILLIMETRES)], ...] = (2.4,)
+    heights_m: tuple[Annotated[Number, up_to(100, "m", MILLIMETRES)], ...] = (2.4, 0.4)
     ceiling_spacing_m: Annotated[Positive, up_to(50, "m", MILLIMETRES)] | None = None
     mesh_count: Count | None = None
 

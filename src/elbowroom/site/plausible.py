@@ -4,10 +4,13 @@ import math
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
 
+import numpy as np
+from numpy.typing import NDArray
+
 from elbowroom.errors import SiteError
 from elbowroom.finding import Finding
 from elbowroom.sensing.values.place import distance_m, unit_of_length
-from elbowroom.site.machine_entry import JointEntry
+from elbowroom.site.machine_entry import JointEntry, MachineEntry
 from elbowroom.site.paths import expand
 from elbowroom.site.site import Site
 
@@ -58,9 +61,19 @@ def _is_turns(speed: float) -> bool:
 
 
 def _urdf_speeds(site: Site) -> Mapping[str, float]:
-    """What a URDF says of its turning joints' speeds [rad/s]; nothing where it cannot be read, which others say."""
-    machine = site.entry.machine
-    if machine is None or machine.urdf is None or not site.entry.joints:
+    """What URDFs say of turning joints' speeds [rad/s]; nothing where one cannot be read, which others say."""
+    if not site.entry.joints:
+        return {}
+    alone = dict(_speeds_of(site, site.entry.machine)) if site.entry.machine is not None else {}
+    return alone | {
+        machine.joint_prefix + name: speed
+        for machine in site.entry.machines
+        for name, speed in _speeds_of(site, machine).items()
+    }
+
+
+def _speeds_of(site: Site, machine: MachineEntry) -> Mapping[str, float]:
+    if machine.urdf is None:
         return {}
     try:
         root = ET.parse(expand(machine.urdf, site.path.parent)).getroot()
@@ -80,11 +93,25 @@ def _urdf_speeds(site: Site) -> Mapping[str, float]:
 
 
 def _base(site: Site) -> Iterator[Finding]:
-    given = site.entry.machine.world_from_base if site.entry.machine is not None else None
-    machine = site.machine()
-    if given is None or machine is None:
+    machine, entries = site.machine(), site.entry.machines
+    if machine is None:
         return
-    grid, place = site.grid(), machine.world_from_base[:3, 3]
+    if site.entry.machine is not None and site.entry.machine.world_from_base is not None:
+        yield from _far_base(site, machine.name, machine.world_from_base[:3, 3])
+    for entry in entries:
+        if entry.world_from_base is not None:
+            yield from _far_base(site, entry.name, np.array(entry.world_from_base)[:3, 3])
+
+
+def _far_base(site: Site, name: str, place: NDArray[np.float64]) -> Iterator[Finding]:
+    """A base that stands metres away from the grid.
+
+    Args:
+        site: the file.
+        name: of the machine.
+        place: of its base, shape (3,) [m].
+    """
+    grid = site.grid()
     away = distance_m(grid, place)
     if away <= FAR_M:
         return
@@ -94,5 +121,5 @@ def _base(site: Site) -> Iterator[Finding]:
         if unit
         else "check world_from_base"
     )
-    text = f"machine {machine.name}: its base stands {away:.4g} m from the grid; {likely}"
-    yield Finding(PLACE, (machine.name,), text, stops=bool(unit))
+    text = f"machine {name}: its base stands {away:.4g} m from the grid; {likely}"
+    yield Finding(PLACE, (name,), text, stops=bool(unit))

@@ -1,4 +1,4 @@
-"""Recordings as a site file describes them: three ways in which people lay out depth images."""
+"""Recordings as a site file describes them: three ways in which people lay out depth images, and bags of ROS 2."""
 
 from typing import Annotated, Literal
 
@@ -62,4 +62,32 @@ class SevenScenes(Entry):
         return self
 
 
-RecordingEntry = Annotated[StampedFolder | StamplessFolder | SevenScenes, Field(discriminator="layout")]
+class BagRecording(Entry):
+    """A bag of ROS 2: the folder of `ros2 bag record`, or an MCAP file. `elbowroom site from-bag` writes this.
+
+    `topics` gives each camera its topic of depth images (sensor_msgs/Image of 16UC1 or 32FC1, or the transport
+    compressedDepth). Joints come from `joint_topics`, in radians unless `angle_unit` says otherwise. Images of
+    different cameras make one moment if they lie within `max_skew_ms` of each other. Nothing is known between two
+    positions of a joint that are farther apart than `max_joint_gap_ms`.
+    """
+
+    layout: Literal["bag"]
+    file: Text
+    topics: dict[Text, Text] = Field(min_length=1)
+    joint_topics: tuple[Text, ...] = ("/joint_states",)
+    angle_unit: Literal["rad", "deg"] = "rad"
+    max_skew_ms: NotNegative = 50.0
+    max_joint_gap_ms: Positive = 500.0
+
+    @model_validator(mode="after")
+    def _each_its_own(self) -> "BagRecording":
+        topics = list(self.topics.values())
+        doubled = sorted({topic for topic in topics if topics.count(topic) > 1})
+        if doubled:
+            raise ValueError(f"topics that are each one camera's; {doubled[0]} is there more than once")
+        return self
+
+
+RecordingEntry = Annotated[
+    StampedFolder | StamplessFolder | SevenScenes | BagRecording, Field(discriminator="layout")
+]

@@ -12,13 +12,15 @@ from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, PEOPLE_SPEED_M_S, WITNES
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text, Whole
-from elbowroom.site.machine_entry import JointEntry, MachineEntry
+from elbowroom.site.gate_entry import GateEntry
+from elbowroom.site.machine_entry import JointEntry, MachineEntry, MemberEntry, OverrideEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.placement_entry import PlacementEntry
 from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, speed_of_people, up_to
 from elbowroom.site.recording_entry import RecordingEntry, SevenScenes
 from elbowroom.site.room_entry import RoomEntry
 from elbowroom.site.watch_entry import WatchEntry
+from elbowroom.site.zone_entry import ZoneEntry
 
 LARGEST_ROOM_M = 500.0
 Fov = Annotated[Number, Field(gt=10, lt=170)]
@@ -74,7 +76,7 @@ class SimulatedEntry(Entry):
         tuple[Annotated[Number, Field(gt=0, le=2.9)], ...],
         BeforeValidator(lambda given: given if isinstance(given, list | tuple) else [given]),
         Field(min_length=1),
-    ] = (2.4,)
+    ] = (2.4, 0.4)
     resolution: Annotated[Text, Field(pattern=r"^[0-9]{1,5}x[0-9]{1,5}$")] = "640x480"
     field_of_view_deg: Fov = 90.0
     seed: Annotated[Whole, Field(ge=0)] = 1
@@ -119,7 +121,10 @@ class SiteEntry(Entry):
     camera_defaults: CameraSettings = CameraSettings()
     cameras: tuple[CameraEntry, ...] = ()
     machine: MachineEntry | None = None
+    machines: tuple[MemberEntry, ...] = ()
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
+    zones: tuple[ZoneEntry, ...] = ()
+    override: OverrideEntry = OverrideEntry()
     rule: Rule = "three"
     detail: Detail = "pixel"
     witness_angle_deg: Annotated[Number, Field(ge=0, le=MOST_ANGLE_DEG)] = WITNESS_ANGLE_DEG
@@ -133,7 +138,13 @@ class SiteEntry(Entry):
     room: RoomEntry | None = None
     placement: PlacementEntry | None = None
     watch: WatchEntry | None = None
+    gate: GateEntry | None = None
     calibration: CalibrationEntry | None = None
+
+    @property
+    def has_machine(self) -> bool:
+        """Whether there is a machine, or several."""
+        return self.machine is not None or bool(self.machines)
 
     @model_validator(mode="after")
     def _fits_together(self) -> "SiteEntry":
@@ -164,10 +175,14 @@ class SiteEntry(Entry):
                 )
         if self.watch is not None and isinstance(self.recording, SevenScenes):
             raise ValueError("no key watch where layout seven_scenes makes a camera of each frame")
-        if self.joints and self.machine is None:
+        if self.machine is not None and self.machines:
+            raise ValueError("either machine or machines, not both")
+        if self.joints and not self.has_machine:
             raise ValueError("joints only with a machine")
         try:
             require_speed(self.people_speed_m_s, self.nothing_moves)
         except InputError as error:
             raise ValueError(str(error)) from None
+        if self.zones and not self.has_machine:
+            raise ValueError("zones only with a machine: they say where its links may be")
         return self

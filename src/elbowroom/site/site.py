@@ -16,16 +16,18 @@ from elbowroom.errors import CameraError, GridError, InputError, PoseWarning, Si
 from elbowroom.files.yaml_file import read_yaml
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
-from elbowroom.motion import Motion
+from elbowroom.machine.together import together
+from elbowroom.motion import Motion, Override
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.sensing import Margin
 from elbowroom.site import seven_scenes
 from elbowroom.site.camera_entry import CameraSettings, build_camera, mended_poses
 from elbowroom.site.machine_entry import motions_of
 from elbowroom.site.messages import one_line
-from elbowroom.site.paths import existing_folder
-from elbowroom.site.recording_entry import SevenScenes, StamplessFolder
+from elbowroom.site.paths import existing_bag, existing_folder
+from elbowroom.site.recording_entry import BagRecording, SevenScenes, StamplessFolder
 from elbowroom.site.schema import SimulatedEntry, SiteEntry
+from elbowroom.site.zone_entry import with_zones
 
 SIMULATED_ROOM = Path(__file__).with_name("simulated_room.yaml")
 """The site file of the simulated intervention room, shipped with the package."""
@@ -109,8 +111,9 @@ class Site:
     @property
     def explain_tolerance_m(self) -> float:
         """How far from the machine's model a measured point may lie and still be the machine [m]."""
-        machine = self.entry.machine
-        given = machine.explain_tolerance_m if machine else None
+        alone = () if self.entry.machine is None else (self.entry.machine,)
+        said = [machine.explain_tolerance_m for machine in (*alone, *self.entry.machines)]
+        given = min((value for value in said if value is not None), default=None)
         return DEFAULT_EXPLAIN_TOLERANCE_M if given is None else given
 
     def terms(self, rule: Rule | None = None, detail: Detail | None = None) -> Terms:
@@ -289,14 +292,19 @@ class Site:
 
     @cached_property
     def _machine(self) -> Machine | None:
-        given = self.entry.machine
-        if given is None:
+        given, beside = self.entry.machine, self.path.parent
+        if given is not None:
+            alone = given
+            machine = self._blame("machine", lambda: alone.standing(beside))
+        elif self.entry.machines:
+            members = [
+                self._blame(f"machines[{n}] ({entry.name})", lambda entry=entry: entry.member(beside))  # type: ignore[misc]
+                for n, entry in enumerate(self.entry.machines)
+            ]
+            machine = self._blame(None, lambda: together(members))
+        else:
             return None
-        machine = self._blame("machine", lambda: given.build(self.path.parent))
-        if given.free_base is None:
-            return machine
-        kind = given.free_base
-        return self._blame("machine", lambda: machine.with_free_base(kind))
+        return self._blame(None, lambda: with_zones(machine, self.entry.zones, self.path.parent))
 
     def motions(self, machine: Machine) -> tuple[Motion, ...]:
         """Each joint that has a speed, in both directions, with its braking distance at full speed.
@@ -310,8 +318,21 @@ class Site:
         """
         return self._blame(None, lambda: motions_of(machine, self.entry.joints))
 
+    def override(self, machine: Machine) -> Override:
+        """How fast an operator who holds on may creep where nobody sees.
+
+        Args:
+            machine: the machine of this site.
+
+        Raises:
+            SiteError: as `motions`.
+        """
+        joints = self.entry.joints
+        speeds = {name: joints[name].speed_of(machine.joint(name)) for name in joints}
+        return self.entry.override.build(speeds)
+
     def recording_folder(self) -> Path:
-        """The folder of the recording.
+        """The folder of the recording; of a bag its folder, or its file.
 
         Raises:
             SiteError: the site names none, or it is absent.
@@ -322,6 +343,8 @@ class Site:
                 f"{self.path}: recording: missing; this command reads one (`elbowroom simulate` makes one of a "
                 "modelled room)"
             )
+        if isinstance(recording, BagRecording):
+            return self._blame("recording.file", lambda: existing_bag(recording.file, self.path.parent))
         return self._blame("recording.folder", lambda: existing_folder(recording.folder, self.path.parent))
 
     @property
@@ -336,7 +359,7 @@ class Site:
         try:
             self.recording_folder()
         except SiteError as error:
-            if "no folder" in str(error):
+            if "no folder" in str(error):  # of a bag: "no folder or file"
                 return str(error).removeprefix(f"{self.path}: ")
             raise
         return None

@@ -65,6 +65,10 @@ def update_site(
     if isinstance(site.entry.recording, SevenScenes):
         raise SiteError(f"{site.path}: poses come with the recording (layout seven_scenes); nothing to write")
     content = said_again(site, path)
+    if world_from_base is not None and site.entry.machine is None:
+        raise SiteError(
+            f"{site.path}: several machines; write world_from_base of the one that was seen by hand"
+        )
     if site.lists_cameras:
         content["cameras"] = _replaced(site, content["cameras"], cameras, covariances)
     else:

@@ -18,7 +18,7 @@ from elbowroom.site import Site
 from elbowroom.site.paths import led_from
 from elbowroom.site.schema import EVEN_SETTINGS
 
-PATH_KEYS = ("intrinsics_file", "pose_file", "urdf", "mesh", "folder", "mask")
+PATH_KEYS = ("intrinsics_file", "pose_file", "urdf", "srdf", "own_links", "mesh", "folder", "file", "mask")
 """Keys whose values are paths beside the site file."""
 SHIPPED_ROOM = re.compile("setup[1-6]")
 """A mesh of this name is no file but a room of the package."""
@@ -206,7 +206,8 @@ def moved(value: Any, old: Path, new: Path) -> Any:
             if key in PATH_KEYS
             and isinstance(item, str)
             and not (key == "mesh" and SHIPPED_ROOM.fullmatch(item))
-            else moved(item, old, new)
+            # topics of a bag look like paths and are none
+            else (item if key == "topics" else moved(item, old, new))
             for key, item in value.items()
         }
     return [moved(item, old, new) for item in value] if isinstance(value, list) else value

@@ -29,14 +29,16 @@ def cameras_of(
     if site.simulated is None or site.lists_cameras:
         cameras = site.cameras()
     else:
-        from elbowroom.simulate import wall_cameras
+        from elbowroom.simulate import InterventionRoom, wall_cameras
+        from elbowroom.simulate.inside import hung_clear
 
         settings = site.simulated_cameras()
         if count is not None:
             settings["count"] = count
         if resolution is not None:
             settings["width"], settings["height"] = resolution
-        cameras = wall_cameras(**settings)
+        # those that would hang inside a cabinet hang beside it
+        cameras = hung_clear(wall_cameras(**settings), InterventionRoom(people=False).solids)
     return cameras if resolution is None else tuple(with_size(camera, resolution) for camera in cameras)
 
 

@@ -8,6 +8,14 @@ from numpy.typing import NDArray
 from elbowroom.sources.depth_pgm import check_depth_pgm, is_pgm, read_depth_pgm
 from elbowroom.sources.depth_png import check_depth_png, read_depth_png
 
+KINDS = (".png", ".pgm")
+"""Endings of the names of depth images."""
+
+
+def images_in(folder: Path) -> list[Path]:
+    """The files of a folder whose names end as those of depth images, in the order of their names."""
+    return sorted(path for kind in KINDS for path in folder.glob(f"*{kind}"))
+
 
 def check_depth_image(path: Path, width: int, height: int) -> None:
     """Looks at a file's header, decodes nothing.

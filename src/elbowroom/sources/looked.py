@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
 from elbowroom.reconstruct.contradiction.findings import contradictions
+from elbowroom.reconstruct.nothing_seen import nothing_seen
 from elbowroom.sensing.never import Never
 from elbowroom.sensing.values import look_at_images, look_at_setting
 from elbowroom.site import Site
@@ -37,6 +38,7 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
             units_m = {image.camera.name: image.unit_m for image in group}
             of_values = look_at_images(grid, cameras, frames, units_m)
             found += [*of_values, *contradictions(cameras, frames, site.margin(), of_values)]
+            found += nothing_seen(grid, cameras, frames, site.margin(), found)
     return once(found)
 
 

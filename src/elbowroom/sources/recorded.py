@@ -8,11 +8,14 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 from elbowroom.site.site import Site
+from elbowroom.sources.layouts.bag import BagFrames
 from elbowroom.sources.layouts.folder import Folder
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
 from elbowroom.sources.layouts.seven_scenes import SevenScenesFrames
 from elbowroom.sources.layouts.stampless import Stampless
+from elbowroom.sources.room_clock import clock_text
+from elbowroom.sources.times.clock import ClockEstimate
 from elbowroom.sources.times.company import require_company
 from elbowroom.sources.times.joints import joint_findings
 from elbowroom.sources.times.meeting import Meeting
@@ -76,7 +79,7 @@ def moments(site: Site, joints: Joints | None = None) -> Iterator[Snapshot]:
     layout = layout_of(site)
     groups = layout.moments()
     known = joints if joints is not None else layout.joints()
-    if site.entry.machine is not None and known is None:
+    if site.entry.has_machine and known is None:
         raise SiteError(
             f"joints: {site.path} records none of its machine; give positions that hold throughout"
         )
@@ -117,7 +120,17 @@ def times_of(site: Site) -> Meeting | None:
         SiteError, FrameError: as `moments`.
     """
     layout = layout_of(site) if site.entry.recording is not None else None
-    return layout.meeting if isinstance(layout, Folder) else None
+    return layout.meeting if isinstance(layout, Folder | BagFrames) else None
+
+
+def clocks_of(site: Site) -> Mapping[str, ClockEstimate]:
+    """What a bag says of its cameras' clocks beside the recorder's, at its end; of no other recording anything.
+
+    Raises:
+        SiteError, BagError, FrameError: as `moments`.
+    """
+    layout = layout_of(site) if site.entry.recording is not None else None
+    return layout.clocks() if isinstance(layout, BagFrames) else {}
 
 
 def time_findings(site: Site) -> tuple[Finding, ...]:
@@ -129,12 +142,19 @@ def time_findings(site: Site) -> tuple[Finding, ...]:
     layout = layout_of(site) if site.entry.recording is not None else None
     if isinstance(layout, Stampless):
         return padding_findings({name: [i.path for i in row] for name, row in layout.by_camera().items()})
-    if not isinstance(layout, Folder):
+    if not isinstance(layout, Folder | BagFrames):
         return ()
     layout.moments()
-    record = layout.joints() if site.entry.machine is not None and layout.joints_path.exists() else None
+    record = layout.joints() if site.entry.has_machine and layout.joints_path.exists() else None
     joints = () if record is None else joint_findings(layout.joints_path, record, layout.meeting)
-    return (*findings_of(layout.meeting), *joints)
+    notes = layout.notes if isinstance(layout, BagFrames) else ()
+    clocks = layout.clocks() if isinstance(layout, BagFrames) else {}
+    told = [text for name, clock in clocks.items() if (text := clock_text(name, clock)) is not None]
+    return (
+        *(Finding("bag", (), text, False) for text in (*notes, *told)),
+        *findings_of(layout.meeting),
+        *joints,
+    )
 
 
 def excluded_frames(site: Site) -> tuple[tuple[DepthCamera, DepthFrame], ...]:

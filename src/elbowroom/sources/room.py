@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from elbowroom.choices import Detail, Rule
 from elbowroom.errors import InputError
@@ -12,9 +12,12 @@ from elbowroom.motion import Motion
 from elbowroom.reconstruct import FreeSpace, Terms, free_space_of
 from elbowroom.sensing import Snapshot
 from elbowroom.site import Site
+from elbowroom.site.recording_entry import BagRecording
 from elbowroom.sources.cameras import cameras_of
-from elbowroom.sources.recorded import Recorded
+from elbowroom.sources.played import Played
+from elbowroom.sources.recorded import Recorded, times_of
 from elbowroom.sources.source import Source
+from elbowroom.sources.times.meeting import gap_ns
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -122,6 +125,19 @@ def open_room(
     made = cameras_of(site, cameras, resolution)
     source = _source(site, made, joints, knocks)
     return Room(site, grid, made, machine, site.terms(rule, detail), source)
+
+
+def live(room: Room) -> Room:
+    """The same room as it is watched: a bag is played at its own pace, and the newest frame of each camera counts.
+
+    What it was opened with stays; of other rooms there is no other source.
+    """
+    source = room.source
+    if not isinstance(source, Recorded) or not isinstance(room.site.entry.recording, BagRecording):
+        return room
+    times = times_of(room.site)
+    gap = gap_ns(None) if times is None else times.gap_ns
+    return replace(room, source=Played(room.site, source.joints, gap))
 
 
 def _source(

@@ -81,8 +81,8 @@ def test_exact_corners_of_several_poses_give_the_true_poses():
 
 def test_several_known_poses_leave_less_to_all_cameras_together_than_one():
     off = {1: [], 3: []}
-    for seed in range(6):
-        cameras, poses, views, random = made(seed)
+    for seed in range(5):
+        cameras, poses, views, random = made(seed, cameras=4, poses=8)
         for count, own in off.items():
             anchor = PointsAnchor(measured_corners(poses, STANDS[:count], random))
             own.append(common_error_m(solve_extrinsics(cameras, BOARD, views, anchor), cameras))
@@ -125,8 +125,8 @@ def test_order_of_points_cameras_and_views_does_not_matter():
 def test_stated_covariance_holds_the_truth(kinds, by):
     """With errors of measured places drawn as they are said; none of them is refused."""
     inside, squares = [], []
-    for seed in range(8):
-        cameras, poses, views, random = made(seed, **kinds)
+    for seed in range(6):
+        cameras, poses, views, random = made(seed, poses=9, **kinds)
         points = measured_corners(poses, STANDS, random) if by == "corners" else seen_points(cameras, random)
         found = solve_extrinsics(cameras, BOARD, views, PointsAnchor(points))
         for one, error in zip(found.cameras, errors(found, cameras), strict=True):

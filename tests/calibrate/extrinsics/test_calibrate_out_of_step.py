@@ -125,7 +125,7 @@ def test_a_camera_that_is_hardly_known_is_no_result(made):
     weak = [replace(found[0], covariance=np.diag([1e-6] * 3 + [0.3] * 3)), *found[1:]]
     (doubt,) = doubts_of(weak)
     assert "hardly known: cam-0 (949 mm, 0.1 degrees)" in doubt
-    assert not doubts_of(weak, only_far=True)
+    assert "put furniture" in doubts_of(weak, "put furniture there")[0]
 
 
 def test_a_camera_alone_that_moved_by_metres_is_said(made):

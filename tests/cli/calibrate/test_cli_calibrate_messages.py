@@ -1,5 +1,6 @@
 """What is wrong with a calibration names the option that helps."""
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -7,13 +8,15 @@ import numpy as np
 import pytest
 
 from elbowroom.calibrate.boards.trouble import Fault, Trouble
-from elbowroom.cli.calibrate.commission_run import reference_table
+from elbowroom.calibrate.result.calibrated_camera import CalibratedCamera
+from elbowroom.cli.calibrate.commission_run import reference_table, that_tell_nothing
 from elbowroom.cli.calibrate.extrinsics_run import told
 from elbowroom.cli.calibrate.machine_run import MachineOptions, held
 from elbowroom.cli.calibrate.refine_run import RefineOptions, pose_covariances
-from elbowroom.cli.calibrate.result import ResultOptions, say_weak
+from elbowroom.cli.calibrate.result import ResultOptions, say_weak, write_result
 from elbowroom.cli.calibrate.site import chosen_cameras, site_path
-from elbowroom.errors import CalibrationError, InputError, SiteError
+from elbowroom.errors import CalibrationError, InputError, NoResultError, SiteError
+from elbowroom.geometry.twist import CAMERA_MOTIONS
 from elbowroom.site import Site
 
 RESULT = ResultOptions(out=Path("new.yaml"), report=None, confidence=0.95, near_m=None)
@@ -122,3 +125,41 @@ def test_a_reference_is_a_line_of_the_table(capsys):
     assert other[-1] == "turn about z, move along x"
     say_weak(["a: hold the board there"])
     assert capsys.readouterr().out == "weak      a: hold the board there\n"
+
+
+def test_a_reference_that_tells_no_motion_at_all_is_none():
+    row = {
+        "camera": "a",
+        "turn_sigma_deg": [0.3, 2.0, 1.0],
+        "move_sigma_mm": [9.0, 30.0, 75.0],
+        "not_shown": [*CAMERA_MOTIONS],
+    }
+    (doubt,) = that_tell_nothing([row, row | {"camera": "b", "not_shown": [*CAMERA_MOTIONS[1:]]}])
+    assert doubt.startswith("a could be moved in any way") and "2.0 degrees and a move to 75 mm" in doubt
+
+
+@pytest.mark.parametrize("command", ["extrinsics", "machine", "refine"])
+@pytest.mark.parametrize(
+    ("move_m", "sigma_m", "words"),
+    [(0.0, 0.975, r"hardly known: a \(975 mm"), (2.5, 1e-3, "a by 2.5 m and 0 degrees"), (0.3, 0.02, None)],
+)
+def test_what_moves_by_metres_or_is_hardly_known_is_no_result_of_any_command(
+    site, command, move_m, sigma_m, words, capsys
+):
+    before, other = site.cameras()
+    pose = before.world_from_camera.copy()
+    pose[0, 3] -= move_m
+    covariance = np.diag([1e-8] * 3 + [sigma_m**2 / 3] * 3)
+    moved = replace(before, world_from_camera=pose)
+    found = [
+        CalibratedCamera(moved, before, covariance, np.zeros(1), np.zeros(1)),
+        CalibratedCamera(other, other, SURE * 1e-2, np.zeros(1), np.zeros(1)),
+    ]
+    options = replace(RESULT, out=site.path.with_name("new.yaml"), force_file=True)
+    if words is None:
+        write_result(site, found, options, command, lambda row: None)
+        assert options.out.exists()
+        return
+    with pytest.raises(NoResultError, match=words):
+        write_result(site, found, options, command, lambda row: None)
+    assert sorted(path.name for path in site.path.parent.glob("new*")) == ["new.doubted.yaml"]

@@ -7,6 +7,9 @@ import pytest
 
 from elbowroom.evaluate.drift import false_alarms, knocks, recorded
 from elbowroom.evaluate.drift import scene as scenes
+from elbowroom.geometry import looking_at
+from elbowroom.sensing import NOISE_PRESETS
+from elbowroom.simulate import InterventionRoom, wall_cameras
 from elbowroom.simulate.knock import Knock
 from elbowroom.site import Site
 from reference.watch_twins import CAMERAS, commissioned, walls
@@ -73,17 +76,22 @@ def test_a_reference_from_elsewhere_is_that_of_the_knocked_camera():
     assert same.mean() > 0.95 and np.abs(elsewhere.depth_m - truth)[same].max() < 0.01
 
 
-def test_a_camera_before_a_cabinet_is_named_by_a_part_and_no_image_shows_the_rest(monkeypatch):
-    low = scenes.commissioned("tof", 80, 60)
-    corner = replace(low, cameras=low.cameras[3:4], references=low.references[3:4])
+def test_a_camera_before_a_corner_is_named_by_a_part_and_no_image_shows_the_rest(monkeypatch):
+    # it sees two walls, neither floor nor ceiling
+    first, second = wall_cameras(
+        2, 2.4, 80, 60, noise=NOISE_PRESETS["tof"], optics=replace(scenes.RANGE, hfov_deg=60)
+    )
+    before = replace(first, world_from_camera=looking_at((1.5, -1.55, 0.9), (2.05, -2.05, 1.15)))
+    both = scenes.commissioned_by((before, second), InterventionRoom(), "tof")
+    corner = replace(both, cameras=both.cameras[:1], references=both.references[:1])
     monkeypatch.setattr(knocks, "KNOCKS", {"move 2 cm along y": knocks.KNOCKS["move 2 cm along y"]})
     alone = next(knocks.knock_rows(corner, lambda words: None))
     assert (alone["named"], alone["others_named"], alone["said_median"]) == (1, 0, None)
-    assert list(alone["named_by_a_part"]) == ["cam03"]
+    assert list(alone["named_by_a_part"]) == ["cam00"]
     (row,) = knocks.not_shown_rows(corner)
-    assert row["camera"] == "cam03" and row["not_shown"] == "moving up and down"
+    assert row["camera"] == "cam00" and row["not_shown"] == "moving up and down"
     # a move of 2 cm that the room shows changes images by millimetres
     assert row["differs_mm"] < 1.0 and row["differs_sigmas"] < 0.5
     assert not list(
-        knocks.not_shown_rows(replace(low, cameras=low.cameras[:1], references=low.references[:1]))
+        knocks.not_shown_rows(replace(both, cameras=both.cameras[1:], references=both.references[1:]))
     )

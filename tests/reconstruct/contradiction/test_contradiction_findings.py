@@ -15,7 +15,7 @@ from elbowroom.reconstruct.contradiction.views import Views
 from elbowroom.reconstruct.looking import require_plausible
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame
 from reference.contradiction_room import GRID, MARGIN, room_cameras, room_scene, room_site
-from reference.reconstruct_scenes import frame_of
+from reference.reconstruct_scenes import camera_at, frame_of
 
 RIGHT = room_site()
 
@@ -175,3 +175,14 @@ def test_reconstruct_refuses_what_contradicts():
     wrong = KINDS["two exchanged"](np.random.default_rng(1), RIGHT)
     with pytest.raises(ImplausibleError, match="each other's pose"):
         require_plausible(GRID, wrong.cameras, RIGHT.snapshot.frames, MARGIN)
+
+
+def test_a_camera_that_shares_no_view_is_told_of_where_it_looks_out_of_the_room_and_not_where_it_looks_into_a_corner():
+    over_a_corner = camera_at("over", (-1.7, -1.7, 2.7), (-1.7, -1.69, 0.0), size=(160, 120), focal=400.0)
+    frames = [*RIGHT.snapshot.frames, frame_of(over_a_corner, room_scene())]
+    assert found([*RIGHT.cameras, over_a_corner], frames) == ()
+    moved = np.eye(4)
+    moved[0, 3] = 6.0
+    away = posed(over_a_corner, moved @ over_a_corner.world_from_camera)
+    (finding,) = found([*RIGHT.cameras, away], frames)
+    assert finding.about == ("over",) and not finding.stops and "outside of all that they see" in finding.text

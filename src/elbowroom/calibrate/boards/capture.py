@@ -23,7 +23,7 @@ from elbowroom.geometry.parallel import spread
 from elbowroom.site import Site
 from elbowroom.site.calibration_entry import CaptureImagesEntry
 from elbowroom.site.paths import existing_folder, inside
-from elbowroom.site.recording_entry import StampedFolder
+from elbowroom.site.recording_entry import BagRecording, StampedFolder
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.layout import layout_of
 
@@ -56,6 +56,11 @@ class Sightings:
             images = views + sum(trouble.camera == name for trouble in self.troubles)
             good += views >= max(2, GOOD_SHARE * images)
         return good > len(cameras) / 2
+
+    def share_seen_by(self, cameras: Sequence[str]) -> float:
+        """In how much of their images some cameras see the board."""
+        views = sum(view.camera in cameras for view in self.views)
+        return views / max(views + sum(trouble.camera in cameras for trouble in self.troubles), 1)
 
     def row(self) -> dict[str, Any]:
         """How much was seen, and what was wrong with the rest."""
@@ -99,7 +104,7 @@ def images_by_pose(site: Site) -> list[list[Image]]:
     """
     by_camera = layout_of(site).by_camera()
     recording = site.entry.recording
-    if not isinstance(recording, StampedFolder):
+    if not isinstance(recording, StampedFolder | BagRecording):
         return [list(group) for group in zip(*by_camera.values(), strict=True)]
     skew_ns = round(recording.max_skew_ms * 1e6)
     poses: list[list[Image]] = []
@@ -173,7 +178,12 @@ def images_of(site: Site, cameras: Sequence[str]) -> list[tuple[Image, int]]:
 
 
 def instead_of(
-    site: Site, board: Board, work: Sequence[tuple[Image, int]], *, others_see_it: bool = False
+    site: Site,
+    board: Board,
+    work: Sequence[tuple[Image, int]],
+    *,
+    others_see_it: bool = False,
+    seen_share: float = 0.0,
 ) -> str | None:
     """What images show where they do not show the board, a sentence; None: nothing that can be told.
 
@@ -182,6 +192,7 @@ def instead_of(
         board: as the site describes it.
         work: images, and the number of their pose.
         others_see_it: whether other cameras see the board as it is described.
+        seen_share: in so much of all images of these cameras it is seen so.
     """
     if not work:
         return None
@@ -195,7 +206,8 @@ def instead_of(
     def other_sizes(other: Board, image: Image, pose: int) -> Seen:
         return seen_in(site, other, image, pose, other_sizes=True)
 
-    return closer_look(board, work, Looks(plain, mirrored, other_sizes), others_see_it=others_see_it)
+    looks = Looks(plain, mirrored, other_sizes)
+    return closer_look(board, work, looks, others_see_it=others_see_it, seen_share=seen_share)
 
 
 def _commonest(troubles: tuple[Trouble, ...]) -> str:

@@ -43,7 +43,9 @@ class Looks:
     other_sizes: Look
 
 
-def closer_look(board: Board, work: Work, looks: Looks, *, others_see_it: bool) -> str | None:
+def closer_look(
+    board: Board, work: Work, looks: Looks, *, others_see_it: bool, seen_share: float = 0.0
+) -> str | None:
     """What the images show where they do not show the board, a sentence; None: nothing that can be told.
 
     Args:
@@ -51,11 +53,13 @@ def closer_look(board: Board, work: Work, looks: Looks, *, others_see_it: bool) 
         work: images, and the number of their pose.
         looks: how to look for it.
         others_see_it: whether other cameras see the board as it is described: then it is not the description.
+        seen_share: in so much of all images of these cameras the board is seen as it is described.
     """
     look = looks.plain
     few = [work[n] for n in np.unique(np.linspace(0, len(work) - 1, min(len(work), LOOKED_AT)).astype(int))]
-    own = _views(board, few, look)
-    enough = max(LEAST_VIEWS, AS_OFTEN * own)
+    # few images may happen to show it in none where all of them do in many
+    own = max(_views(board, few, look), seen_share * len(few))
+    enough = int(np.ceil(max(LEAST_VIEWS, AS_OFTEN * own)))
     if others_see_it and _views(board, few, looks.mirrored) >= enough:
         return "the board is there in the images mirrored left to right; switch mirroring off in the camera's driver"
     counted = None if others_see_it else _counted(board, few, look, enough)

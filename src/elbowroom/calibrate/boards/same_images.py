@@ -29,9 +29,7 @@ def require_own_images(work: Iterable[tuple[Image, int]], views: Iterable[BoardV
     counts: dict[str, int] = defaultdict(int)
     for image, pose in work:
         counts[image.camera.name] += 1
-        alike[hashlib.blake2b(image.path.read_bytes(), digest_size=16).digest()].append(
-            (image.camera.name, pose)
-        )
+        alike[hashlib.blake2b(image.content(), digest_size=16).digest()].append((image.camera.name, pose))
     doubled = [
         group
         for group in alike.values()

@@ -21,17 +21,19 @@ UNSURE_M, UNSURE_DEG = 0.05, 1.0
 """One sigma beyond which a pose is not known."""
 
 
-def doubts_of(found: Sequence[CalibratedCamera], *, only_far: bool = False) -> tuple[str, ...]:
+def doubts_of(
+    found: Sequence[CalibratedCamera], more: str = "more poses, nearer and tilted"
+) -> tuple[str, ...]:
     """Why what was found is no result, a sentence each; none: it is one.
 
     Args:
         found: cameras, as they were and as they are now.
-        only_far: whether a pose may be hardly known, as it was before.
+        more: what makes a pose better known, in words.
     """
-    return (*(() if only_far else _unsure(found)), *_far(found))
+    return (*_unsure(found, more), *_far(found))
 
 
-def _unsure(found: Sequence[CalibratedCamera]) -> list[str]:
+def _unsure(found: Sequence[CalibratedCamera], more: str) -> list[str]:
     words = []
     for one in found:
         sigma_m = float(np.sqrt(np.trace(one.covariance[3:, 3:])))
@@ -40,9 +42,7 @@ def _unsure(found: Sequence[CalibratedCamera]) -> list[str]:
             words.append(f"{one.camera.name} ({sigma_m * 1e3:.0f} mm, {sigma_deg:.1f} degrees)")
     if not words:
         return []
-    return [
-        f"hardly known: {_listed(words)}; more poses, nearer and tilted, or look whether all images are right"
-    ]
+    return [f"hardly known: {_listed(words)}; {more}, or look whether all images are right"]
 
 
 def _far(found: Sequence[CalibratedCamera]) -> list[str]:

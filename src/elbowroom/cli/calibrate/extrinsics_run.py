@@ -87,7 +87,13 @@ def closer(site: Site, seen: Sightings, names: Sequence[str]) -> str | None:
         names: of the cameras.
     """
     others = [camera.name for camera in site.cameras() if camera.name not in names]
-    return instead_of(site, seen.board, images_of(site, names), others_see_it=seen.is_seen_by(others))
+    return instead_of(
+        site,
+        seen.board,
+        images_of(site, names),
+        others_see_it=seen.is_seen_by(others),
+        seen_share=seen.share_seen_by(names),
+    )
 
 
 def told(

@@ -86,7 +86,8 @@ def _solved(site: Site, camera: DepthCamera, seen: Sightings, coefficients: int)
             raise
         others = [one.name for one in site.cameras() if one.name != camera.name]
         work = images_of(site, [camera.name])
-        closer = instead_of(site, seen.board, work, others_see_it=seen.is_seen_by(others))
+        share = seen.share_seen_by([camera.name])
+        closer = instead_of(site, seen.board, work, others_see_it=seen.is_seen_by(others), seen_share=share)
         raise CalibrationError(
             f"{error} (of its images {len(why)} show no whole board: {closer or why[0]})"
         ) from None

@@ -14,7 +14,7 @@ from elbowroom.calibrate.result.change import change_rows, change_table
 from elbowroom.calibrate.result.doubt import doubts_of
 from elbowroom.calibrate.result.site_margin import with_margins
 from elbowroom.cli.screen import show
-from elbowroom.errors import CalibrationError
+from elbowroom.errors import NoResultError
 from elbowroom.files.atomic import folder, whole_file
 from elbowroom.files.json_rows import AddRow, meta
 from elbowroom.site import Site
@@ -23,6 +23,12 @@ from elbowroom.view.report.blocks import Block
 from elbowroom.view.report.page import page
 
 PAGE = "report.html"
+MORE = {
+    "extrinsics": "more poses, nearer and tilted",
+    "machine": "more poses, in which every joint moves in its view",
+    "refine": "put furniture where it and others look, or calibrate it by a board first",
+}
+"""By command, what makes poses better known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +75,11 @@ def write_result(
         The rows.
 
     Raises:
-        CalibrationError: what was found is no result; the file, if it is forced, has another name.
+        NoResultError: what was found is no result; the file, if it is forced, has another name.
     """
     cameras = with_margins(site, found, options.confidence, depth_errors, near_m=options.near_m)
     covariances = {one.camera.name: one.covariance for one in found}
-    doubts = doubts_of(found, only_far=command == "refine")
+    doubts = doubts_of(found, MORE.get(command, MORE["extrinsics"]))
     if not doubts:
         update_site(site, cameras, covariances, options.out, command, world_from_base)
     rows = change_rows(found, {camera.name: camera for camera in cameras})
@@ -106,7 +112,7 @@ def refuse(doubts: Sequence[str], out: Path, write: Callable[[Path], Path], *, f
         force_file: whether it is written under another name, to be looked at.
 
     Raises:
-        CalibrationError: always.
+        NoResultError: always.
     """
     aside = out.with_name(f"{out.stem}.doubted{out.suffix}")
     if force_file:
@@ -114,7 +120,7 @@ def refuse(doubts: Sequence[str], out: Path, write: Callable[[Path], Path], *, f
         where = f"{out} was not written; what was found is in {aside}"
     else:
         where = f"{out} was not written (--force-file writes what was found to {aside.name}, to be looked at)"
-    raise CalibrationError(f"this is no result: {'; '.join(doubts)}; {where}")
+    raise NoResultError(f"this is no result: {'; '.join(doubts)}; {where}")
 
 
 def say_weak(notes: Sequence[str]) -> None:

@@ -3,9 +3,13 @@
 import typer
 
 from elbowroom.cli.evaluate.bits import bits
+from elbowroom.cli.evaluate.cell import cell
 from elbowroom.cli.evaluate.contradictions import contradictions
+from elbowroom.cli.evaluate.escape import escape
 from elbowroom.cli.evaluate.hand import hand
+from elbowroom.cli.evaluate.latch import latch
 from elbowroom.cli.evaluate.looks import looks
+from elbowroom.cli.evaluate.own_links import own_links
 from elbowroom.cli.evaluate.placement import placement
 from elbowroom.cli.evaluate.robots import robots
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
@@ -45,8 +49,12 @@ evaluate_app.command(epilog=_example("bits --json now.json --against benchmarks/
 evaluate_app.command(epilog=_example("contradictions --sites 5 --right 20 --json contradictions.json"))(
     contradictions
 )
+evaluate_app.command(epilog=_example("latch --quick --json latch.json"))(latch)
 evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
 evaluate_app.command(epilog=_example("robots packages --json robots.json"))(robots)
+evaluate_app.command(epilog=_example("own-links packages --quick --json own_links.json"))(own_links)
+evaluate_app.command(epilog=_example("escape --quick --json escape.json"))(escape)
 evaluate_app.command(epilog=_example("hand --scenes 5 --json hand.json"))(hand)
 evaluate_app.command(epilog=_example("skew --quick --json skew.json"))(skew)
+evaluate_app.command(epilog=_example("cell --quick --json cell.json"))(cell)
 evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

@@ -92,6 +92,10 @@ def poses(
     voxel_size: OneVoxelSize = 0.02,
     cameras: Cameras = 21,
     size: Size = "vga",
+    noise: Annotated[
+        bool,
+        typer.Option("--noise", help="Of time-of-flight cameras, with flying pixels. Default: exact images."),
+    ] = False,
     seed: Seed = 2,
     json: JsonFile = None,
 ) -> None:
@@ -110,7 +114,7 @@ def poses(
         ("of these clear", "clear_where_clear_pct", "{:.1f} %"),
         ("same level as exact geometry", "same_level_pct", "{:.1f} %"),
     )
-    rows = poses_rows(voxel_size, poses=poses, cameras=cameras, size=size, seed=seed)
+    rows = poses_rows(voxel_size, poses=poses, cameras=cameras, size=size, noise=noise, seed=seed)
     measured("verdicts", rows, MOTIONS * poses, json, show, lambda rows: [poses_summary(rows)])
 
 

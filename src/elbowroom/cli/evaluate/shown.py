@@ -47,7 +47,7 @@ def as_figures(dues: Sequence[Due], *figures: tuple[str, str, str]) -> Show:
         (summary,) = rows
         lines = []
         for words, key, how in figures:
-            due = due_of(dues, key)
+            due = due_of(dues, key, summary)
             value = "-" if summary[key] is None else how.format(summary[key])
             lines.append((words, value, due.said if due else ""))
         print_(rich_table(Table("", ("figure", "measured", "due"), lines, left=(0, 2))))

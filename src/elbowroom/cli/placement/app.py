@@ -9,15 +9,22 @@ from elbowroom.cli.options import JsonFile, SitePath, VoxelSize
 from elbowroom.cli.placement.options import (
     Angle,
     CapabilityOptions,
+    Motions,
     OptimiseOptions,
     OptionalSite,
+    People,
     Pictures,
     Required,
+    Scenes,
     SimulateOptions,
     SweepOptions,
     VerifyOptions,
     Views,
+    WithTable,
 )
+
+SWEPT_SCENES = 8
+"""By so many scenes `optimise --motions` judges unless it is told."""
 
 placement_app = typer.Typer(
     help="Where to put the cameras: verify a placement, sweep, optimise, simulate.",
@@ -40,7 +47,11 @@ def verify(
     out: Pictures = None,
     json: JsonFile = None,
 ) -> None:
-    """Say how many cameras see each point of the empty room, whether they are enough, and where they are not."""
+    """Say how many cameras see each point of the empty room, whether they are enough, and where they are not.
+
+    Where the site has a machine and speeds of its joints: also, by link, how much of
+    the space that the motions sweep no camera sees, as swept_z.png and swept_y.png too.
+    """
     from elbowroom.cli.placement.verify import run_verify
 
     required = Required(views=views, angle_deg=angle)
@@ -115,12 +126,10 @@ def optimise(
         bool, typer.Option("--price", help="The cheapest layout, not the one of fewest cameras.")
     ] = False,
     keep: Annotated[bool, typer.Option("--keep", help="Keep the site's cameras, and add to them.")] = False,
-    scenes: Annotated[
-        int,
-        typer.Option(
-            min=0, metavar="COUNT", help="Judge by the free space found in so many random scenes instead."
-        ),
-    ] = 0,
+    motions: Motions = False,
+    scenes: Scenes = 0,
+    people: People = 3,
+    table: WithTable = True,
     seconds: Annotated[float, typer.Option(metavar="SECONDS", help="How long to look.")] = 60.0,
     points: Annotated[
         int, typer.Option(min=1, metavar="COUNT", help="Points that the solver looks at.")
@@ -134,7 +143,13 @@ def optimise(
     out: Pictures = None,
     json: JsonFile = None,
 ) -> None:
-    """Find few or cheap cameras that see the empty room well enough, or the best places for a number of them."""
+    """Find few or cheap cameras that see the empty room well enough, or the best places for a number of them.
+
+    With --scenes: such that find most of the free space of random scenes. With
+    --motions: such that find what the machine's motions sweep there, most of all
+    within their braking distances, where a voxel that is not found stops them; it
+    says how many motions are stopped for nothing with them, and with the site's own.
+    """
     from elbowroom.cli.placement.in_use import run_in_use
     from elbowroom.cli.placement.optimise import run_optimise
 
@@ -144,7 +159,10 @@ def optimise(
         cameras=cameras,
         by_price=price,
         keep=keep,
-        scenes=scenes,
+        motions=motions,
+        scenes=scenes or (SWEPT_SCENES if motions else 0),
+        people=people,
+        table=table,
         seconds=seconds,
         points=points,
         required=Required(views=views, angle_deg=angle),
@@ -152,7 +170,7 @@ def optimise(
         write=write,
         out=out,
     )
-    (run_in_use if scenes else run_optimise)(options, json)
+    (run_in_use if options.scenes else run_optimise)(options, json)
 
 
 @placement_app.command(
@@ -164,10 +182,8 @@ def simulate(
         typer.Argument(metavar="SITE", help="A site file (YAML). Default: the simulated room."),
     ] = None,
     scenes: Annotated[int, typer.Option(min=1, metavar="COUNT", help="How many random scenes.")] = 10,
-    people: Annotated[
-        int, typer.Option(min=0, metavar="COUNT", help="In a room that is not the simulated one.")
-    ] = 3,
-    table: Annotated[bool, typer.Option(help="Whether such a room gets a table.")] = True,
+    people: People = 3,
+    table: WithTable = True,
     voxel_size: VoxelSize = None,
     by_camera: Annotated[bool, typer.Option(help="Also what each camera contributes.")] = True,
     seed: Annotated[int, typer.Option(min=0, help="Of scenes and noise.")] = 1,

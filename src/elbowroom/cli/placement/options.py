@@ -20,6 +20,25 @@ Angle = Annotated[
         metavar="DEGREES", help="Least angle between two views from above. Default: the site's, or 100."
     ),
 ]
+Motions = Annotated[
+    bool,
+    typer.Option(
+        "--motions",
+        help="Place them for what the machine's motions sweep in random scenes, so that few stop for nothing.",
+    ),
+]
+Scenes = Annotated[
+    int,
+    typer.Option(
+        min=0,
+        metavar="COUNT",
+        help="Judge by the free space found in so many random scenes instead. With --motions: 8 if not given.",
+    ),
+]
+People = Annotated[
+    int, typer.Option(min=0, metavar="COUNT", help="In scenes of a room that is not the simulated one.")
+]
+WithTable = Annotated[bool, typer.Option("--table/--no-table", help="Whether such a room gets a table.")]
 Pictures = Annotated[
     Path | None, typer.Option("--out", metavar="DIR", help="Write pictures into this folder.")
 ]
@@ -69,7 +88,10 @@ class OptimiseOptions:
     cameras: int | None
     by_price: bool
     keep: bool
+    motions: bool
     scenes: int
+    people: int
+    table: bool
     seconds: float
     points: int
     required: Required

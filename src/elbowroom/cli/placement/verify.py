@@ -10,10 +10,12 @@ from rich.console import Console
 from elbowroom.cli.placement.options import VerifyOptions
 from elbowroom.cli.placement.room import room_of
 from elbowroom.cli.progress import Steps
+from elbowroom.cli.swept import say_swept, swept_row
 from elbowroom.files.json_rows import json_rows
 from elbowroom.geometry import VoxelGrid
 from elbowroom.placement.pictures import save_pictures
 from elbowroom.placement.requirement import requirement_of
+from elbowroom.placement.swept.picture import save_swept
 from elbowroom.placement.verification import Verification, verify
 from elbowroom.placement.worst import worst_places
 from elbowroom.site import Site
@@ -41,9 +43,14 @@ def run_verify(options: VerifyOptions, json_file: Path | None) -> None:
             seconds = time.perf_counter() - begun
         row = verified_row(found, options.worst) | {"site": str(site.path), "name": site.name}
         row |= {"seconds": seconds, "walls_known": room is not None}
+        swept, of_swept = swept_row(site)
+        row |= of_swept
         files = [] if options.out is None else save_pictures(found, room, options.out, site.name)
+        if swept is not None and options.out is not None:
+            files += save_swept(swept, found.cameras, room, options.out, site.name)
         add(row | {"files": [str(path) for path in files]})
     say_verification(row)
+    say_swept(row)
     say_files(files, walls_known=room is not None)
 
 

@@ -18,6 +18,7 @@ from elbowroom.reconstruct.contradiction.findings import COMPARED, LIMIT, contra
 from elbowroom.reconstruct.contradiction.suspicion import share_of
 from elbowroom.reconstruct.contradiction.views import Views
 from elbowroom.simulate import InterventionRoom, Optics, render, wall_cameras
+from elbowroom.simulate.inside import hung_clear
 from elbowroom.site import Site
 from elbowroom.sources import open_room
 
@@ -132,7 +133,8 @@ def _theatres() -> Iterator[tuple[str, tuple[Finding, ...]]]:
     optics = Optics(min_depth_m=0.1, max_depth_m=8.0)
     for count in (4, 8, 21):
         for time_s in TIMES_S:
-            cameras: tuple[DepthCamera, ...] = wall_cameras(count, HEIGHTS_M, size="qqvga", optics=optics)
+            hung = wall_cameras(count, HEIGHTS_M, size="qqvga", optics=optics)
+            cameras: tuple[DepthCamera, ...] = hung_clear(hung, room.solids)
             frames = render(cameras, room.at(time_s), seed=count)
             yield f"room, {count} cameras, {time_s:g} s", contradictions(cameras, frames, MARGIN)
 

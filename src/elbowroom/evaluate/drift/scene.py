@@ -10,6 +10,7 @@ from elbowroom.monitor.health.drift.reference import CameraReference
 from elbowroom.monitor.health.drift.watch import Watch
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame, Snapshot
 from elbowroom.simulate import InterventionRoom, Moment, Optics, render, wall_cameras
+from elbowroom.simulate.inside import hung_clear
 from elbowroom.simulate.person import Person, Walk
 from elbowroom.simulate.room import STAFF
 
@@ -69,8 +70,19 @@ def commissioned(
         count: how many cameras.
         staff: who walks.
     """
-    cameras = wall_cameras(count, HEIGHTS_M, width, height, noise=NOISE_PRESETS.get(noise), optics=RANGE)
     room = InterventionRoom(staff=staff)
+    hung = wall_cameras(count, HEIGHTS_M, width, height, noise=NOISE_PRESETS.get(noise), optics=RANGE)
+    return commissioned_by(hung_clear(hung, room.solids), room, noise)
+
+
+def commissioned_by(cameras: tuple[DepthCamera, ...], room: InterventionRoom, noise: str) -> Commissioned:
+    """The simulated room with these cameras, commissioned over 14 s.
+
+    Args:
+        cameras: with their noise.
+        room: with the people who walk.
+        noise: what it is called.
+    """
     commissioning = Commissioning(cameras, room.machine, COMMISSION_FRAMES)
     for number in range(COMMISSION_FRAMES):
         moment = room.at(200 + 0.7 * number)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import trimesh
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from elbowroom.choices import ExplainWith
 from elbowroom.machine import Machine
+from elbowroom.motion import Motion
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 """Edges and middle [m], the frame of its link."""
@@ -49,6 +51,10 @@ ARMS: dict[str, tuple[tuple[Box, ...], tuple[Box, ...], tuple[float, float, floa
 }
 """By name: the boxes of the upper and of the lower arm, where the elbow is on the upper one [m], and what is laid
 around each: the box or the convex hull."""
+
+
+STEPS = 60
+"""At so many places along S it is looked whether the arm meets the hand."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,6 +98,59 @@ class Arm:
         path.write_text(f'<robot name="arm">{links}<link name="shoulder"/>{joints}</robot>')
         return cls(name, Machine.from_urdf(path, explain_with=explain_with), real)
 
+    @classmethod
+    def both(cls, name: str) -> dict[ExplainWith, "Arm"]:
+        """The arm by each way of explaining.
+
+        Args:
+            name: of `ARMS`.
+        """
+        with TemporaryDirectory() as folder:
+            ways: tuple[ExplainWith, ExplainWith] = ("auto", "collision")
+            return {words: cls.in_folder(name, Path(folder), words) for words in ways}
+
+    def draw(self, rng: np.random.Generator) -> dict[str, float]:
+        """Joints at random [rad]."""
+        return {"turn": rng.uniform(-2, 2), "lift": rng.uniform(-0.9, 0.5), "bend": rng.uniform(-1.2, 1.2)}
+
+    def beside(
+        self, joints: Mapping[str, float], away_m: tuple[float, float], rng: np.random.Generator
+    ) -> NDArray[np.float64]:
+        """A point at random that lies before one of the arm's faces, shape (3,), world frame [m].
+
+        Args:
+            joints: where the arm is [rad].
+            away_m: between so far from the face [m].
+            rng: of all that is drawn.
+        """
+        placed = self.machine.world_from_links(joints)
+        link = ("upper", "lower")[rng.integers(2)]
+        edges, middle = self.real[link][rng.integers(len(self.real[link]))]
+        at, axis, way = rng.uniform(-0.5, 0.5, 3), rng.integers(3), rng.choice((-1.0, 1.0))
+        at[axis] = 0.5 * way
+        point = at * edges + middle
+        point[axis] += way * rng.uniform(*away_m)
+        found: NDArray[np.float64] = placed[link][:3, :3] @ point + placed[link][:3, 3]
+        return found
+
+    def lowest_m(self, joints: Mapping[str, float]) -> float:
+        """The least height of what moves, or less [m].
+
+        Args:
+            joints: where the arm is [rad].
+        """
+        placed = self.machine.world_from_links(joints)
+        return min(_corners_z(placed[link], self.real[link]) for link in ("upper", "lower"))
+
+    def is_in_the_open(self, joints: Mapping[str, float], point_in_world: NDArray[np.float64]) -> bool:
+        """Whether a hand can come to a point: boxes are solid, and enclose nothing.
+
+        Args:
+            joints: where the arm is [rad].
+            point_in_world: shape (3,) [m].
+        """
+        return True
+
     def distance(self, joints: Mapping[str, float], point_in_world: NDArray[np.float64]) -> float:
         """Of a point from the boxes, by closed form; 0 within one [m].
 
@@ -112,6 +171,22 @@ class Arm:
             for edges, middle in boxes
         )
 
+    def meets(
+        self, joints: Mapping[str, float], motion: Motion, ball_m: NDArray[np.float64], radius_m: float
+    ) -> bool:
+        """Whether the arm itself meets a ball within the braking distance of a motion.
+
+        Args:
+            joints: where the arm is [rad].
+            motion: of one joint.
+            ball_m, radius_m: its middle, shape (3,), world frame, and its radius [m].
+        """
+        for travel in np.linspace(0.0, motion.braking_distance, STEPS):
+            there = {**joints, motion.joint: joints[motion.joint] + motion.direction * travel}
+            if self.distance(there, ball_m) < radius_m:
+                return True
+        return False
+
     def is_in_excess(self, joints: Mapping[str, float], point_in_world: NDArray[np.float64]) -> bool:
         """Whether a point lies in what is laid around a link.
 
@@ -119,16 +194,41 @@ class Arm:
             joints: where the arm is [rad].
             point_in_world: shape (3,) [m].
         """
-        placed = self.machine.world_from_links(joints)
-        for link in self.machine.links:
-            if link.has_geometry:
-                planes = trimesh.Trimesh(link.vertices, link.faces)
-                beyond = (
-                    _in_link(placed[link.name], point_in_world) - planes.triangles[:, 0]
-                ) * planes.face_normals
-                if (beyond.sum(axis=1) <= 0).all():
-                    return True
-        return False
+        return is_in_hull(self.machine, joints, point_in_world)
+
+
+def is_in_hull(
+    machine: Machine,
+    joints: Mapping[str, float],
+    point_in_world: NDArray[np.float64],
+    within_m: float = 0.0,
+) -> bool:
+    """Whether a point lies in a link's collision geometry, which is convex, or no farther from its planes.
+
+    Args:
+        machine: of convex links.
+        joints: where it is [m or rad].
+        point_in_world: shape (3,) [m].
+        within_m: so far outside of a plane it may lie [m].
+    """
+    placed = machine.world_from_links(joints)
+    for link in machine.links:
+        if link.has_geometry:
+            planes = trimesh.Trimesh(link.vertices, link.faces)
+            beyond = (
+                _in_link(placed[link.name], point_in_world) - planes.triangles[:, 0]
+            ) * planes.face_normals
+            if (beyond.sum(axis=1) <= within_m).all():
+                return True
+    return False
+
+
+def _corners_z(world_from_link: NDArray[np.float64], boxes: Sequence[Box]) -> float:
+    """The least height of a link's boxes, or less [m]."""
+    return min(
+        float((world_from_link[:3, :3] @ middle + world_from_link[:3, 3])[2] - np.linalg.norm(edges) / 2)
+        for edges, middle in boxes
+    )
 
 
 def _in_link(

@@ -9,6 +9,7 @@ from elbowroom.evaluate.looks.scene import Scene, as_codes
 from elbowroom.geometry import VoxelGrid
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import SETUPS, InterventionRoom, Moment, render, setup, wall_cameras
+from elbowroom.simulate.inside import hung_clear
 from elbowroom.site import Site
 from elbowroom.sources.layouts.layout import layout_of
 
@@ -48,7 +49,8 @@ def package_scenes() -> Iterator[Scene]:
     moments += [(each.name, setup(each.number).at(room.machine)) for each in SETUPS]
     for name, moment in moments:
         for noise in ("exact", "tof", "realsense_d435"):
-            cameras = wall_cameras(21, (2.4, 0.4), size="qqvga", noise=NOISE_PRESETS.get(noise))
+            hung = wall_cameras(21, (2.4, 0.4), size="qqvga", noise=NOISE_PRESETS.get(noise))
+            cameras = hung_clear(hung, moment.static_solids)
             frames = render(cameras, moment)
             codes = {frame.camera: as_codes(frame.depth_m, UNIT_M) for frame in frames}
             yield Scene(f"{name}, {noise}", grid, cameras, codes, dict.fromkeys(codes, UNIT_M))

@@ -13,6 +13,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.placement import FixedRoom, Rehearsal, Settings, random_scenes, rehearse
 from elbowroom.reconstruct import Terms, reconstruct
 from elbowroom.simulate import InterventionRoom, Moment, render, true_occupancy, wall_cameras
+from elbowroom.simulate.inside import hung_clear
 from elbowroom.simulate.setups import SETUPS
 from elbowroom.site import Site
 
@@ -34,7 +35,7 @@ def room_rows(effort: Effort) -> Iterator[dict[str, Any]]:
     site = Site.simulated_room()
     settings = in_use(site)
     for size in ("vga", "qqvga"):
-        cameras = wall_cameras(CAMERAS, HEIGHTS_M, size=size)
+        cameras = hung_clear(wall_cameras(CAMERAS, HEIGHTS_M, size=size), InterventionRoom().solids)
         scenes = random_scenes(site, settings.grid, None, effort.scenes, seed=1)
         predicted = rehearse(cameras, scenes, settings, by_camera=False)
         room = InterventionRoom(machine=settings.machine)

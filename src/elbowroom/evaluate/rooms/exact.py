@@ -6,7 +6,7 @@ before the link's fastest point has covered their distance, so each pair is look
 """
 
 import heapq
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -82,6 +82,24 @@ class ExactTravel:
                     least = min(least, self._distance(body, placed[name], obstacle)[0])
         return least
 
+    def gaps(self, joints: Mapping[str, float], joint: str, below_m: float) -> dict[tuple[str, str], float]:
+        """Distances of links that a joint moves from solids, by link and solid, those that are small alone [m].
+
+        Args:
+            joints: positions by name [m or rad].
+            joint: what moves.
+            below_m: greater distances are left out [m].
+        """
+        placed = self._machine.world_from_links(joints)
+        found = {}
+        for name in self._machine.moved_links(joint):
+            for obstacle in self._solids if name in self._links else ():
+                if obstacle.at_least(self._links[name], placed[name]) < below_m:
+                    distance = self._distance(self._links[name], placed[name], obstacle)[0]
+                    if distance < below_m:
+                        found[name, obstacle.name] = distance
+        return found
+
     def until_contact(self, joints: Mapping[str, float], motion: Motion) -> Contact:
         """How far one joint can go.
 
@@ -92,37 +110,72 @@ class ExactTravel:
         Raises:
             MachineError: unknown, missing or impossible joints, or a joint that others follow.
         """
-        machine = self._machine
-        joint = machine.joint(motion.joint)
+        moving = self._moving(motion)
+        return self._first(joints, motion, [(name, solid) for name in moving for solid in self._solids])
+
+    def until_own_contact(
+        self, joints: Mapping[str, float], motion: Motion, pairs: Iterable[tuple[str, str]]
+    ) -> Contact:
+        """How far one joint can go until the machine's links touch each other; its `solid` is then a link.
+
+        Args:
+            joints: where all joints are, by name [m or rad].
+            motion: joint, direction and reach.
+            pairs: names of links that must not touch; those that this joint does not move against each other are
+                passed over.
+
+        Raises:
+            MachineError: as `until_contact`.
+        """
+        placed, moving = self._machine.world_from_links(joints), set(self._moving(motion))
+        both = []
+        for one, other in pairs:
+            if (one in moving) != (other in moving):
+                mover, still = (one, other) if one in moving else (other, one)
+                solid = Solid(still, self._links[still].mesh, placed[still])
+                both.append((mover, _Obstacle(self._coal, solid)))
+        return self._first(joints, motion, both)
+
+    def _moving(self, motion: Motion) -> list[str]:
+        """Checked links that a joint moves."""
+        machine, joint = self._machine, self._machine.joint(motion.joint)
         if any(other.mimic is not None and other.mimic.joint == joint.name for other in machine.joints):
             raise MachineError(
                 f"exact travel: joint {joint.name} has followers, whose speeds are not known here"
             )
+        return [name for name in machine.moved_links(motion.joint) if name in self._links]
+
+    def _first(
+        self, joints: Mapping[str, float], motion: Motion, pairs: Sequence[tuple[str, "_Obstacle"]]
+    ) -> Contact:
+        """The first contact of pairs of a link that moves and a thing that stands still."""
+        machine = self._machine
+        joint = machine.joint(motion.joint)
         start = float(joints[motion.joint])
         room = joint.upper - start if motion.direction > 0 else start - joint.lower
         length = float(max(0.0, min(motion.looked_at, room)))
         placed = machine.world_from_links(joints)
-        moving = [name for name in machine.moved_links(motion.joint) if name in self._links]
         axis = _Axis.of(joint.kind, joint.axis_in_joint, placed[joint.child])
+        moving = {name for name, _ in pairs}
         fastest = {name: axis.greatest_speed(self._links[name], placed[name]) for name in moving}
         # pairs by the travel before which they cannot meet
-        pairs = [
-            (obstacle.at_least(self._links[name], placed[name]) / max(fastest[name], 1e-12), n, name)
-            for name in moving
-            for n, obstacle in enumerate(self._solids)
+        queue = [
+            (obstacle.at_least(self._links[name], placed[name]) / max(fastest[name], 1e-12), n)
+            for n, (name, obstacle) in enumerate(pairs)
         ]
-        pairs = [pair for pair in pairs if pair[0] < length]
-        heapq.heapify(pairs)
-        while pairs:
-            travel, n, name = heapq.heappop(pairs)
+        queue = [entry for entry in queue if entry[0] < length]
+        heapq.heapify(queue)
+        while queue:
+            travel, n = heapq.heappop(queue)
+            name, obstacle = pairs[n]
             here = {**joints, motion.joint: start + motion.direction * travel}
             world_from_link = machine.world_from_links(here)[name]
-            distance, point = self._distance(self._links[name], world_from_link, self._solids[n])
+            distance, point = self._distance(self._links[name], world_from_link, obstacle)
             if distance < NEAR_M:
-                return Contact(travel, length, name, self._solids[n].name, axis.speed(point))
+                return Contact(travel, length, name, obstacle.name, axis.speed(point))
             travel += distance / fastest[name]
             if travel < length:
-                heapq.heappush(pairs, (travel, n, name))
+                heapq.heappush(queue, (travel, n))
         return Contact(length, length)
 
     def _distance(

@@ -17,7 +17,7 @@ from elbowroom.evaluate.shares.task import Outcome, Row, Settings, Task
 from elbowroom.evaluate.tables import table_of
 from elbowroom.evaluate.thesis.fig3 import fig3_picture
 from elbowroom.evaluate.thesis.part import Part, about
-from elbowroom.evaluate.thesis.thesis import HEIGHTS_M, c_arm, sensor_cameras
+from elbowroom.evaluate.thesis.thesis import c_arm, sensor_cameras
 from elbowroom.extras import package
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import reconstruct
@@ -66,7 +66,7 @@ def judge_counts(number: int, voxel_size_m: float) -> Outcome:
     said = {"kind": "cameras", "setup": number, **_said("640x480", voxel_size_m), "detail": "pixel"}
     rows = []
     for count in COUNTS:
-        views = hung_clear(sensor_cameras("640x480", count=count), scene.solids(), max(HEIGHTS_M))
+        views = hung_clear(sensor_cameras("640x480", count=count), scene.solids())
         frames = render(views, moment, noise=False)
         seen = reconstruct(grid, views, frames, rule="any", detail="point", looks=False).free
         space = reconstruct(grid, views, frames, machine=machine, joints=moment.joints, looks=False)

@@ -103,9 +103,11 @@ def _watch() -> None:
 
 
 def _simulated_cameras() -> None:
+    from elbowroom.geometry.noise import NoiseModel
     from elbowroom.simulate import InterventionRoom, render, wall_cameras
 
-    render(wall_cameras(1, width=32, height=24), InterventionRoom().at(0.0), seed=0)
+    for noise in (NoiseModel(constant_m=0.001), None):
+        render(wall_cameras(1, width=32, height=24, noise=noise), InterventionRoom().at(0.0), seed=0)
 
 
 JOBS = (

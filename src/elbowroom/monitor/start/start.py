@@ -13,7 +13,7 @@ from elbowroom.monitor.start.looking import looks_of
 from elbowroom.monitor.start.watching import checks_of
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
-from elbowroom.sources import Recorded, Room, times_of
+from elbowroom.sources import Played, Recorded, Room, times_of
 from elbowroom.sources.pace import Pace
 from elbowroom.sources.times.meeting import gap_ns
 
@@ -30,10 +30,10 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
         SiteError, CalibrationError: as `checks_of`.
     """
     cycle = _cycle(room)
-    recorded = isinstance(room.source, Recorded)
+    waits, recorded = isinstance(room.source, Recorded), isinstance(room.source, Recorded | Played)
     pause_ns = _gap_ns(room) if recorded else gap_ns(None)
     checks = replace(checks_of(room, begin), looks=looks_of(room))
-    loop = Loop(room, checks, cycle, Pace(pause_ns).early_s if recorded else None)
+    loop = Loop(room, checks, cycle, Pace(pause_ns).early_s if waits else None)
     _warm_up(loop, begin)
     # after that, since the source begins anew, and its times with it
     clocks = Clocks(room.terms.max_age_ns, recorded, pause_ns)
@@ -50,7 +50,8 @@ def _cycle(room: Room) -> Cycle | SpaceCycle:
     if room.unasked is not None:
         return SpaceCycle(room.grid, room.cameras, room.machine, room.terms)
     machine, motions = room.machine_and_motions()
-    return Cycle(room.grid, room.cameras, machine, motions, room.terms)
+    override = room.site.override(machine)
+    return Cycle(room.grid, room.cameras, machine, motions, room.terms, override=override)
 
 
 def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:

@@ -12,6 +12,7 @@ from elbowroom.monitor.health.drift.reference import CameraReference
 from elbowroom.monitor.health.drift.reference_file import load_references
 from elbowroom.monitor.health.drift.tolerance import Tolerance
 from elbowroom.monitor.health.drift.watch import Watch
+from elbowroom.site import Site
 from elbowroom.sources import Room
 
 FRAMES = 12
@@ -51,12 +52,19 @@ def _referenced(room: Room) -> Watch:
     entry = room.site.entry.watch
     assert entry is not None
     path = entry.reference_path(room.site.path.parent)
-    tolerance = Tolerance(float(np.radians(entry.turn_deg)), entry.move_mm / 1e3)
     references = load_references(path)
     try:
-        return Watch(room.cameras, references, room.machine, tolerance)
+        return Watch(room.cameras, references, room.machine, tolerance_of(room.site))
     except CalibrationError as error:
         raise CalibrationError(f"{path}: {error}") from None
+
+
+def tolerance_of(site: Site) -> Tolerance:
+    """What the site does not yet call moved."""
+    entry = site.entry.watch
+    if entry is None:
+        return Tolerance()
+    return Tolerance(float(np.radians(entry.turn_deg)), entry.move_mm / 1e3)
 
 
 def _commissioned(room: Room) -> tuple[CameraReference, ...]:

@@ -149,6 +149,10 @@ def _advice(found: Why, source: ImageSource) -> list[str]:
         return [
             f"pixels without a valid return: {', '.join(blind)}; look for what blinds them, or for its range"
         ]
+    if cause is Cause.KEPT_OUT:
+        return [
+            f"zone {found.verdict.zone} keeps all links out there: change it in the site, if it may be entered"
+        ]
     if cause is Cause.UNSEEN:
         hidden = [c.camera for c in report.cameras if c.sight in (Sight.HIDDEN, Sight.EDGE)]
         hiding = f"{', '.join(hidden)} would see it, were nothing in between; " if hidden else ""

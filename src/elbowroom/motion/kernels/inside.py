@@ -4,6 +4,7 @@ from numba import njit
 
 from elbowroom.geometry.kernels.bits import bit_of, word_of
 from elbowroom.motion.kernels.mover import ROUNDING_M, carried
+from elbowroom.motion.kernels.shared import row_of
 from elbowroom.motion.kernels.touched import SURFACE, kind_of
 from elbowroom.motion.kernels.volume import counted, meets_block
 
@@ -43,6 +44,10 @@ def _look_at_points(deep, cluster, world_from_link, volume, found, places):
         i, j, k = int(u), int(v), int(w)
         word, bit = word_of(i, j, k, lattice.cubes_y, lattice.cubes_z), bit_of(i, j, k)
         if not volume.words[word] & bit:
+            continue
+        # of a voxel that the link only reaches into, what it does not cover blocks
+        shared = row_of(volume.shared, (i * lattice.ny + j) * lattice.nz + k)
+        if shared >= 0 and volume.shared.links[shared, row]:
             continue
         kind = kind_of(volume, word, bit)
         if kind < found[row]:

@@ -1,4 +1,7 @@
-"""When a part of a machine first meets another: steps as long as their distance allows (conservative advancement)."""
+"""When a part of a machine first meets another: steps as long as their distance allows (conservative advancement).
+
+Samples of one in the other's field tell which pairs stay apart; what comes near is looked at exactly (`closing`).
+"""
 
 import math
 from typing import NamedTuple
@@ -6,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.machine.kernels.apart import Bodies, relate
+from elbowroom.motion.kernels.closing import space, touch
 from elbowroom.motion.kernels.field import Fields, at_least
 from elbowroom.motion.kernels.mover import Skin, carried, place_at
 
@@ -20,6 +25,7 @@ class Pairs(NamedTuple):
         sampled, other: rows of the links, (pairs,).
         doubt: by how much more than what is told of it a pair's distance may be, (pairs,) [m].
         pair, cluster: of each cluster of a sampled link, once for each pair, (members,), sorted by pair.
+        bodies: the same pairs as triangles.
     """
 
     skin: Skin
@@ -30,10 +36,24 @@ class Pairs(NamedTuple):
     doubt: np.ndarray
     pair: np.ndarray
     cluster: np.ndarray
+    bodies: Bodies
 
 
 RUN = 8
 """So many samples of a cluster that lie side by side are passed over together."""
+
+
+class Now(NamedTuple):
+    """How far links are apart where they stand.
+
+    Fields:
+        apart: each pair, exact, (pairs,) [m]; infinity: by more than makes a meeting; 0: they lie in each other.
+        gaps, least: of `gaps_now`.
+    """
+
+    apart: np.ndarray
+    gaps: np.ndarray
+    least: np.ndarray
 
 
 class Steps(NamedTuple):
@@ -46,17 +66,6 @@ class Steps(NamedTuple):
 
     least: float
     together: float
-
-
-@njit
-def _relate(placed, one, other, other_from_one):
-    """Fills a transform (3, 4) from a link's frame to another's."""
-    a, b = placed[one], placed[other]
-    for i in range(3):
-        for j in range(3):
-            other_from_one[i, j] = b[0, i] * a[0, j] + b[1, i] * a[1, j] + b[2, i] * a[2, j]
-        x, y, z = a[0, 3] - b[0, 3], a[1, 3] - b[1, 3], a[2, 3] - b[2, 3]
-        other_from_one[i, 3] = b[0, i] * x + b[1, i] * y + b[2, i] * z
 
 
 @njit
@@ -104,43 +113,56 @@ def gaps_now(pairs, placed, gaps, least):
     for member in range(gaps.size):
         pair = pairs.pair[member]
         if pair != last:
-            _relate(placed, pairs.sampled[pair], pairs.other[pair], other_from_one)
+            relate(placed, pairs.sampled[pair], pairs.other[pair], other_from_one)
             last = pair
         gaps[member] = _gap(pairs, member, other_from_one, pairs.doubt[pair], nearest)
         least[pair] = min(least[pair], gaps[member])
 
 
 @njit(cache=True, nogil=True)
-def first_meeting(mover, pairs, length, gaps, least, steps):
-    """The travel up to which no pair meets, the member that meets after it, and the place of its nearest sample.
+def first_meeting(mover, parts, pairs, length, now, steps):
+    """The travel up to which no pair meets, the pair that meets after it or -1, and where.
 
-    A pair has met where what is told of its distance is no more than 0. Where that is less than the doubt about it
-    already, it has met when it is told to be nearer by all of the doubt: links that stay as far apart as they are do
-    not meet. Links may meet in passing, between two looks, as far as they move between them.
+    A pair that is apart is looked at exactly (`closing.touch`) from where samples cannot tell any more that it is. One
+    that lies in each other has met when it is told to be nearer by all of the doubt: links that stay as deep as they
+    are do not meet.
 
     Args:
         mover: what moves, and how. Its speeds are the most by which the distance of each member's surface from the
             other link changes per unit of travel, (members,) [m]; 0: they move as one.
+        parts: the same for all parts of the links (`Travelling`).
         pairs: what must not meet.
         length: travel that is looked at, at most the course's.
-        gaps, least: now, of `gaps_now`.
+        now: how far apart they are (`Now`).
         steps: how closely they are looked for.
 
     Returns:
-        Travel at which the member that meets was last looked at before, the member or -1, place (3,) [m].
+        Travel at which the pair that meets was last looked at before, the pair or -1, place (3,) [m].
     """
-    tree, speeds = mover.tree, mover.speeds
+    tree, speeds, gaps, apart = mover.tree, mover.speeds, now.gaps, now.apart
     place, nearest = np.zeros(3), np.zeros(1, dtype=np.int64)
     placed, other_from_one = np.empty((1, tree.parent.size, 4, 4)), np.empty((3, 4))
-    floors = np.minimum(least - pairs.doubt, 0.0)
+    work, found = space(tree.parent.size), -1
+    floors = np.where(apart > 0.0, 0.0, np.minimum(now.least - pairs.doubt, 0.0))
+    settled = np.zeros(apart.size, dtype=np.bool_)
     # of the members that can meet: which, when to look again, and when they were looked at and had not met
     active, until, before = np.empty(gaps.size, dtype=np.int64), np.empty(gaps.size), np.zeros(gaps.size)
     count = 0
     for member in range(gaps.size):
-        reach = gaps[member] - floors[pairs.pair[member]]
-        if speeds[member] > 0.0 and reach < speeds[member] * length:
-            active[count], until[count] = member, max(reach, steps.least) / speeds[member]
-            count += 1
+        pair = pairs.pair[member]
+        reach = gaps[member] - floors[pair]
+        if speeds[member] <= 0.0 or reach >= speeds[member] * length:
+            continue
+        if apart[pair] > 0.0 and reach <= 0.0:
+            if not settled[pair]:
+                settled[pair] = True
+                met = min(pairs.bodies.met, apart[pair] / 2)
+                end = touch(parts, pairs.bodies, pair, met, (0.0, length), work, place)
+                if end >= 0.0:
+                    found, length = pair, end
+            continue
+        active[count], until[count] = member, max(reach, steps.least) / speeds[member]
+        count += 1
     while count > 0:
         travel = until[:count].min()
         if travel >= length:
@@ -149,20 +171,28 @@ def first_meeting(mover, pairs, length, gaps, least, steps):
         last, left = -1, 0
         for n in range(count):
             member, safe, known = active[n], until[n], before[n]
+            pair = pairs.pair[member]
+            if settled[pair]:
+                continue
             if safe <= travel + steps.together * length:
-                pair = pairs.pair[member]
                 if pair != last:
-                    _relate(placed[0], pairs.sampled[pair], pairs.other[pair], other_from_one)
+                    relate(placed[0], pairs.sampled[pair], pairs.other[pair], other_from_one)
                     last = pair
                 away = _gap(pairs, member, other_from_one, floors[pair], nearest) - floors[pair]
                 if away <= 0.0:
-                    row = pairs.sampled[pair]
-                    place[0], place[1], place[2] = carried(placed[0, row], pairs.skin.points[nearest[0]])
-                    return known, member, place
+                    settled[pair], end = True, known
+                    if apart[pair] > 0.0:
+                        end = touch(parts, pairs.bodies, pair, pairs.bodies.met, (known, length), work, place)
+                    else:
+                        row = pairs.sampled[pair]
+                        place[0], place[1], place[2] = carried(placed[0, row], pairs.skin.points[nearest[0]])
+                    if end >= 0.0:
+                        found, length = pair, end
+                    continue
                 safe, known = travel + max(away, steps.least) / speeds[member], travel
             # what stays apart on all of the way is not asked again
             if safe < length:
                 active[left], until[left], before[left] = member, safe, known
                 left += 1
         count = left
-    return length, -1, place
+    return length, found, place

@@ -7,6 +7,7 @@ from numba import njit
 
 from elbowroom.geometry.kernels.bits import bit_of, uncounted, word_of
 from elbowroom.motion.kernels.mover import ROUNDING_M, Skin, carried
+from elbowroom.motion.kernels.shared import row_of, triangle_meets_cells
 from elbowroom.motion.kernels.triangles import triangle_meets_box
 from elbowroom.motion.kernels.volume import cell_of, counted, gap, leaves
 
@@ -15,9 +16,11 @@ SURFACE, OUTSIDE, BLIND, UNSEEN, NOTHING = 0, 1, 2, 3, 4
 
 
 class Patch(NamedTuple):
-    """The triangles about a sample: where its link is, by how much they are grown [m], of which skin and sample."""
+    """The triangles about a sample: where its link is, which link it is, by how much they are grown [m], of which skin
+    and sample."""
 
     world_from_link: np.ndarray
+    link: int
     grown: float
     skin: Skin
     sample: int
@@ -48,6 +51,21 @@ def _meets_patch(patch, x, y, z, half_edge, triangle):
     return False
 
 
+@uncounted()
+def _meets_shared(patch, row, volume, x, y, z, triangle):
+    """Whether a patch, as it is grown, meets what is blocked for its link of a shared voxel about (x, y, z)."""
+    skin, edge = patch.skin, volume.lattice.edge
+    for n in range(skin.patch_start[patch.sample], skin.patch_start[patch.sample + 1]):
+        for corner in range(3):
+            a, b, c = carried(patch.world_from_link, skin.triangles[skin.patches[n], corner])
+            triangle[corner, 0], triangle[corner, 1], triangle[corner, 2] = a, b, c
+        if triangle_meets_cells(
+            triangle, volume.shared.cells[row], x - edge / 2, y - edge / 2, z - edge / 2, edge, patch.grown
+        ):
+            return True
+    return False
+
+
 @njit(inline="always")
 def kind_of(volume, word, bit):
     """What a blocked voxel is."""
@@ -74,9 +92,9 @@ def touched_block(placed, mover, half, volume, samples, place, triangle):
         world_from_link = placed[skin.link[cluster]]
         x, y, z = carried(world_from_link, skin.points[sample])
         grown = mover.speeds[cluster] * half + (ROUNDING_M + skin.off)
-        patch = Patch(world_from_link, grown, skin, sample)
+        patch = Patch(world_from_link, skin.link[cluster], grown, skin, sample)
         r = skin.cover + grown
-        if leaves(x, y, z, r, lattice) and _leaves_patch(patch, lattice):
+        if volume.shared.others and leaves(x, y, z, r, lattice) and _leaves_patch(patch, lattice):
             if found > OUTSIDE:
                 found, by = OUTSIDE, cluster
                 place[0], place[1], place[2] = x, y, z
@@ -117,7 +135,14 @@ def _touched_by(patch, ball, volume, found, place, triangle):
                     lattice.y0 + (j + 0.5) * lattice.edge,
                     lattice.z0 + (k + 0.5) * lattice.edge,
                 )
-                if _meets_patch(patch, x, y, z, lattice.edge / 2 + patch.grown, triangle):
+                row = row_of(volume.shared, (i * lattice.ny + j) * lattice.nz + k)
+                if row >= 0 and volume.shared.links[row, patch.link]:
+                    meets = _meets_shared(patch, row, volume, x, y, z, triangle)
+                else:
+                    meets = volume.shared.others and _meets_patch(
+                        patch, x, y, z, lattice.edge / 2 + patch.grown, triangle
+                    )
+                if meets:
                     found = kind
                     place[0], place[1], place[2] = x, y, z
     return found

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from elbowroom.geometry.kernels.bits import Lattice, bit_of, word_of
+from elbowroom.motion.kernels.shared import Shared
 
 
 class Volume(NamedTuple):
@@ -17,6 +18,7 @@ class Volume(NamedTuple):
         corners: one bit a voxel: whether any of the eight is that meet at its least corner.
         cubes: bool, whether any of the voxels of each 16-voxel cube is.
         surface, blind, disputed: one bit a voxel: what the blocked voxels are.
+        shared: those that links reach into where they stand.
     """
 
     lattice: Lattice
@@ -26,6 +28,7 @@ class Volume(NamedTuple):
     surface: np.ndarray
     blind: np.ndarray
     disputed: np.ndarray
+    shared: Shared
 
 
 class Axis(NamedTuple):

@@ -171,7 +171,7 @@ def in_scenes(
     """
     rng = np.random.default_rng(seed)
     wanted = 1.0 if share is None else share
-    best = repair(SceneLayout.of(model, ()), wanted, budget)
+    best = repair(model.empty(), wanted, budget)
     best = best if share is None else prune(best, share)
     course.note(best)
     here = best

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +47,10 @@ class SceneModel:
         enough = np.cumsum(alone) >= share * self.points - 1e-6
         return float(np.argmax(enough) + 1) if enough.any() else np.inf
 
+    def empty(self) -> "SceneLayout":
+        """The layout of those that are kept alone."""
+        return SceneLayout.of(self, ())
+
 
 @dataclass(slots=True, eq=False)
 class SceneLayout:
@@ -61,10 +66,10 @@ class SceneLayout:
     model: SceneModel
     chosen: list[int]
     state: NDArray[np.uint64]
-    valid: int
+    valid: float
 
     @classmethod
-    def of(cls, model: SceneModel, chosen: Sequence[int]) -> "SceneLayout":
+    def of(cls, model: SceneModel, chosen: Sequence[int]) -> Self:
         """The layout of these candidates, and of those that are kept."""
         layout = cls(
             model, list(dict.fromkeys((*model.kept, *chosen))), np.zeros((4, len(model.truly)), np.uint64), 0
@@ -93,10 +98,10 @@ class SceneLayout:
         """Of all that is chosen and not there already."""
         return float(sum(self.model.price[c] for c in self.chosen if c not in self.model.kept))
 
-    def without(self, members: Sequence[int]) -> "SceneLayout":
+    def without(self, members: Sequence[int]) -> Self:
         """The layout without some of its candidates."""
         rest = [c for c in self.chosen if c not in members]
-        return SceneLayout.of(self.model, rest)
+        return type(self).of(self.model, rest)
 
     def add(self, candidate: int) -> None:
         """Takes a candidate in."""

@@ -24,8 +24,8 @@ class Searched(Protocol):
     chosen: list[int]
 
     @property
-    def valid(self) -> int:
-        """Number of points that are as wanted."""
+    def valid(self) -> float:
+        """Number of points that are as wanted, or what they are worth."""
 
     @property
     def share(self) -> float:

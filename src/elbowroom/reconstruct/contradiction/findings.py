@@ -8,6 +8,7 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.contradiction.eye import Eye
+from elbowroom.reconstruct.contradiction.outside import looks_out, room_of
 from elbowroom.reconstruct.contradiction.pairs import Pairs
 from elbowroom.reconstruct.contradiction.suspicion import (
     FEW,
@@ -146,15 +147,20 @@ def _of_one(eyes: Sequence[Eye], camera: int, share: Share, others: Share) -> Fi
 
 
 def _alone(views: Views, named: Collection[int]) -> tuple[Finding, ...]:
-    """Cameras that share no view with others, where these share theirs."""
+    """Cameras that share no view with others, where these share theirs, and look out of the room that these see."""
     now = standing(views.pairs)
     if len(now.core) < 2 or now.usual < USUAL:
         return ()
     why = (
-        f"shares no view with the other cameras, of which two agree in {now.usual:.0f} points, so that nothing "
-        "checks its pose; if it looks into the same room, pose or lens are not what the site says"
+        f"shares no view with the other cameras, of which two agree in {now.usual:.0f} points, and measures places "
+        "outside of all that they see; if it looks into the same room, pose or lens are not what the site says"
     )
-    alone = (n for n in now.lonely if n not in named and len(views.samples[n].u) >= COMPARED)
+    room = room_of(views, now.core)
+    alone = (
+        n
+        for n in now.lonely
+        if n not in named and len(views.samples[n].u) >= COMPARED and looks_out(views, n, room)
+    )
     names = (views.eyes[camera].name for camera in alone)
     return tuple(Finding(KIND, (name,), f"{name}: {why}", False) for name in names)
 

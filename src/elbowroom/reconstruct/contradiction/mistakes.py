@@ -7,7 +7,6 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from elbowroom.geometry import Intrinsics
 from elbowroom.reconstruct.contradiction.eye import Array, Eye
@@ -192,6 +191,8 @@ def _reordered(order: tuple[int, ...]) -> Undo:
     """The numbers of a quaternion, x y z w, taken in another order."""
 
     def undone(eye: Eye) -> Eye | None:
+        from scipy.spatial.transform import Rotation  # slow to load, and right poses need it not
+
         if np.linalg.det(eye.axes) < 0:
             return None
         numbers = Rotation.from_matrix(eye.axes).as_quat()
@@ -204,6 +205,8 @@ def _radians(order: str) -> Undo:
     """Small angles made large again."""
 
     def undone(eye: Eye) -> Eye | None:
+        from scipy.spatial.transform import Rotation  # slow to load, and right poses need it not
+
         if np.linalg.det(eye.axes) < 0:
             return None
         with warnings.catch_warnings():
@@ -280,4 +283,6 @@ def _depths() -> tuple[Mistake, ...]:
 
 
 def _turn(axis: str, degrees: float) -> Array:
+    from scipy.spatial.transform import Rotation  # slow to load, and right poses need it not
+
     return np.asarray(Rotation.from_euler(axis, degrees, degrees=True).as_matrix())

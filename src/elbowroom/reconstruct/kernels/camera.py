@@ -37,6 +37,7 @@ _FIELDS = np.dtype(
         ("first_texel", "i8"),
         ("first_tile", "i8"),
         ("radial", "?"),
+        ("flies", "?"),
         ("blank", "?"),
         ("explained", "?"),
     ],
@@ -46,7 +47,8 @@ _FIELDS = np.dtype(
 CAMERA = np.dtype((np.record, _FIELDS))
 """One camera.
 
-Pose: camera_from_world, centre_in_world [m]. Lens: fx, fy, cx, cy [px], width, height, and whether depth is radial.
+Pose: camera_from_world, centre_in_world [m]. Lens: fx, fy, cx, cy [px], width, height, whether depth is radial, and
+whether pixels fly.
 Margin: of depth (`geometry.kernels.noise.DepthMargin`), of direction [px], and the quantum that counts depth [m].
 
 Rays: how a pixel's direction turns in the world, d_a = ray[0, a] + ray[1, a] u + ray[2, a] v along axis a, its half

@@ -149,9 +149,31 @@ def sort_out(camera, texels, edge, unsure, lanes):
         greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
         if texel == NEUTRAL or greatest == NO_RETURN:
             continue
-        if abs(greatest * quantum - at) < inner + margin - ROUNDING_M:
+        if abs(greatest * quantum - at) < inner + margin - ROUNDING_M and not (
+            camera.flies and _may_be_alone(camera, texels, lanes, lane, at, inner + margin - ROUNDING_M)
+        ):
             surface |= bit
     return surface, stopped
+
+
+@uncounted(cache=True)
+def _may_be_alone(camera, texels, lanes, lane, at, reach):
+    """Whether no pixel about the middle one of a voxel surely measured something in the voxel, or nothing at all.
+
+    Args:
+        camera, texels, lanes, lane: as of `sort_out`.
+        at, reach: depth of the voxel's centre, and what lies so near to it is surely in it [m].
+    """
+    u, v = int(lanes.u[lane]), int(lanes.v[lane])
+    for row in range(max(v - 1, 0), min(v + 1, camera.height - 1) + 1):
+        for column in range(max(u - 1, 0), min(u + 1, camera.width - 1) + 1):
+            texel = texels.doubt_texels[camera.first_texel + row * camera.width + column]
+            if (row == v and column == u) or texel == NEUTRAL:
+                continue
+            greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
+            if greatest == NO_RETURN or abs(greatest * camera.quantum - at) < reach:
+                return False
+    return True
 
 
 @uncounted(cache=True)

@@ -142,9 +142,26 @@ def bounds_about(camera, texels, pixels):
     return _bounds(texels.trust_tiles, camera.first_tile, (camera.width + 3) >> 2, tiles)
 
 
+@uncounted(cache=True)
+def _is_alone(camera, texels, depths, pixel):
+    """Whether all eight pixels about one say nothing of a voxel, each by itself; none at the image's edge is alone."""
+    u, v = pixel.u, pixel.v
+    if u < 1 or v < 1 or u > camera.width - 2 or v > camera.height - 2:
+        return False
+    for row in range(v - 1, v + 2):
+        at = camera.first_texel + row * camera.width
+        for column in range(u - 1, u + 2):
+            if (row != v or column != u) and not _says_nothing(texels.doubt_texels[at + column], depths):
+                return False
+    return True
+
+
 @uncounted(cache=True, error_model="numpy", forceinline=True)
-def _ask_pixel(camera, depths, voxel, pixel):
-    """What one pixel whose cone meets the voxel says of it: 0, or BLOCKED with what else it says."""
+def _ask_pixel(camera, texels, depths, voxel, pixel):
+    """What one pixel whose cone meets the voxel says of it: 0, or BLOCKED with what else it says.
+
+    Where pixels fly one alone disputes nothing: a surface that the camera can resolve is in a pixel beside it as well.
+    """
     quantum, margin = camera.quantum, depths.margin
     steep_near, steep_far = steepness(camera, pixel.u, pixel.v)
     if has_left(camera, voxel, pixel, (pixel.free_to * quantum - margin) / steep_far):
@@ -153,11 +170,15 @@ def _ask_pixel(camera, depths, voxel, pixel):
         return BLOCKED
     greatest = greatest_of(pixel.measured)
     if greatest == NO_RETURN:
+        if camera.flies and _is_alone(camera, texels, depths, pixel):
+            return BLOCKED
         return BLOCKED | DISPUTES | IS_BLIND
     least = pixel.measured >> np.uint32(16)
     if not_reached(camera, voxel, pixel, (greatest * quantum + margin) / steep_near):
         return BLOCKED
     if has_left(camera, voxel, pixel, (least * quantum - margin) / steep_far):
+        return BLOCKED
+    if camera.flies and _is_alone(camera, texels, depths, pixel):
         return BLOCKED
     return BLOCKED | DISPUTES | IS_SURFACE
 
@@ -190,7 +211,7 @@ def _ask_pixels(camera, texels, pixels, depths, voxel):
                         continue
                     if misses(voxel, u, v):
                         continue
-                    answer |= _ask_pixel(camera, depths, voxel, Pixel(u, v, free_to, measured))
+                    answer |= _ask_pixel(camera, texels, depths, voxel, Pixel(u, v, free_to, measured))
                     if answer & IS_SURFACE:
                         return BLOCKED | DISPUTES | IS_SURFACE
     return answer

@@ -32,6 +32,11 @@ class Ends(NamedTuple):
     leaves_m: NDArray[np.float64]
 
 
+def together(parts: Sequence[Ends]) -> Ends:
+    """The ends of all rays of several cameras."""
+    return Ends(*(np.concatenate(each) for each in zip(*parts, strict=True)))
+
+
 class Standing(NamedTuple):
     """How depths stand to the grid.
 
@@ -63,14 +68,14 @@ def look_at_units(images: Sequence[Thinned], grid: VoxelGrid) -> list[Finding]:
         images: one of each camera.
         grid: the watched box.
     """
-    ends = {image.camera.name: _ends(image, grid) for image in images}
+    ends = {image.camera.name: ends_of(image, grid) for image in images}
     usable = [image for image in images if ends[image.camera.name].depths_m.size >= LEAST_RAYS]
     if not usable:
         return []
     slack = SLACK * float(np.linalg.norm(grid.upper_m - grid.lower_m))
     names = tuple(image.camera.name for image in usable)
-    every = Ends(*(np.concatenate(parts) for parts in zip(*(ends[name] for name in names), strict=True)))
-    stands = _standing(every, slack)
+    every = together([ends[name] for name in names])
+    stands = standing_of(every, slack)
     if is_far(stands) or (stands.reach >= 1.6 and stands.behind >= 0.65):
         return [Finding(KIND, names, _too_far(stands, usable[0], every, slack), is_far(stands))]
     if stands.reach <= 0.25:
@@ -80,14 +85,19 @@ def look_at_units(images: Sequence[Thinned], grid: VoxelGrid) -> list[Finding]:
 
 def _one(image: Thinned, ends: Ends, slack: float) -> list[Finding]:
     """One camera among others that are as they should be."""
-    stands, about = _standing(ends, slack), (image.camera.name,)
+    stands, about = standing_of(ends, slack), (image.camera.name,)
     if stands.reach >= 2.5 and stands.behind >= 0.95 and stands.within <= 0.03:
         return [Finding(KIND, about, _too_far(stands, image, ends, slack), stops=False)]
     return []  # one that is too near may look at a cabinet, and frees nothing
 
 
-def _ends(image: Thinned, grid: VoxelGrid) -> Ends:
-    """All that was given, also beyond the camera's range, but for one number that fills much of what is."""
+def ends_of(image: Thinned, grid: VoxelGrid) -> Ends:
+    """All that was given, also beyond the camera's range, but for one number that fills much of what is.
+
+    Args:
+        image: of one camera.
+        grid: the watched box.
+    """
     enters, leaves = way_through(grid, image.camera.centre_in_world, image.rays_in_world)
     way = LEAST_WAY * float(np.linalg.norm(grid.upper_m - grid.lower_m))
     usable = image.given & (leaves - enters > way)
@@ -102,8 +112,14 @@ def _ends(image: Thinned, grid: VoxelGrid) -> Ends:
     return Ends(depth[usable], enters[usable], leaves[usable])
 
 
-def _standing(ends: Ends, slack: float, factor: float = 1.0) -> Standing:
-    """As if depths were so many times what they are."""
+def standing_of(ends: Ends, slack: float, factor: float = 1.0) -> Standing:
+    """How depths stand to the grid.
+
+    Args:
+        ends: of some rays.
+        slack: a point so far outside the grid still belongs to it [m].
+        factor: as if depths were so many times what they are.
+    """
     depths = ends.depths_m * factor
     return Standing(
         float(np.median(depths)),
@@ -118,7 +134,7 @@ def _too_far(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str:
         f"{stands.behind:.0%} of what looks through the grid ends behind it, {stands.median_m:.3g} m away (median), "
         f"{stands.reach:.2g} times as far as the grid's end: all before it reads free. Most likely the unit of "
         "depth: "
-        f"{_advice(stands, image, ends, slack)}. If there is truly nothing in the box, let it reach to a floor or "
+        f"{advice_on(stands, image, ends, slack)}. If there is truly nothing in the box, let it reach to a floor or "
         "wall "
         "that cameras see"
     )
@@ -129,12 +145,19 @@ def _too_near(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str
         f"what looks through the grid ends {stands.median_m:.3g} m away (median), at {stands.reach:.0%} of the "
         "way to the "
         "grid's end: next to nothing can read free. Most likely the unit of depth, or something before the lens: "
-        f"{_advice(stands, image, ends, slack)}"
+        f"{advice_on(stands, image, ends, slack)}"
     )
 
 
-def _advice(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str:
-    """Which unit fits better, if any does."""
+def advice_on(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str:
+    """Which unit fits better, if any does, in words.
+
+    Args:
+        stands: the ends to the grid.
+        image: one of those that they are of.
+        ends: of all rays.
+        slack: as of `standing_of` [m].
+    """
     unit, shift = image.unit_m, _shift(image.codes)
     if shift and 0.4 <= stands.reach / shift <= 1.3:
         return f"all values are multiples of {shift}, so bits are shifted: divide the raw values by {shift}"
@@ -149,7 +172,7 @@ def _advice(stands: Standing, image: Thinned, ends: Ends, slack: float) -> str:
         else {f"depth_scale_m {each:g}": each / unit for each in UNITS_M if each != unit}
     )
     words = min(factors, key=lambda each: abs(np.log(stands.reach * factors[each] / 0.95)))
-    fits = _standing(ends, slack, factors[words])
+    fits = standing_of(ends, slack, factors[words])
     if not 0.4 <= fits.reach <= 1.4:
         return said
     return f"{said}; with {words} they would end at {fits.reach:.0%} of the way to it"

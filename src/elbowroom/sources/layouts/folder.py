@@ -1,11 +1,9 @@
-"""Layout `folder`: `<camera>/<stamp_ns>.png`, and a CSV of joints; what lies near in time makes a moment."""
+"""Layout `folder`: `<camera>/<stamp_ns>.png` or `.pgm`, and a CSV of joints; what lies near in time makes a moment."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-
-import numpy as np
 
 from elbowroom.errors import FrameError, SiteError
 from elbowroom.geometry import DepthCamera
@@ -13,11 +11,12 @@ from elbowroom.sensing import JointRecord
 from elbowroom.site.paths import inside
 from elbowroom.site.recording_entry import StampedFolder, StampUnit
 from elbowroom.site.site import Site
+from elbowroom.sources.depth_image import images_in
+from elbowroom.sources.layouts.gathered import gathered, series_of
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.times.company import require_dates
 from elbowroom.sources.times.joints import of_machine, require_meeting
 from elbowroom.sources.times.meeting import Meeting
-from elbowroom.sources.times.series import Series
 from elbowroom.sources.times.stamp import require_possible, stamp_of, unit_of
 
 
@@ -44,21 +43,15 @@ class Folder:
         """
         meeting = self.meeting
         require_dates(self.site.path, meeting)
-        return [
-            [images[index] for images, index in zip(self._rows.values(), column, strict=True) if index >= 0]
-            for column in meeting.taken().T
-        ]
+        return gathered(self._rows, meeting)
 
     @cached_property
     def meeting(self) -> Meeting:
         """When each camera's images were taken, and who meets whom; raises as `moments`."""
-        series = tuple(
-            Series(name, np.array([image.stamp_ns for image in row], dtype=np.int64))
-            for name, row in self._rows.items()
-        )
+        series = series_of(self._rows)
         if not any(map(len, series)):
             raise SiteError(
-                f"{self.site.path}: recording: no frames; expected {self.folder}/<camera>/<stamp_ns>.png"
+                f"{self.site.path}: recording: no frames; expected {self.folder}/<camera>/<stamp_ns>.png, or .pgm"
             )
         declared = self.recording.stamp_unit is not None
         return Meeting(series, round(self.recording.max_skew_ms * 1e6), declared)
@@ -76,7 +69,7 @@ class Folder:
     def _rows(self) -> dict[str, list[Image]]:
         cameras = self.site.cameras()
         self._refuse_unknown({camera.name for camera in cameras})
-        paths = {camera.name: sorted((self.folder / camera.name).glob("*.png")) for camera in cameras}
+        paths = {camera.name: images_in(self.folder / camera.name) for camera in cameras}
         declared = self.recording.stamp_unit
         unit = unit_of([path for row in paths.values() for path in row], declared)
         rows = {camera.name: self._images_of(camera, paths[camera.name], unit) for camera in cameras}
@@ -105,7 +98,7 @@ class Folder:
                 path.is_dir()
                 and path.name not in known
                 and path.name not in self.recording.ignore
-                and any(path.glob("*.png"))
+                and images_in(path)
             ):
                 raise SiteError(
                     f"{path}: images of an unknown camera; cameras are {', '.join(sorted(known))}, "

@@ -3,8 +3,9 @@
 from typing import Protocol
 
 from elbowroom.sensing import JointRecord
-from elbowroom.site.recording_entry import SevenScenes, StampedFolder, StamplessFolder
+from elbowroom.site.recording_entry import BagRecording, SevenScenes, StampedFolder, StamplessFolder
 from elbowroom.site.site import Site
+from elbowroom.sources.layouts.bag import BagFrames
 from elbowroom.sources.layouts.folder import Folder
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.layouts.seven_scenes import SevenScenesFrames
@@ -36,5 +37,7 @@ def layout_of(site: Site) -> Layout:
         return Folder(site, recording, folder)
     if isinstance(recording, StamplessFolder):
         return Stampless(site, recording, folder)
+    if isinstance(recording, BagRecording):
+        return BagFrames(site, recording, folder)
     assert isinstance(recording, SevenScenes)
     return SevenScenesFrames(site, folder)

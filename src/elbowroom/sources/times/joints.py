@@ -13,7 +13,7 @@ from elbowroom.finding import Finding
 from elbowroom.machine import Joint, Machine
 from elbowroom.sensing import JointRecord
 from elbowroom.sensing.joints import END_SLACK_NS
-from elbowroom.site.recording_entry import StampedFolder
+from elbowroom.site.recording_entry import BagRecording, StampedFolder
 from elbowroom.site.site import Site
 from elbowroom.sources.times.cause import Span, cause_text
 from elbowroom.sources.times.meeting import Meeting
@@ -41,7 +41,7 @@ def of_machine(site: Site, machine: Machine, path: Path, record: JointRecord) ->
         JointsError: a joint without a column, or turning joints that are in degrees where radians are said.
     """
     recording = site.entry.recording
-    assert isinstance(recording, StampedFolder)
+    assert isinstance(recording, StampedFolder | BagRecording)
     for name in machine.joint_names:
         if name not in record.joints:
             near = difflib.get_close_matches(name, record.joints, n=1)
@@ -117,11 +117,31 @@ def require_meeting(path: Path, record: JointRecord, meeting: Meeting) -> None:
             else "are they times?"
         )
         raise JointsError(f"{path}: as nanoseconds, {1e9 / step:,.0f} rows a second; {likely}")
-    if known == 0 and not rows.covers(images):
+    require_span(
+        path,
+        record,
+        meeting,
+        "The column of times may be named stamp_ns, stamp_us, stamp_ms or stamp_s",
+    )
+
+
+def require_span(path: Path, record: JointRecord, meeting: Meeting, advice: str) -> None:
+    """Refuses a record that knows nothing of any image, from before the first to after the last.
+
+    Args:
+        path: of the record, to be named.
+        record: of the machine.
+        meeting: of the images.
+        advice: what to do, at the end of the message.
+
+    Raises:
+        JointsError: with both spans of time, and the likely cause.
+    """
+    rows, images = _span(record), _images(meeting)
+    if float(_known(record, meeting.lead.stamps_ns).mean()) == 0 and not rows.covers(images):
         raise JointsError(
             f"{path}: joints from {span_text(rows.first_ns, rows.last_ns)}, images from "
-            f"{span_text(images.first_ns, images.last_ns)}: they never meet; {cause_text(rows, images)}. "
-            "The column of times may be named stamp_ns, stamp_us, stamp_ms or stamp_s"
+            f"{span_text(images.first_ns, images.last_ns)}: they never meet; {cause_text(rows, images)}. {advice}"
         )
 
 

@@ -51,7 +51,7 @@ def stamp_of(path: Path, unit: StampUnit) -> int:
     """
     if not _STAMP.fullmatch(path.stem):
         raise FrameError(
-            f"{path}: name must be the time of exposure in whole nanoseconds, <stamp_ns>.png{_hint(path.stem)}"
+            f"{path}: name must be the time of exposure in whole nanoseconds, <stamp_ns>{path.suffix}{_hint(path)}"
         )
     stamp = int(path.stem) * NS[unit] if "." not in path.stem else int(Decimal(path.stem) * NS[unit])
     if stamp >= 2**63:
@@ -62,17 +62,19 @@ def stamp_of(path: Path, unit: StampUnit) -> int:
     return stamp
 
 
-def _hint(stem: str) -> str:
+def _hint(path: Path) -> str:
     """What to do about a name that holds a number and more."""
-    date = date_in(stem)
+    date = date_in(path.stem)
     if date is not None:
-        return f"; this date would be {date * 1000}.png, if it is of UTC"
-    numbers = re.findall(r"[0-9]+", stem)
+        return f"; this date would be {date * 1000}{path.suffix}, if it is of UTC"
+    numbers = re.findall(r"[0-9]+", path.stem)
     if not numbers:
         return ""
     longest = max(numbers, key=len)
     if len(longest) >= 10:
-        return f"; rename it to {longest}.png, and say recording.stamp_unit if that is not nanoseconds"
+        return (
+            f"; rename it to {longest}{path.suffix}, and say recording.stamp_unit if that is not nanoseconds"
+        )
     return "; if its number is a count, say layout: stampless"
 
 

@@ -41,6 +41,7 @@ class RunLog:
     cycle_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
     source_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
     age_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
+    skew_ms: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
     stages: deque[dict[str, float]] = field(default_factory=lambda: deque(maxlen=RECENT), init=False)
     ends_s: deque[float] = field(default_factory=lambda: deque(maxlen=RECENT + 1), init=False)
     free_pct: deque[float] = field(default_factory=lambda: deque(maxlen=KEPT), init=False)
@@ -64,6 +65,8 @@ class RunLog:
         self.source_ms.append(source_ms)
         if result.age_ms is not None:
             self.age_ms.append(result.age_ms)
+        if result.skew_ms is not None:
+            self.skew_ms.append(result.skew_ms)
         self.stages.append(dict(result.stage_ms))
         self.ends_s.append(time.perf_counter())
         for verdict in result.verdicts:
@@ -138,7 +141,12 @@ class RunLog:
 
     def _times(self) -> Table:
         times = Table("", "median", "99 %", "worst", box=None, pad_edge=False, header_style="dim")
-        rows = (("cycle", self.cycle_ms), ("frame age", self.age_ms), (self.source, self.source_ms))
+        rows = (
+            ("cycle", self.cycle_ms),
+            ("frame age", self.age_ms),
+            ("skew", self.skew_ms if any(self.skew_ms) else ()),
+            (self.source, self.source_ms),
+        )
         for name, values in rows:
             if values:
                 p50, p99, worst = np.percentile(values, (50, 99, 100))

@@ -11,17 +11,18 @@ from rich.rule import Rule
 from rich.table import Table
 from rich.text import Text
 
-from elbowroom.monitor import CycleResult, Pass
+from elbowroom.monitor import CycleResult, Decision, Pass
+from elbowroom.monitor.gate.told import gate_lines
 from elbowroom.monitor.rows import shares_pct
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.sources import Room
 from elbowroom.view.screen.run_log import RunLog
 from elbowroom.view.screen.watched import Watched, watched_of
 from elbowroom.view.screen.words import (
-    CAUSE_WORDS,
     LEVEL_WORDS,
     MARKS,
     NOT_CERTIFIED,
+    cause_text,
     counts_text,
     health_text,
     place_first,
@@ -74,6 +75,7 @@ class TerminalView:
         self._last_screen: RenderableType | None = None
         self._last_shown_s = float("-inf")
         self._said: dict[tuple[str, tuple[str, ...]], str] = {}
+        self._decision: Decision | None = None
 
     def __enter__(self) -> "TerminalView":
         return self
@@ -107,7 +109,7 @@ class TerminalView:
 
     def show(self, done: Pass) -> None:
         """Notes a pass and, if it is time, shows it."""
-        result = done.result
+        result, self._decision = done.result, done.decision
         self.log.add(result, done.source_ms)
         self._warn(result)
         now = time.perf_counter()
@@ -119,6 +121,8 @@ class TerminalView:
             self._live.update(self._last_screen, refresh=True)
         else:
             self.console.print(self.line(result), soft_wrap=True, highlight=False, markup=False)
+            for line in self._gate():
+                self.console.print(line, soft_wrap=True, highlight=False, markup=False)
 
     def end(self) -> None:
         """Ends the screen and prints what the run came to."""
@@ -157,6 +161,7 @@ class TerminalView:
             Text(health_text(result.health), "dim"),
         ]
         lines += [Text(f" {line} ", STYLES[Level.STOP]) for line in _stops(result)]
+        lines += [Text(line, "bold") for line in self._gate()]
         lines += [Text(f"Warning: {finding.text}") for finding in result.findings if not finding.stops]
         if self.watched.unchecked_links:
             lines.append(
@@ -172,7 +177,7 @@ class TerminalView:
 
     def line(self, result: CycleResult) -> str:
         """One pass in one plain line."""
-        age = "" if result.age_ms is None else f" age {result.age_ms:.0f} ms"
+        age = "" if result.age_ms is None else f" age {result.age_ms:.0f} ms{_skew(result.skew_ms)}"
         head = (
             f"{result.stamp_ns / 1e9:8.2f} s {self.log.rate_hz:5.1f} Hz cycle {result.cycle_ms:.0f} ms{age}"
         )
@@ -183,6 +188,10 @@ class TerminalView:
         if not result.verdicts and result.space is not None:
             return f"{head} | {shares_text(shares_pct(result.space))}"
         return " | ".join([head, *map(plain_line, result.verdicts)])
+
+    def _gate(self) -> list[str]:
+        """What the gate says, a line each; said again with each line or screen."""
+        return [] if self._decision is None else gate_lines(self._decision)
 
     def _speed(self, result: CycleResult) -> Text:
         log = self.log
@@ -195,6 +204,7 @@ class TerminalView:
         text.append("  frame age ")
         style = "bold" if result.late is None else STYLES[Level.STOP]
         text.append("unknown" if result.age_ms is None else f"{age:.0f} ms", style)
+        text.append(_skew(result.skew_ms))
         text.append("  cycle ")
         text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
         text.append(f" = {stages}", "dim")
@@ -238,9 +248,14 @@ class TerminalView:
         return [
             *cells,
             Text.assemble((filled, BAR_STYLES[level]), (rest, "dim")),
-            Text("joint limit" if at_limit else CAUSE_WORDS[verdict.cause]),
+            Text("joint limit" if at_limit else _why(verdict)),
             Text(place_text(verdict) if wide else place_first(verdict), "dim"),
         ]
+
+
+def _why(verdict: Verdict) -> str:
+    """What ends it; of one that nothing ends, whether it leads out of what the machine stands close beside."""
+    return "leads away" if verdict.escapes and verdict.cause is Cause.NONE else cause_text(verdict)
 
 
 def _stops(result: CycleResult) -> list[str]:
@@ -257,3 +272,8 @@ def _looked_at(verdict: Verdict) -> float:
     """How far a verdict could have said to go [m or rad along the joint]."""
     motion = verdict.motion
     return motion.looked_at if isinstance(motion, Motion) else motion.reach or float("inf")
+
+
+def _skew(skew_ms: float | None) -> str:
+    """How far apart the frames of a pass were, in words; nothing where that rounds to nothing."""
+    return "" if skew_ms is None or skew_ms < 0.5 else f" skew {skew_ms:.0f} ms"

@@ -22,6 +22,7 @@ CAUSE_WORDS: dict[Cause, str] = {
     Cause.BLIND: "blind",
     Cause.OUTSIDE_GRID: "outside the grid",
     Cause.MACHINE: "itself",
+    Cause.KEPT_OUT: "kept out",
     Cause.UNSEEN: "unseen",
     Cause.NONE: "",
     Cause.FAULT: "fault",
@@ -55,6 +56,14 @@ def place_text(verdict: Verdict) -> str:
     x, y, z = verdict.place_in_world
     link = verdict.link if verdict.other_link is None else f"{verdict.link} and {verdict.other_link}"
     return f"{link} at {x:.2f}, {y:.2f}, {z:.2f} m"
+
+
+def cause_text(verdict: Verdict) -> str:
+    """What ends the travel, and of a stop by unseen space how far an operator may creep: "unseen, creep 41 mm"."""
+    word, creep = CAUSE_WORDS[verdict.cause], verdict.creep
+    if creep is None or creep.travel <= 0:
+        return word
+    return f"{word}, creep {travel_text(creep.travel, verdict.free_travel_unit)}"
 
 
 def travel_bar(verdict: Verdict, width: int = 20) -> tuple[str, str]:
@@ -96,8 +105,8 @@ def plain_line(verdict: Verdict) -> str:
     """One verdict in a few plain words: "larm + STOP 3.1° (surface, detector)"."""
     line = f"{verdict.motion.name} {LEVEL_WORDS[verdict.level]}"
     if verdict.level is Level.CLEAR:
-        return line
-    why = ", ".join(word for word in (CAUSE_WORDS[verdict.cause], verdict.link) if word)
+        return f"{line} (leads away)" if verdict.escapes else line
+    why = ", ".join(word for word in (cause_text(verdict), verdict.link) if word)
     return f"{line} {travel_text(verdict.free_travel, verdict.free_travel_unit)}" + (
         f" ({why})" if why else ""
     )

@@ -1,0 +1,1 @@
+"""Whether the latch is kept through kills, cut files and older files."""

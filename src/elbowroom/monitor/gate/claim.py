@@ -1,0 +1,108 @@
+"""What a verdict asks of the gate: a level, a speed, and whether a person who holds on may creep."""
+
+import math
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Self
+
+from elbowroom.errors import InputError
+from elbowroom.guard.reason import Reason
+from elbowroom.motion import Level, Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """The most that one motion may be allowed at one moment.
+
+    Args:
+        motion: its name, such as "larm +".
+        level: of the verdict.
+        speed: the greatest share of full speed, 0 to 1; 0 where the level is stop.
+        reason: what holds it back.
+        overridable: only unseen space ends the travel, so that a person who holds on may creep into it.
+        escapes: the motion leads out of what the machine stands in, or beside.
+
+    Raises:
+        InputError: a speed that is no number from 0 to 1, or one above 0 at level stop.
+    """
+
+    motion: str
+    level: Level
+    speed: float
+    reason: Reason
+    overridable: bool = False
+    escapes: bool = False
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.level, Level) and isinstance(self.reason, Reason)):
+            raise InputError(f"claim of {self.motion}: level {self.level!r} and reason {self.reason!r}")
+        most = 0.0 if self.level is Level.STOP else 1.0
+        if not 0.0 <= self.speed <= most:
+            raise InputError(
+                f"claim of {self.motion}: speed is {self.speed}, must be 0 to {most:g} at {self.level.name}"
+            )
+
+    @classmethod
+    def of(cls, verdict: Verdict, low_speed: float, escapes: bool = False) -> Self:
+        """What a verdict claims.
+
+        Args:
+            verdict: of one motion.
+            low_speed: at which one creeps, a share of full speed.
+            escapes: the motion leads out of contact.
+
+        Raises:
+            InputError: its free travel is no number of at least 0.
+        """
+        motion = verdict.motion
+        reason = Reason[verdict.cause.name]
+        # at a share f of full speed, braking takes f² S
+        creeps = verdict.free_travel > low_speed**2 * motion.braking_distance
+        return cls(
+            motion.name,
+            verdict.level,
+            speed_of(verdict),
+            reason,
+            verdict.overridable and verdict.level is Level.STOP,
+            escapes and creeps and not reason.is_fault,
+        )
+
+
+def speed_of(verdict: Verdict) -> float:
+    """The greatest share of full speed from which the machine comes to rest one braking distance before the block.
+
+    At constant deceleration v² = 2 a s, and S is the way from full speed: so at a free travel d between S and 2 S it is
+    the root of (d - S) / S. 0 at and within S, full speed from 2 S on.
+
+    Args:
+        verdict: of one motion.
+
+    Raises:
+        InputError: its free travel is no number of at least 0.
+    """
+    travel, braking = verdict.free_travel, verdict.motion.braking_distance
+    if not (math.isfinite(travel) and travel >= 0):
+        raise InputError(f"verdict of {verdict.motion.name}: free travel is {travel}")
+    if verdict.level is Level.STOP:
+        return 0.0
+    if verdict.level is Level.DECELERATE:
+        return min(1.0, math.sqrt(max(travel - braking, 0.0) / braking))
+    return 1.0
+
+
+def claims_of(
+    verdicts: Sequence[Verdict], low_speed: float, escaping: frozenset[str] = frozenset()
+) -> tuple[Claim, ...]:
+    """What the verdicts of a pass claim, in their order; one that says no usable travel claims nothing.
+
+    Args:
+        verdicts: of a pass.
+        low_speed: at which one creeps, a share of full speed.
+        escaping: names of the motions that lead out of contact.
+    """
+    claims = []
+    for verdict in verdicts:
+        with suppress(InputError):
+            claims.append(Claim.of(verdict, low_speed, verdict.motion.name in escaping))
+    return tuple(claims)

@@ -1,0 +1,68 @@
+"""Which pairs of a machine's links need not be compared, found as MoveIt's setup assistant does."""
+
+from collections.abc import Callable
+from itertools import combinations
+
+import numpy as np
+
+from elbowroom.machine import Machine
+from elbowroom.machine.kernels.apart import apart_now
+from elbowroom.machine.overlap import ALWAYS, TOUCH_M, bodies_of
+from elbowroom.motion.contacts import can_move_apart, next_body
+
+NEVER_M = 0.02
+"""Links that came no nearer than this in any pose never meet [m]."""
+
+
+def found_pairs(
+    machine: Machine, poses: int, seed: int = 0, tell: Callable[[int], None] | None = None
+) -> dict[str, list[tuple[str, str]]]:
+    """Pairs of links that need not be compared, by reason.
+
+    Links that a joint joins (*adjacent*), that touch in nearly all poses (*always*), at zero (*default*), or come no
+    nearer than 2 cm in any (*never*); poses are drawn from the joints' limits. MoveIt calls *never* what touches in no
+    pose: here it has room to spare, as poses between those that were tried are not looked at.
+
+    Args:
+        machine: whose links.
+        poses: how many are tried.
+        seed: of the poses.
+        tell: called with how many were tried so far.
+    """
+    names, links = machine.link_names, range(len(machine.links))
+    rows = [
+        pair
+        for pair in combinations([row for row in links if machine.links[row].has_geometry], 2)
+        if can_move_apart(machine, *pair)
+    ]
+    adjacent = [next_body(machine, b) == a for a, b in rows]
+    bodies = bodies_of(machine.shape, rows)
+    touched, nearest = np.zeros(len(rows)), np.full(len(rows), np.inf)
+    apart = np.empty(len(rows))
+    for count, placed in enumerate(machine.random_places(poses, seed)):
+        apart_now(bodies, placed, NEVER_M, apart)
+        touched += apart <= TOUCH_M
+        nearest = np.minimum(nearest, apart)
+        if tell is not None:
+            tell(count + 1)
+    rest = machine.world_from_link_array(machine.positions(machine.nearest_to_zero())[None])[0]
+    apart_now(bodies, rest, NEVER_M, apart)
+    nearest = np.minimum(nearest, apart)
+    found: dict[str, list[tuple[str, str]]] = {
+        reason: [] for reason in ("adjacent", "always", "default", "never")
+    }
+    for n, (a, b) in enumerate(rows):
+        reason = (
+            "adjacent"
+            if adjacent[n]
+            else "always"
+            if touched[n] >= ALWAYS * poses
+            else "default"
+            if apart[n] <= TOUCH_M
+            else "never"
+            if nearest[n] > NEVER_M
+            else None
+        )
+        if reason is not None:
+            found[reason].append((names[a], names[b]))
+    return found

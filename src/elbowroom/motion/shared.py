@@ -1,0 +1,281 @@
+"""Blocked voxels that the machine reaches into where it stands: what leads out of them is let go.
+
+Something stands within a voxel of the body, and so the voxel is blocked as a whole, and the body is in it. Were a
+motion stopped wherever the body meets it, all motions would stop, those that lead away as well. So of such a voxel only
+that part blocks which the body does not cover at the start:
+
+    B' = B \\ cells( M(0) grown by g0 )             cells: sixteenths of a voxel's edge
+    eps = g0 + sqrt(3) h / 16                      how far a cell that is taken out may reach from the body
+
+with the blocked space B, the solid body M(t) after travel t, the voxel's edge h. No object lies in M(0), so what stands
+farther than eps from it lies in B', and the surface of M passes it before M covers it. What stands nearer is pressed by
+eps at most; so a motion that ends at a voxel within eps of the link that meets it ends earlier, by as much travel as
+the slowest part that may come there needs for 2 eps. Less evidence leaves more of B, so more of B'.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.geometry import bits
+from elbowroom.geometry.kept import kept
+from elbowroom.geometry.kernels.bits import Lattice
+from elbowroom.machine import Machine, body_samples
+from elbowroom.machine.shape import Shape
+from elbowroom.motion.course import Way
+from elbowroom.motion.ground import Ground
+from elbowroom.motion.kernels.covered import COVERED, Pieces, cover, reached
+from elbowroom.motion.kernels.mover import Skin
+from elbowroom.motion.kernels.shared import CELLS, WORDS, Shared
+from elbowroom.motion.kernels.volume import Volume
+from elbowroom.motion.skin import skin_of
+from elbowroom.motion.sweep import Block, find_block, marked, volume_of
+from elbowroom.reconstruct.free_space import FreeSpace
+
+GROWTH_M = 0.0015
+"""g0, at least: the facets of round links slide along in it, which stand out by a millimetre on a large arc [m]."""
+GROWTH_IN_VOXELS = 1 / 16
+"""And at least this: twice what a patch is grown by in the sweep's shortest intervals [voxel edges]."""
+MOST_SHARED = 512
+"""A machine that reaches into more blocked voxels stands in the dark: none of its motions is let go."""
+ROOM_FOR = 1 << 16
+"""So many finds of such voxels are written, one after another from sample to sample."""
+HALF_DIAGONAL = np.sqrt(0.75)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Start:
+    """A ground, and the blocked voxels that the machine reaches into where it stands.
+
+    Args:
+        ground: its volume blocks links wherever they do not reach at the start.
+        within: what blocks links there; None: they reach into nothing.
+        near_m: eps [m].
+        placed: where links are at the start, shape (n_links, 4, 4).
+    """
+
+    ground: Ground
+    within: Volume | None
+    near_m: float
+    placed: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, machine: Machine, ground: Ground, placed: NDArray[np.float64]) -> Self:
+        """Looks for what the machine reaches into.
+
+        Args:
+            machine: the machine.
+            ground: a space, and the links whose way it may end.
+            placed: where the links are, shape (n_links, 4, 4).
+        """
+        edge = ground.volume.lattice.edge
+        skin, half = skin_of(machine, edge), HALF_DIAGONAL * edge / CELLS
+        growth = max(GROWTH_M, GROWTH_IN_VOXELS * edge) + skin.off
+        near_m = growth + skin.off + 2 * half
+        shared = _shared(machine, ground.volume, placed, (growth + half, near_m + half))
+        return cls(ground, None, near_m, placed)._with(shared)
+
+    def _with(self, shared: Shared) -> Self:
+        """The same with the shared voxels that its space still blocks."""
+        volume, words = self.ground.volume, self.ground.volume.words
+        grid = self.ground.space.grid
+        places = [bits.place_of(index, grid) for index in _indices(shared, volume.lattice)]
+        blocked = np.array([bool(words[word] & bit) for word, bit in places], dtype=np.bool_)
+        if not blocked.any():
+            return replace(self, within=None)
+        plane = np.zeros_like(words)
+        for (word, bit), still in zip(places, blocked, strict=True):
+            plane[word] |= bit if still else np.uint64(0)
+        own = Shared(
+            shared.numbers[blocked],
+            np.ascontiguousarray(shared.links[blocked]),
+            np.ascontiguousarray(shared.cells[blocked]),
+            False,
+        )
+        # where nothing is asked but what others meet, none of the cells blocks
+        others = own._replace(cells=np.zeros_like(own.cells), others=True)
+        return replace(
+            self,
+            ground=replace(self.ground, volume=volume._replace(shared=others)),
+            within=marked(volume._replace(words=plane, shared=own)),
+        )
+
+    def with_space(self, space: FreeSpace) -> Self:
+        """The same in a space of which more is free.
+
+        Args:
+            space: with more free voxels.
+        """
+        bare = replace(self, ground=replace(self.ground, space=space, volume=volume_of(space)), within=None)
+        return bare if self.within is None else bare._with(self.within.shared)
+
+    def holds(self, skin: Skin, speeds: NDArray[np.float64]) -> bool:
+        """Whether any of the links that move reaches into blocked space at the start.
+
+        Args:
+            skin: of the machine.
+            speeds: of its clusters, 0 for those that do not move.
+        """
+        if self.within is None:
+            return False
+        return bool(self.within.shared.links[:, np.unique(skin.link[speeds > 0])].any())
+
+    def first_block(
+        self, machine: Machine, skin: Skin, speeds: NDArray[np.float64], way: Way
+    ) -> Block | None:
+        """The first block on a way of the ground's links.
+
+        Args:
+            machine, skin: what moves.
+            speeds: of its clusters along the way.
+            way: where the motion leads.
+        """
+        own = np.where(self.ground.links[skin.link], speeds, 0.0)
+        found = [find_block(machine, skin, own, way, self.ground.volume)]
+        if self.within is not None and self.holds(skin, own):
+            block = find_block(machine, skin, own, way, self.within)
+            if block is not None:
+                back = self._back(skin, own, way, self.within)
+                found.append(block._replace(travel=max(0.0, block.travel - back)))
+        blocks = [block for block in found if block is not None]
+        return min(blocks, key=lambda block: (block.travel, block.kind), default=None)
+
+    def _back(self, skin: Skin, speeds: NDArray[np.float64], way: Way, within: Volume) -> float:
+        """How much travel the slowest part that may come to the shared voxels needs for 2 eps."""
+        lattice = within.lattice
+        centres = _corners(within.shared, lattice) + lattice.edge / 2
+        rows = np.flatnonzero(speeds * way.length >= self.near_m / 2)
+        pose = self.placed[skin.link[rows]]
+        middles = np.einsum("nij,nj->ni", pose[:, :3, :3], skin.centre[rows]) + pose[:, :3, 3]
+        away = np.linalg.norm(middles[:, None] - centres[None], axis=2).min(axis=1)
+        reach = skin.radius[rows] + skin.cover + skin.off + speeds[rows] * way.length
+        may = rows[away <= reach + HALF_DIAGONAL * lattice.edge]
+        return float(2 * self.near_m / speeds[may].min()) if len(may) else 0.0
+
+
+def _indices(shared: Shared, lattice: Lattice) -> list[tuple[int, int, int]]:
+    """Of the shared voxels."""
+    return [
+        (n // lattice.nz // lattice.ny, n // lattice.nz % lattice.ny, n % lattice.nz)
+        for n in shared.numbers.tolist()
+    ]
+
+
+def _corners(shared: Shared, lattice: Lattice) -> NDArray[np.float64]:
+    """The least corners of the shared voxels, shape (n, 3) [m]."""
+    index = np.array(_indices(shared, lattice)).reshape(-1, 3)
+    corners: NDArray[np.float64] = index * lattice.edge + (lattice.x0, lattice.y0, lattice.z0)
+    return corners
+
+
+def _shared(
+    machine: Machine, volume: Volume, placed: NDArray[np.float64], reach_m: tuple[float, float]
+) -> Shared:
+    """The blocked voxels that links reach into, and what of them stays blocked.
+
+    Args:
+        machine: whose checked links.
+        volume: what is blocked.
+        placed: where links are.
+        reach_m: a cell is covered whose middle is so near to the surface; and links reach into its voxel from which
+            it is so near [m].
+    """
+    skin, lattice = skin_of(machine, volume.lattice.edge), volume.lattice
+    finds = np.empty(ROOM_FOR, dtype=np.int64)
+    count = reached(placed, skin, skin.cover + reach_m[1], volume, finds)
+    numbers = np.unique(finds[: min(count, ROOM_FOR)])
+    if not 0 < count <= ROOM_FOR or len(numbers) > MOST_SHARED:
+        return volume.shared
+    links = np.zeros((len(numbers), len(machine.links)), dtype=np.bool_)
+    cells = np.zeros((len(numbers), WORDS), dtype=np.uint64)
+    found = Shared(numbers, links, cells, False)
+    is_shared = np.zeros(len(numbers), dtype=np.bool_)
+    for row, corner in enumerate(_corners(found, lattice)):
+        open_cells = _open_cells(machine, placed, np.append(corner, lattice.edge), reach_m, links[row])
+        if open_cells is not None:
+            is_shared[row], cells[row] = links[row].any(), _words(open_cells)
+    return Shared(numbers[is_shared], links[is_shared], cells[is_shared], False)
+
+
+def _open_cells(
+    machine: Machine,
+    placed: NDArray[np.float64],
+    voxel: NDArray[np.float64],
+    reach_m: tuple[float, float],
+    links: NDArray[np.bool_],
+) -> NDArray[np.bool_] | None:
+    """Of one voxel, the cells that the machine does not cover, shape (16, 16, 16).
+
+    None: some are covered by what is swept, and not by what is there; so something else may be.
+
+    Args:
+        machine, placed, reach_m: as of `_shared`.
+        voxel: its least corner and its edge, shape (4,) [m].
+        links: set for those that are near, shape (n_links,).
+    """
+    covered = np.empty((CELLS,) * 3, dtype=np.uint8)
+    cover(_pieces(machine, float(voxel[3])), placed, voxel, reach_m, covered, links)
+    seen = machine.as_seen
+    if seen is not machine:
+        truly = np.empty_like(covered)
+        cover(_pieces(seen, float(voxel[3])), placed, voxel, reach_m, truly, np.zeros_like(links))
+        if ((covered == COVERED) & (truly != COVERED)).any():
+            return None
+    return covered != COVERED
+
+
+def _words(cells: NDArray[np.bool_]) -> NDArray[np.uint64]:
+    """The words of a voxel's cells."""
+    blocks = cells.reshape(4, 4, 4, 4, 4, 4).transpose(0, 2, 4, 1, 3, 5).reshape(-1)
+    return np.packbits(blocks, bitorder="little").view(np.uint64)
+
+
+def _pieces(machine: Machine, voxel_size_m: float) -> Pieces:
+    """The surface of a machine's checked links in pieces, as coarse as it is swept."""
+    names = machine.checked_links
+    rows = tuple(row for row, link in enumerate(machine.links) if link.name in names and link.has_geometry)
+    return _pieces_of(machine.shape, rows, body_samples(machine, voxel_size_m).bound_m)
+
+
+@kept
+def _pieces_of(shape: Shape, rows: tuple[int, ...], bound_m: float) -> Pieces:
+    links = shape.within(bound_m)
+    found = [(row, piece) for row in rows for piece in _cut(links[row].triangles)]
+    triangles = np.concatenate([np.zeros((0, 3, 3)), *(piece for _, piece in found)])
+    low, high = triangles.min(axis=1), triangles.max(axis=1)
+    centre = (low + high) / 2
+    return Pieces(
+        triangles,
+        centre,
+        np.linalg.norm(triangles - centre[:, None], axis=2).max(axis=1, initial=0.0),
+        np.cumsum([0, *(len(piece) for _, piece in found)]),
+        np.array([row for row, _ in found], dtype=np.int64),
+        np.array([_is_closed(piece) for _, piece in found], dtype=np.bool_),
+        np.array([piece.min(axis=(0, 1)) for _, piece in found]).reshape(-1, 3),
+        np.array([piece.max(axis=(0, 1)) for _, piece in found]).reshape(-1, 3),
+    )
+
+
+def _cut(triangles: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """Triangles that hang together by their corners."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    corners, number = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
+    faces = number.reshape(-1, 3)
+    edges = np.concatenate([faces[:, :2], faces[:, 1:]])
+    graph = coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(len(corners),) * 2)
+    _, label = connected_components(graph, directed=False)
+    of = label[faces[:, 0]]
+    return [triangles[of == one] for one in np.unique(of)]
+
+
+def _is_closed(triangles: NDArray[np.float64]) -> bool:
+    """Whether an even number of triangles meets at each edge: so a ray out of it tells within from without."""
+    _, number = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
+    faces = number.reshape(-1, 3)
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    _, counts = np.unique(edges, axis=0, return_counts=True)
+    return bool((counts % 2 == 0).all())

@@ -1,0 +1,59 @@
+"""Which CameraInfo belongs to a topic of depth, and what it says of the lens."""
+
+from elbowroom.errors import BagError, FrameError
+from elbowroom.sources.bags.bag import Bag
+from elbowroom.sources.bags.depth_topics import DepthTopic, camera_name, first_kind
+from elbowroom.sources.bags.lenses import Lens, lens_of
+from elbowroom.sources.bags.messages import CAMERA_INFO, CameraInfo, camera_info_of
+
+
+def info_topic(bag: Bag, topic: DepthTopic) -> str:
+    """The topic of a depth topic's CameraInfo: beside it, or below it, or else the only one of the same axes.
+
+    Raises:
+        BagError: there is none.
+    """
+    infos = [name for name in bag.of_type(CAMERA_INFO) if bag.messages(name)]
+    beside = topic.base.rpartition("/")[0]
+    for name in (f"{beside}/camera_info", f"{topic.base}/camera_info"):
+        if name in infos:
+            return name
+    alike = [name for name in infos if _info(bag, name).header.frame == topic.kind.frame]
+    if len(alike) == 1:
+        return alike[0]
+    known = ", ".join(infos) or "none"
+    raise BagError(
+        f"{bag.path}: no CameraInfo of {topic.name}: expected {beside}/camera_info; there are {known}. Record it too, "
+        "or write the site file by hand (`elbowroom site new`)"
+    )
+
+
+def info_of(bag: Bag, name: str) -> CameraInfo:
+    """The first CameraInfo of a topic.
+
+    Raises:
+        BagError: malformed, or a later one says another lens.
+    """
+    first = _info(bag, name)
+    last = camera_info_of(bag.read(bag.messages(name)[-1]), f"{bag.path}: {name}")
+    if (first.k != last.k).any() or (first.width, first.height) != (last.width, last.height):
+        raise BagError(f"{bag.path}: {name}: the lens or the size at the end is not that of the beginning")
+    return first
+
+
+def lens_by(bag: Bag, topic: str) -> Lens:
+    """What the CameraInfo of a topic of depth says of the lens.
+
+    Raises:
+        BagError, FrameError: there is none, or it is not read, or the topic has no depth.
+    """
+    kind = first_kind(bag, topic)
+    if isinstance(kind, str):
+        raise FrameError(kind)
+    found = DepthTopic(topic, camera_name(topic), kind, bag.count(topic), None)
+    source = info_topic(bag, found)
+    return lens_of(info_of(bag, source), kind.size, found.is_rectified, f"{bag.path}: {source}")
+
+
+def _info(bag: Bag, name: str) -> CameraInfo:
+    return camera_info_of(bag.read(bag.messages(name)[0]), f"{bag.path}: {name}")

@@ -1,0 +1,106 @@
+"""Joints of a bag: what one or several publishers said of each, as one record."""
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.errors import JointsError
+from elbowroom.sensing import JointRecord
+from elbowroom.sources.bags.bag import Bag
+from elbowroom.sources.bags.messages import JOINT_STATE, joint_state_of
+from elbowroom.sources.bags.stamps import Stamped, stamped
+
+
+class Told(NamedTuple):
+    """What was said of the joints.
+
+    Args:
+        stamps_ns, positions: of each joint, by rising time [ns], [m or rad].
+        notes: what was odd.
+    """
+
+    stamps_ns: Mapping[str, NDArray[np.int64]]
+    positions: Mapping[str, NDArray[np.float64]]
+    notes: Sequence[str]
+
+
+def told_of(bag: Bag, topics: Sequence[str]) -> Told:
+    """What the joint topics of a bag say of each joint. A position that is not finite says nothing.
+
+    Args:
+        bag: opened.
+        topics: of sensor_msgs/msg/JointState.
+
+    Raises:
+        BagError: a topic that is not there, or a malformed message.
+        JointsError: a topic of another type, or two positions of a joint at one time.
+    """
+    said: dict[str, dict[int, float]] = defaultdict(dict)
+    notes: list[str] = []
+    for topic in topics:
+        if bag.require(topic).type != JOINT_STATE:
+            raise JointsError(f"{bag.path}: {topic} is {bag.topics[topic].type}, must be {JOINT_STATE}")
+        times = stamped(bag, topic)
+        notes += times.notes
+        for message in times.messages:
+            _take(said, bag, topic, message)
+    found = {name: sorted(rows.items()) for name, rows in said.items() if rows}
+    return Told(
+        {name: np.array([at for at, _ in rows], dtype=np.int64) for name, rows in found.items()},
+        {name: np.array([value for _, value in rows]) for name, rows in found.items()},
+        notes,
+    )
+
+
+def _take(said: Mapping[str, dict[int, float]], bag: Bag, topic: str, message: Stamped) -> None:
+    what = f"{bag.path}: {topic} at {message.stamp_ns} ns"
+    state = joint_state_of(bag.read(message.stored), what)
+    for name, value in zip(state.names, state.positions, strict=False):
+        if not np.isfinite(value):
+            continue
+        before = said[name].setdefault(message.stamp_ns, float(value))
+        if before != value:
+            raise JointsError(
+                f"{what}: joint {name} is at {before:g} and at {value:g}; do two publishers name one joint?"
+            )
+
+
+def record_of(told: Told, names: Sequence[str], max_gap_ns: int) -> JointRecord:
+    """One record of some joints, at every time at which one of them was said and all others are known.
+
+    Between two of its own times a joint is straight; nothing is known where these are farther apart than `max_gap_ns`.
+
+    Args:
+        told: of all joints.
+        names: of those that are wanted; each was said.
+        max_gap_ns: [ns].
+
+    Raises:
+        JointsError: at no time are all known.
+    """
+    times = np.unique(np.concatenate([told.stamps_ns[name] for name in names]))
+    known = np.ones(len(times), dtype=np.bool_)
+    for name in names:
+        known &= _known(told.stamps_ns[name], times, max_gap_ns)
+    times = times[known]
+    if not len(times):
+        spans = "; ".join(
+            f"{name} {told.stamps_ns[name][0]} to {told.stamps_ns[name][-1]} ns" for name in names[:6]
+        )
+        raise JointsError(f"joints: at no time are all of them known: {spans}")
+    # from the first time on, so that as floats the differences are exact
+    start = int(times[0])
+    positions = {
+        name: np.interp(times - start, told.stamps_ns[name] - start, told.positions[name]) for name in names
+    }
+    return JointRecord(times, positions, max_gap_ns=max_gap_ns)
+
+
+def _known(own: NDArray[np.int64], asked: NDArray[np.int64], max_gap_ns: int) -> NDArray[np.bool_]:
+    after = np.minimum(np.searchsorted(own, asked), len(own) - 1)
+    before = np.maximum(after - 1, 0)
+    inside = (asked >= own[0]) & (asked <= own[-1])
+    return inside & ((own[after] == asked) | (own[after] - own[before] <= max_gap_ns))
