@@ -152,7 +152,7 @@ A UR5 (package example-robot-data) on a table with a bin, a person beside it, si
 RealSense D435, voxels of 2 cm, poses at random and at work (the tool down over the table) in turn. Of the motions of
 shoulder and elbow whose way is clear over the whole reach by exact geometry (coal), the share that stops, by what stops
 it. *milder*: levels milder than the truth, where the way ends at something of the room; *of its own links*: where it
-ends at another link. *declared*: the site lets shoulder and upper arm be near the table
+ends at another link. *declared*: the site lets the arm's links be near the table
 ([safety](safety.md#what-it-touches-and-carries)); *none*: it does not.
 """,
         "elbowroom evaluate cell",
@@ -300,8 +300,8 @@ moments boxes were moved, played again and again; its first camera's reference i
         """
 Right: moments of the recordings, of the package's rooms and of random simulated sites; anything that is said of
 them is a false alarm. Wrong: random sites, each made wrong in each kind
-([what is looked for](safety.md#values-are-looked-at)). The poses of `kinect_board_2cam` are guesses by eye:
-its warning is right.
+([what is looked for](safety.md#values-are-looked-at)). That the cameras of `kinect_board_2cam` stood where it says is
+not verified: its warning may well be right.
 """,
         "elbowroom evaluate looks",
         tables.looks_tables,
@@ -321,11 +321,12 @@ and no others. The recordings, the simulated room and random sites, described ri
         "latch.json",
         "The latch",
         """
-Whether the [gate](safety.md#the-gate) is latched where it has to be. *killed*: a gate with faults, resets and ends at random gets SIGKILL
-within 60 ms of its start, again and again in one folder; what it had said to have latched has to be there, by name. *cut off*: latches of all
-kinds at each byte in turn. *one bit changed*: one at random. *older*: each file that a run of faults and resets leaves on its way, as if a power
-cut had undone all later ones. *unlatched, rightly*: the gate had ended as it was asked to with nothing latched, or was killed before it had begun, when
-nothing can move.
+Whether the [gate](safety.md#the-gate) is latched where it has to be. *killed*: a gate with faults, resets and ends at
+random gets SIGKILL within 60 ms of its start, again and again in one folder; what it had said to have latched has to
+be there, by name. *cut off*: latches of all kinds at each byte in turn. *one bit changed*: one at random. *older*:
+each file that a run of faults and resets leaves on its way, as if a power cut had undone all later ones. *unlatched,
+rightly*: the gate had ended as it was asked to with nothing latched, or was killed before it had begun, when nothing
+can move.
 """,
         "elbowroom evaluate latch",
         tables.latch_tables,

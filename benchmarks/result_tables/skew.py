@@ -8,7 +8,7 @@ from result_tables.cells import Cell, Row, of, same, table
 
 def skew_tables(rows: Sequence[Row]) -> list[str]:
     """Touched voxels declared free by spread of ages, the worst of noise and detail; then what is lost."""
-    found = [row for row in rows if row["kind"] == "moving"]
+    found = [row for row in rows if row.get("kind") == "moving"]
     spreads = sorted({row["spread_ms"] for row in found})
     groups: dict[tuple[object, ...], list[Row]] = {}
     for row in found:
@@ -31,7 +31,7 @@ def skew_tables(rows: Sequence[Row]) -> list[str]:
         "lost, points": of("price_points", 2, due=price.DUE),
         "worst deal": of("price_worst_points", 2),
     }
-    return [*lines, "", *table(price.prices(rows), lost)]
+    return [*lines, "", *table([row for row in rows if row.get("kind") == "price"], lost)]
 
 
 def _worst(spread_ms: float) -> Callable[[Row], str]:

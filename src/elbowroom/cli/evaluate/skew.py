@@ -42,7 +42,7 @@ def skew(places: Places = 2, quick: Quick = False, seed: Seed = 1, json: JsonFil
 
     def show(summary: Any) -> None:
         show_moving([row for row in summary if row["kind"] == "moving"])
-        show_price(price.prices(summary))
+        show_price([row for row in summary if row["kind"] == "price"])
 
     measured("cases", rows(), None, json, show, _summary)
 
@@ -51,4 +51,4 @@ def _summary(found: Any) -> list[Any]:
     from elbowroom.evaluate.skew.moving import moving_summary
     from elbowroom.evaluate.skew.price import prices
 
-    return [*moving_summary([row for row in found if row.get("kind") != "price"]), *prices(found)]
+    return [*moving_summary([row for row in found if "price_points" not in row]), *prices(found)]

@@ -88,7 +88,6 @@ def _prices(
                 for draw in range(draws)
             ]
             yield {
-                "kind": "price",
                 "room": room.name,
                 "voxel_size_m": room.grid.voxel_size_m,
                 "detail": detail,
@@ -122,5 +121,5 @@ def _found_pct(room: _Room, detail: Detail, ages: NDArray[np.float64], law_m_s: 
 
 
 def prices(rows: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """The rows of kind "price"."""
-    return [row for row in rows if row.get("kind") == "price"]
+    """Of each row of `price_rows` one of kind "price"."""
+    return [{**row, "kind": "price"} for row in rows if "price_points" in row]
