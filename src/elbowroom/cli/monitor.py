@@ -1,5 +1,6 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -48,6 +49,16 @@ GateFolder = Annotated[
 ]
 
 
+SkewMs = Annotated[
+    float,
+    typer.Option(
+        min=0,
+        max=1000,
+        help="In a simulated room, expose cameras up to so long before the moment, each at a time of its own.",
+    ),
+]
+
+
 def monitor(
     site: Annotated[
         Path | None,
@@ -74,6 +85,7 @@ def monitor(
     joints: JointsText = None,
     threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
     knock: Knocks = None,
+    skew_ms: SkewMs = 0.0,
     gate: GateFolder = None,
     callback: Callback = None,
     json: JsonFile = None,
@@ -115,6 +127,7 @@ def monitor(
         resolution="--resolution",
         knocks="--knock",
         noise="--noise",
+        skew_ms="--skew-ms",
     ):
         given = Site.simulated_room() if site is None else Site.load(site)
         room = open_room(
@@ -127,6 +140,7 @@ def monitor(
             resolution=size_px,
             knocks=knock or (),
         )
+        room = _skewed(room, skew_ms) if skew_ms else room
         _watch(live(room), seconds, json, out, gate_of(room, gate, callback))
 
 
@@ -145,12 +159,25 @@ def _noisy(site: "Site", noise: str) -> "Site":
     return with_noise(site, noise)
 
 
+def _skewed(room: "Room", skew_ms: float) -> "Room":
+    """A simulated room whose cameras are exposed at times of their own.
+
+    Raises:
+        InputError: the room is not simulated.
+    """
+    from elbowroom.sources.simulated import Simulated
+
+    if not isinstance(room.source, Simulated):
+        raise InputError(
+            f"skew_ms: for simulated rooms, and {room.site.path} is none: its stamps say when its images were taken"
+        )
+    return replace(room, source=replace(room.source, skew_ms=skew_ms))
+
+
 def _watch(
     room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None, gate: "Gate | None"
 ) -> None:
     """Runs the loop over a room, with the faces that were asked for."""
-    from dataclasses import replace
-
     from rich.console import Console
 
     from elbowroom.cli.progress import Steps
