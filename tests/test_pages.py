@@ -36,6 +36,11 @@ TYPED_ALONE = {
     "recording that is not part of the project",
     "calibrate simulate board --size thesis --noise tof --out tiny": "a smaller capture than this hangs not together",
     "calibrate extrinsics tiny --out calibrated.yaml --report report": "as the line before it",
+    "monitor my_room.yaml --gate my_gate": "a gate stops for good, and has tests of its own",
+    "gate status my_gate": "as the line before it",
+    "gate reset my_gate": "as the line before it",
+    "site topics my_bag": "needs a bag, which tests of bags write",
+    "site from-bag my_bag --out my_room.yaml": "as the line before it",
     "monitor --knock cam03:20mmz@5": "as the line before it",
     "monitor --knock larm:2deg@5": "as the line before it",
 }
@@ -50,6 +55,7 @@ SMALLER = {
     "monitor": "--seconds 0.5 --cameras 3 --resolution 40x30 --voxel-size 0.2",
     "monitor --knock cam03:1deg@5": "--seconds 0.5 --cameras 4 --resolution 40x30 --voxel-size 0.2",
     "monitor my_room_watched.yaml": "--seconds 0.5",
+    "monitor my_room.yaml": "--seconds 0.5",
     "placement sweep my_room.yaml --out pictures --json sweep.json": "--cameras 9-10 --voxel-size 0.5",
     "placement optimise my_room.yaml --share 98.9 --seconds 60 --write placed.yaml --out pictures": "--share 70 "
     "--seconds 1 --points 200",
@@ -110,6 +116,7 @@ def examples(folder: Path) -> None:
 
 BEFORE: dict[str, Callable[[Path], None]] = {
     "calibration.md": watched_room,
+    "bags.md": watched_room,
     "placement.md": room_to_place_in,
     "evaluation.md": room_of_ones_own,
     "arm_on_a_table/README.md": examples,

@@ -240,3 +240,11 @@ def test_a_voxel_that_was_seen_through_too_long_ago_is_explained_so():
     (now,) = reconstruct(grid, [camera], [frame], now_ns=NOW, looks=False).explain(place).cameras
     (later,) = reconstruct(grid, [camera], [frame], now_ns=NOW + 10**8, looks=False).explain(place).cameras
     assert (now.sight, later.sight) == (Sight.THROUGH, Sight.AGED)
+
+
+def test_what_was_measured_of_a_clock_is_part_of_the_age():
+    frames = tuple(DepthFrame(name, NOW, np.ones((2, 2), np.float32)) for name in "ab")
+    bounded = Snapshot(frames, now_ns=NOW, clock_bounds_ns={"a": 50_000_000})
+    plain = aged_m([], Snapshot(frames, now_ns=NOW), Terms())
+    found = aged_m([], bounded, Terms())
+    assert found["b"] == plain["b"] and found["a"] - plain["a"] == pytest.approx(0.05 * SPEED)

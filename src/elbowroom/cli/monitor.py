@@ -21,6 +21,7 @@ from elbowroom.cli.options import (
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
+    from elbowroom.monitor import Gate
     from elbowroom.site import Site
     from elbowroom.sources import Room
 
@@ -30,6 +31,13 @@ Knocks = Annotated[
         metavar="WHAT:SIZE@SECONDS",
         help="In a simulated room, turn or push a camera, or let a joint say what is not true: cam03:1deg@5, "
         "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
+    ),
+]
+Callback = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE.py:FUNCTION",
+        help="A Python function that the gate's watchdog calls with each decision, and with stop where none came.",
     ),
 ]
 GateFolder = Annotated[
@@ -79,6 +87,7 @@ def monitor(
     knock: Knocks = None,
     skew_ms: SkewMs = 0.0,
     gate: GateFolder = None,
+    callback: Callback = None,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
@@ -107,10 +116,11 @@ def monitor(
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
 
+    from elbowroom.monitor.gate.made import gate_of
     from elbowroom.site import Site
     from elbowroom.sources import live, open_room
 
-    named = {"knocks": "--knock", "skew_ms": "--skew-ms"}
+    named = {"knocks": "--knock", "skew_ms": "--skew-ms", "callback": "--callback"}
     with options_named(
         joints="--joints", cameras="--cameras", resolution="--resolution", noise="--noise", **named
     ):
@@ -125,7 +135,8 @@ def monitor(
             resolution=size_px,
             knocks=knock or (),
         )
-        _watch(live(_skewed(room, skew_ms) if skew_ms else room), seconds, json, out, gate)
+        shown = live(_skewed(room, skew_ms) if skew_ms else room)
+        _watch(shown, seconds, json, out, gate_of(room, gate, callback))
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -159,7 +170,7 @@ def _skewed(room: "Room", skew_ms: float) -> "Room":
 
 
 def _watch(
-    room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None, gate_dir: Path | None
+    room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None, gate: "Gate | None"
 ) -> None:
     """Runs the loop over a room, with the faces that were asked for."""
     from rich.console import Console
@@ -167,7 +178,6 @@ def _watch(
     from elbowroom.cli.progress import Steps
     from elbowroom.files.json_rows import json_rows
     from elbowroom.monitor import Face
-    from elbowroom.monitor.gate.made import gate_of
     from elbowroom.monitor.rows import Rows
     from elbowroom.monitor.start.compiling import compile_kernels
     from elbowroom.monitor.start.start import started
@@ -176,7 +186,6 @@ def _watch(
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
-    gate = gate_of(room, gate_dir)
     unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]

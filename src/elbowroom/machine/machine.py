@@ -15,6 +15,7 @@ from elbowroom.choices import ExplainWith
 from elbowroom.errors import MachineError, MachineWarning
 from elbowroom.finding import Finding
 from elbowroom.geometry import invert_rigid, nearest_rigid
+from elbowroom.machine import branch
 from elbowroom.machine.contact import Contact
 from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
@@ -25,7 +26,7 @@ from elbowroom.machine.joint_state import (
     possible_positions,
     require_followers,
 )
-from elbowroom.machine.kernels.body import FIXED, Tree, place_links
+from elbowroom.machine.kernels.body import Tree, place_links
 from elbowroom.machine.link import Link
 from elbowroom.machine.overlap import POSES, always_touching, is_within
 from elbowroom.machine.own_links import OwnLinks
@@ -344,22 +345,13 @@ class Machine:
             raise MachineError(f"machine {self.name}: part {part.name}: there is a link of that name")
         given = np.eye(4) if link_from_part is None else link_from_part
         pose = nearest_rigid(given, f"part {part.name}: link_from_part", MachineError)
-        row, tree = self.link_names.index(link), self.tree
-        grown = Tree(
-            parent=np.append(tree.parent, row),
-            parent_from_joint=np.concatenate([tree.parent_from_joint, pose[None]]),
-            axis=np.concatenate([tree.axis, np.zeros((1, 3))]),
-            kind=np.append(tree.kind, FIXED),
-            column=np.append(tree.column, -1),
-            multiplier=np.append(tree.multiplier, 1.0),
-            offset=np.append(tree.offset, 0.0),
-        )
+        row = self.link_names.index(link)
         carried = Link(part.name, part.surface.vertices, part.surface.faces.astype(np.int32))
-        touched = [(part.name, self.link_names[other]) for other in self._held_with(row)]
+        touched = [(part.name, self.link_names[other]) for other in branch.held_with(self.tree, row)]
         holding = replace(
             self,
             links=(*self.links, carried),
-            tree=grown,
+            tree=branch.grown(self.tree, row, pose),
             allowed_contacts=(*self.allowed_contacts, *touched),
             parts=(*self.parts, part.name),
         )
@@ -422,32 +414,16 @@ class Machine:
         if name not in self.parts:
             has = ", ".join(self.parts) or "none"
             raise MachineError(f"machine {self.name}: carries no part {name!r}; parts are {has}")
-        stays = np.array([link.name != name for link in self.links])
-        for row, parent in enumerate(self.tree.parent):
-            stays[row] &= parent < 0 or stays[parent]
-        keep, left = np.flatnonzero(stays), np.cumsum(stays) - 1
+        stays = branch.stays_without(self.tree, self.link_names.index(name))
         gone = {link.name for link, here in zip(self.links, stays, strict=True) if not here}
-        rows = Tree(*(array[keep] for array in self.tree))
         return replace(
             self,
-            links=tuple(self.links[row] for row in keep),
-            tree=rows._replace(parent=np.where(rows.parent < 0, -1, left[rows.parent])),
+            links=tuple(link for link, here in zip(self.links, stays, strict=True) if here),
+            tree=branch.pruned(self.tree, stays),
             allowed_contacts=tuple(pair for pair in self.allowed_contacts if not gone & set(pair)),
             unchecked_links=tuple(link for link in self.unchecked_links if link not in gone),
             parts=tuple(part for part in self.parts if part not in gone),
         )
-
-    def _held_with(self, row: int) -> list[int]:
-        """The links that are fixed to a link, itself among them, and those that hang on them, such as fingers."""
-        roots = list(range(len(self.links)))
-        for other, parent in enumerate(self.tree.parent):
-            if parent >= 0 and self.tree.kind[other] == FIXED:
-                roots[other] = roots[parent]
-        return [
-            other
-            for other, parent in enumerate(self.tree.parent)
-            if roots[other] == roots[row] or (parent >= 0 and roots[parent] == roots[row])
-        ]
 
     def joint(self, name: str) -> Joint:
         """The commanded joint of this name.

@@ -120,7 +120,16 @@ def camera_info_of(data: bytes | memoryview, what: str) -> CameraInfo:
     binning = cdr.whole("I"), cdr.whole("I")
     roi = cdr.whole("I"), cdr.whole("I"), cdr.whole("I"), cdr.whole("I")
     return CameraInfo(
-        header, height, width, model, d, k.reshape(3, 3), r.reshape(3, 3), p.reshape(3, 4), binning, roi
+        header,
+        height,
+        width,
+        model,
+        d=d,
+        k=k.reshape(3, 3),
+        r=r.reshape(3, 3),
+        p=p.reshape(3, 4),
+        binning=binning,
+        roi=roi,
     )
 
 
