@@ -120,14 +120,9 @@ def monitor(
     from elbowroom.site import Site
     from elbowroom.sources import live, open_room
 
+    named = {"knocks": "--knock", "skew_ms": "--skew-ms", "callback": "--callback"}
     with options_named(
-        joints="--joints",
-        callback="--callback",
-        cameras="--cameras",
-        resolution="--resolution",
-        knocks="--knock",
-        noise="--noise",
-        skew_ms="--skew-ms",
+        joints="--joints", cameras="--cameras", resolution="--resolution", noise="--noise", **named
     ):
         given = Site.simulated_room() if site is None else Site.load(site)
         room = open_room(
@@ -140,8 +135,8 @@ def monitor(
             resolution=size_px,
             knocks=knock or (),
         )
-        room = _skewed(room, skew_ms) if skew_ms else room
-        _watch(live(room), seconds, json, out, gate_of(room, gate, callback))
+        shown = live(_skewed(room, skew_ms) if skew_ms else room)
+        _watch(shown, seconds, json, out, gate_of(room, gate, callback))
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
