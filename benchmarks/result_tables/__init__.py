@@ -7,6 +7,7 @@ from result_tables.latch import latch_tables
 from result_tables.looks import contradiction_tables, looks_tables
 from result_tables.placement import placement_tables, sweep_tables
 from result_tables.robots import robot_tables
+from result_tables.skew import skew_tables
 from result_tables.space import room_tables, sevenscenes_tables
 from result_tables.speed import bench_tables, machine_tables, start_tables
 from result_tables.verdicts import (
@@ -14,6 +15,7 @@ from result_tables.verdicts import (
     cell_tables,
     escape_tables,
     hand_tables,
+    own_links_tables,
     poses_tables,
     travel_tables,
 )
@@ -32,11 +34,13 @@ __all__ = [
     "latch_tables",
     "looks_tables",
     "machine_tables",
+    "own_links_tables",
     "placement_tables",
     "poses_tables",
     "robot_tables",
     "room_tables",
     "sevenscenes_tables",
+    "skew_tables",
     "start_tables",
     "sweep_tables",
     "travel_tables",

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from elbowroom.evaluate.cell import rows as cell
 from elbowroom.evaluate.escape import escape
 from elbowroom.evaluate.hand import hand
+from elbowroom.evaluate.own_links import own_links
 from elbowroom.evaluate.rooms import alone, poses, travel
 from result_tables.cells import Row, centimetres, of, same, table
 
@@ -71,6 +72,20 @@ def escape_tables(rows: Sequence[Row]) -> list[str]:
             "escape": of("escapes"),
             "beyond the truth": of("beyond", due=escape.DUE),
             "contact on the way": of("touching", due=escape.DUE),
+        },
+    )
+
+
+def own_links_tables(rows: Sequence[Row]) -> list[str]:
+    """Stops at own links beside the truth, of all robots together."""
+    return table(
+        _summaries(rows),
+        {
+            **same("robots", "poses", "motions"),
+            "meets": of("meet"),
+            "called clear": of("called_clear", due=own_links.DUE),
+            **same("beyond", "stops"),
+            "stops where clear %": of("false_stops_pct", 2, due=own_links.DUE),
         },
     )
 

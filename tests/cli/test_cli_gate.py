@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import socket
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -118,7 +119,7 @@ def test_gate_without_a_monitor_is_one_line(tmp_path, capsys):
         ("gate: {deadline_ms: 0.25}\n", "looks like seconds: 250"),
         ("gate: {low_speed: 0.9}\n", "low_speed"),
         ("gate: {hold_ms: 500}\n", "hold_ms"),
-        ("gate: {callback: nonsense}\n", "callback"),
+        ("gate: {callback: my_plc.py:say}\n", "callback"),  # opening a site runs nobody's code
         ("gate: {modbus: {port: 70000}}\n", "port"),
         ("gate: {frobnicate: 1}\n", "frobnicate"),
     ],
@@ -127,6 +128,18 @@ def test_what_a_site_may_not_say_of_its_gate(room, capsys, end, words):
     room.write_text(SMALL_ROOM + end)
     assert run(["monitor", str(room), "--seconds", "0"]) == 2
     assert words in capsys.readouterr().err
+
+
+def test_callback_without_a_gate_is_refused(room, capsys):
+    assert run(["monitor", str(room), "--seconds", "0", "--callback", "json:dumps"]) == 2
+    assert "elbowroom: --callback: there is no gate" in capsys.readouterr().err
+
+
+def test_modbus_without_its_package_is_refused(room, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pymodbus", None)
+    room.write_text(SMALL_ROOM + "gate: {folder: gate, modbus: {}}\n")
+    assert run(["monitor", str(room), "--seconds", "0"]) != 0
+    assert "the Modbus output needs pymodbus" in capsys.readouterr().err
 
 
 def test_gate_of_a_room_without_motions_is_refused(room, tmp_path, capsys):

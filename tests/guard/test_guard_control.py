@@ -102,6 +102,13 @@ def test_one_who_left_before_the_answer_is_no_matter(tmp_path: Path, control: Co
     assert control.requests() == []
 
 
+def test_what_is_no_socket_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "control").write_text("somebody's notes")
+    with pytest.raises(InputError, match="cannot be listened at"):
+        Control(tmp_path)
+    assert (tmp_path / "control").read_text() == "somebody's notes"
+
+
 def test_nobody_there_is_said(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no monitor runs"):
         ask(tmp_path, "reset")

@@ -407,3 +407,23 @@ def test_without_a_gate_there_is_no_decision():
     face = Listener()
     a_loop(Script(at(1))).run([face])
     assert face.shown[0].decision is None
+
+
+@pytest.mark.parametrize("where", ["cycle", "watch"])
+def test_an_interrupt_inside_compiled_code_ends_the_run_and_is_no_fault(where, monkeypatch):
+    wrapped = SystemError("returned a result with an exception set")
+    wrapped.__cause__ = KeyboardInterrupt()
+
+    def interrupted(*_, **__):
+        raise wrapped
+
+    checks = None
+    if where == "cycle":
+        monkeypatch.setattr(cycle, "check_motions", interrupted)
+    else:
+        checks = Checks(AWatch(wrapped))
+    told: list[str] = []
+    gate = AGate(told)
+    with pytest.raises(KeyboardInterrupt):
+        replace(a_loop(Script(at(1), at(2)), checks), gate=gate).run([Listener()])
+    assert gate.faults == [] and told == ["gate begins", "gate ends"]

@@ -13,7 +13,7 @@ from elbowroom.reconstruct import LAWFUL, merge, reconstruct
 from elbowroom.reconstruct.ages import aged_m
 from elbowroom.reconstruct.carve import carve_aged
 from elbowroom.reconstruct.point_report import Sight
-from elbowroom.reconstruct.terms import Terms
+from elbowroom.reconstruct.terms import PEOPLE_SPEED_M_S, Terms
 from elbowroom.sensing import DepthFrame, Snapshot
 from reference import reconstruct_scenes as scenes
 from reference.reconstruct_aged import is_clear_by_points, sees_through_grown
@@ -21,7 +21,7 @@ from reference.reconstruct_pixel import THROUGH, say_of_voxel
 from reference.reconstruct_views import images_of, says_of
 
 NOW = 1_000_000_000
-SPEED = 1.6
+SPEED = PEOPLE_SPEED_M_S
 FEW = settings(deadline=None, derandomize=True, max_examples=25)
 rooms = st.integers(0, 10**6)
 ages_ms = st.lists(st.integers(0, 200), min_size=6, max_size=6)
@@ -212,7 +212,7 @@ def test_without_the_time_now_the_newest_frame_is_the_moment():
     frames = [
         DepthFrame(name, stamp, np.ones((4, 4), np.float32)) for name, stamp in (("a", 0), ("b", 10**7))
     ]
-    assert aged_m([], Snapshot(tuple(frames)), Terms()) == {"a": pytest.approx(0.016), "b": 0.0}
+    assert aged_m([], Snapshot(tuple(frames)), Terms()) == {"a": pytest.approx(0.02), "b": 0.0}
     stampless = DepthFrame("a", None, np.ones((4, 4), np.float32))
     assert aged_m([], Snapshot((stampless,)), Terms()) == {"a": 0.0}
 

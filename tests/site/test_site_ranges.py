@@ -98,9 +98,9 @@ def test_the_site_that_one_starts_from_is_allowed():
 
 def test_how_fast_people_are_and_what_a_clock_may_be_off_are_said_by_the_site(tmp_path):
     site = load(tmp_path, "camera_defaults.clock_bound_ms", 5.0)
-    assert site.terms().people_speed_m_s == 1.6 and site.terms().pass_ns == 0
+    assert site.terms().people_speed_m_s == 2.0 and site.terms().pass_ns == 0
     assert [camera.clock_bound_ns for camera in site.cameras()] == [5_000_000]
-    assert load(tmp_path, "people_speed_m_s", 2.0).terms().people_speed_m_s == 2.0
+    assert load(tmp_path, "people_speed_m_s", 1.6).terms().people_speed_m_s == 1.6
     assert load(tmp_path, "pass_time_ms", 80).terms().pass_ns == 80_000_000
 
 

@@ -51,3 +51,20 @@ def test_a_knocked_camera_sees_something_else_from_then_on_and_a_knocked_joint_t
     assert same(before, plain_before) == [True, True] and before.joints == plain_before.joints
     assert same(after, plain_after) == [False, True]
     assert after.joints["larm"] == pytest.approx(plain_after.joints["larm"] - np.radians(2))
+
+
+def test_cameras_that_are_exposed_one_after_the_other_say_when_and_see_what_was_then():
+    together, skewed = (
+        next(iter(Simulated(CAMERAS, seed=4, skew_ms=skew).at([TIMES_S[1]]))) for skew in (0.0, 80.0)
+    )
+    ages_ms = [(skewed.now_ns - frame.stamp_ns) / 1e6 for frame in skewed.frames]
+    assert min(ages_ms) == pytest.approx(0, abs=1e-3) and max(ages_ms) == pytest.approx(80, abs=1e-3)
+    assert skewed.joints == together.joints and set(skewed.joints_of) == {c.name for c in CAMERAS}
+    for frame, same, age in zip(skewed.frames, together.frames, ages_ms, strict=True):
+        assert frame.camera == same.camera
+        (then,) = (
+            f
+            for f in next(iter(Simulated(CAMERAS, seed=4).at([TIMES_S[1] - age / 1e3]))).frames
+            if f.camera == frame.camera
+        )
+        np.testing.assert_array_equal(frame.depth_m, then.depth_m)

@@ -1,5 +1,6 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,6 +21,7 @@ from elbowroom.cli.options import (
 from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
+    from elbowroom.monitor import Gate
     from elbowroom.site import Site
     from elbowroom.sources import Room
 
@@ -31,11 +33,28 @@ Knocks = Annotated[
         "cam03:20mmz@5, larm:2deg@5. May be given more than once.",
     ),
 ]
+Callback = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE.py:FUNCTION",
+        help="A Python function that the gate's watchdog calls with each decision, and with stop where none came.",
+    ),
+]
 GateFolder = Annotated[
     Path | None,
     typer.Option(
         metavar="DIR",
         help="Decide by a gate whose latch and controls lie in this folder; see `elbowroom gate --help`.",
+    ),
+]
+
+
+SkewMs = Annotated[
+    float,
+    typer.Option(
+        min=0,
+        max=1000,
+        help="In a simulated room, expose cameras up to so long before the moment, each at a time of its own.",
     ),
 ]
 
@@ -66,7 +85,9 @@ def monitor(
     joints: JointsText = None,
     threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
     knock: Knocks = None,
+    skew_ms: SkewMs = 0.0,
     gate: GateFolder = None,
+    callback: Callback = None,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
@@ -95,11 +116,13 @@ def monitor(
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
 
+    from elbowroom.monitor.gate.made import gate_of
     from elbowroom.site import Site
     from elbowroom.sources import live, open_room
 
+    named = {"knocks": "--knock", "skew_ms": "--skew-ms", "callback": "--callback"}
     with options_named(
-        joints="--joints", cameras="--cameras", resolution="--resolution", knocks="--knock", noise="--noise"
+        joints="--joints", cameras="--cameras", resolution="--resolution", noise="--noise", **named
     ):
         given = Site.simulated_room() if site is None else Site.load(site)
         room = open_room(
@@ -112,7 +135,8 @@ def monitor(
             resolution=size_px,
             knocks=knock or (),
         )
-        _watch(live(room), seconds, json, out, gate)
+        shown = live(_skewed(room, skew_ms) if skew_ms else room)
+        _watch(shown, seconds, json, out, gate_of(room, gate, callback))
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -130,18 +154,30 @@ def _noisy(site: "Site", noise: str) -> "Site":
     return with_noise(site, noise)
 
 
+def _skewed(room: "Room", skew_ms: float) -> "Room":
+    """A simulated room whose cameras are exposed at times of their own.
+
+    Raises:
+        InputError: the room is not simulated.
+    """
+    from elbowroom.sources.simulated import Simulated
+
+    if not isinstance(room.source, Simulated):
+        raise InputError(
+            f"skew_ms: for simulated rooms, and {room.site.path} is none: its stamps say when its images were taken"
+        )
+    return replace(room, source=replace(room.source, skew_ms=skew_ms))
+
+
 def _watch(
-    room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None, gate_dir: Path | None
+    room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None, gate: "Gate | None"
 ) -> None:
     """Runs the loop over a room, with the faces that were asked for."""
-    from dataclasses import replace
-
     from rich.console import Console
 
     from elbowroom.cli.progress import Steps
     from elbowroom.files.json_rows import json_rows
     from elbowroom.monitor import Face
-    from elbowroom.monitor.gate.made import gate_of
     from elbowroom.monitor.rows import Rows
     from elbowroom.monitor.start.compiling import compile_kernels
     from elbowroom.monitor.start.start import started
@@ -150,7 +186,6 @@ def _watch(
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
-    gate = gate_of(room, gate_dir)
     unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]

@@ -50,9 +50,8 @@ class Control:
         self._listener.setblocking(False)
         mask = os.umask(0o177)
         try:
-            path.unlink(
-                missing_ok=True
-            )  # of a monitor that was killed; a running one holds the folder's lock
+            if path.is_socket():  # of a monitor that was killed; a running one holds the folder's lock
+                path.unlink()
             self._listener.bind(os.fspath(path))
         except OSError as error:
             self._listener.close()

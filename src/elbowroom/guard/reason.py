@@ -17,6 +17,7 @@ class Reason(IntEnum):
     BLIND = 4
     OUTSIDE_GRID = 5
     UNSEEN = 6
+    KEPT_OUT = 7
     STARTING = 16
     RISING = 17
     RESET_DUE = 18
@@ -58,6 +59,7 @@ _SENTENCES = {
     Reason.BLIND: "a camera that looks at the way delivers nothing valid",
     Reason.OUTSIDE_GRID: "the way leaves the watched space",
     Reason.UNSEEN: "nobody sees the way",
+    Reason.KEPT_OUT: "a zone that the machine is kept out of is in the way",
     Reason.STARTING: "nothing has been judged yet",
     Reason.RISING: "speed rises slowly",
     Reason.RESET_DUE: "a fault is over and waits for a person to reset",

@@ -10,7 +10,7 @@ from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
-from elbowroom.monitor.stages import timed
+from elbowroom.monitor.stages import raise_interrupt, timed
 from elbowroom.motion import (
     Cause,
     Level,
@@ -79,6 +79,7 @@ class Cycle:
                 given = _usable(self._checked(space, snapshot.joints or {}))
             late = self._late(snapshot, begun_ns)
         except Exception as error:  # at this border a fault becomes a decision: stop
+            raise_interrupt(error)
             return self.failed(error, snapshot, stage_ms)
         if late is not None:
             given = {motion: self._stop(motion, Cause.STALE) for motion in self.motions}

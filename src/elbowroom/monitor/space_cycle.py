@@ -8,7 +8,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.monitor.cycle import failure, lateness
 from elbowroom.monitor.result import CycleResult
-from elbowroom.monitor.stages import timed
+from elbowroom.monitor.stages import raise_interrupt, timed
 from elbowroom.reconstruct import Terms, free_space_of
 from elbowroom.sensing import Snapshot
 
@@ -53,6 +53,7 @@ class SpaceCycle:
             )
             late = lateness(snapshot, self.terms, (self.clock_ns() - begun_ns) / 1e6)
         except Exception as error:
+            raise_interrupt(error)
             return self.failed(error, snapshot, stage_ms)
         now_ns = snapshot.now_ns or 0
         skew_ms = snapshot.fresh(self.terms.max_age_ns).skew_ms

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowroom.geometry import DepthCamera, VoxelGrid
+from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine, Zone, body_words
@@ -37,8 +37,8 @@ def declared_words(
 
     The thing is explained in the images as the machine is: what fits it says nothing but that space is free up to it,
     and what stands out of it disputes, as everywhere. So a voxel near it is free by the same evidence and the same
-    rule as all others are; voxels that the thing itself covers, grown by half a voxel, are free where nothing else may
-    lie in them. Less evidence leaves fewer.
+    rule as all others are; voxels that the thing itself covers, grown by half a voxel, are free
+    beside such, where nothing else may lie in them. Less evidence leaves fewer.
 
     Args:
         grid: the watched box.
@@ -57,14 +57,23 @@ def declared_words(
     if focus is not None:
         near = [np.where(focus, words, np.uint64(0)) for words in near]
     space = decide(evidence, cameras, machine, snapshot.joints_at_newest, replace(terms, look_again=False))
+    elsewhere = _elsewhere(evidence.unexplained, space.disputed_words)
+    beside = _beside(space.free_words, grid) & ~elsewhere
     return tuple(
-        (
-            space.free_words
-            | (_covered(contact, grid) & ~_elsewhere(evidence.unexplained, space.disputed_words))
-        )
-        & words
+        (space.free_words | (_covered(contact, grid) & beside)) & words
         for contact, words in zip(machine.contacts, near, strict=True)
     )
+
+
+def _beside(words: Words, grid: VoxelGrid) -> Words:
+    """The plane of the voxels that are set, and of all that touch one: what lies beside space that was seen to be free.
+
+    Under a thing that stands on a table nobody sees the table.
+    """
+    mask = np.pad(bits.unpack(words, grid), 1)
+    for axis in range(3):
+        mask = mask | np.roll(mask, 1, axis) | np.roll(mask, -1, axis)
+    return bits.pack(np.ascontiguousarray(mask[1:-1, 1:-1, 1:-1]), grid)
 
 
 def _elsewhere(unexplained: Words, disputed: Words) -> Words:

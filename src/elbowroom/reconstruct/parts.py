@@ -23,6 +23,8 @@ from elbowroom.reconstruct.views import NO_TEXELS, put_mask, texels_of
 
 PARTS = 4
 """Along each axis a voxel is cut into so many parts: 64 in all, the bits of one word."""
+RIM = np.array([(0, 0, 1), (-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0)], dtype=float)
+"""Points of a ball about the origin of a camera's axes."""
 SPARE_PX = 6
 """Of an image, so many pixels around those that meet the voxel are cut out as well: more than filters reach."""
 NEAREST_M = 1e-3
@@ -53,6 +55,8 @@ def is_seen_in_parts(
     first = grid.lower_m + np.array(index) * grid.voxel_size_m + edge / 2
     in_cameras = _in_cameras(images.cameras, first + STEPS * edge)
     maybe = _may_be_seen(images, model_depth, in_cameras)
+    if images.aged_m:
+        maybe = _may_be_seen_grown(images, model_depth, in_cameras, maybe)
     # first the camera that may see most
     rows = np.argsort(-maybe.sum(axis=1), kind="stable")
     seen = np.zeros(len(STEPS), dtype=np.bool_)
@@ -137,6 +141,21 @@ def _may_be_seen(
             beyond |= np.abs(model_depth[camera.name][line, column]) > far
         seen[row, here] = beyond.any(axis=1)
     return seen
+
+
+def _may_be_seen_grown(
+    images: RoomImages,
+    model_depth: Mapping[str, Image],
+    in_cameras: NDArray[np.float64],
+    maybe: NDArray[np.bool_],
+) -> NDArray[np.bool_]:
+    """As `_may_be_seen`, asked of some points of the ball about each part's centre as well."""
+    far = np.array([images.aged_m.get(camera.name, 0.0) for camera in images.cameras])[:, None, None]
+    for way in RIM:
+        if not maybe.any(axis=0).all():
+            break
+        maybe = maybe & _may_be_seen(images, model_depth, in_cameras + far * way[:, None])
+    return maybe
 
 
 def _parts_seen(

@@ -74,22 +74,24 @@ class Person:
         walk: the path.
         height_m: body height [m].
         elbow_rad: how far the elbows are bent: 0.3 hangs, 1.4 holds the hands at work before the body [rad].
+        phases: a stride is shown in so many shapes; with few, hands and feet jump from one to the next.
     """
 
     name: str
     walk: Walk
     height_m: float = 1.75
     elbow_rad: float = 0.3
+    phases: int = GAIT_PHASES
 
     def solids(self, stance: Stance) -> tuple[Solid, ...]:
         """Body and hair at a stance."""
-        phase = round(stance.phase / (2 * np.pi) * GAIT_PHASES) % GAIT_PHASES
+        phase = round(stance.phase / (2 * np.pi) * self.phases) % self.phases
         c, s = np.cos(stance.heading_rad), np.sin(stance.heading_rad)
         world_from_person = np.array(
             [[c, -s, 0, stance.x_m], [s, c, 0, stance.y_m], [0, 0, 1, 0], [0, 0, 0, 1.0]]
         )
         return (
-            Solid(self.name, _body(self.height_m, self.elbow_rad, phase), world_from_person),
+            Solid(self.name, _body(self.height_m, self.elbow_rad, phase, self.phases), world_from_person),
             Solid(f"{self.name} hair", _hair(self.height_m), world_from_person, is_dark=True),
         )
 
@@ -100,10 +102,10 @@ def _hair(height_m: float) -> Mesh:
 
 
 @cache
-def _body(height_m: float, elbow_rad: float, phase: int) -> Mesh:
+def _body(height_m: float, elbow_rad: float, phase: int, phases: int) -> Mesh:
     """A body of 1.75 m at rest, scaled: x forward, y left, feet on z = 0."""
-    swing = np.sin(2 * np.pi * phase / GAIT_PHASES)
-    lift = np.cos(2 * np.pi * phase / GAIT_PHASES)
+    swing = np.sin(2 * np.pi * phase / phases)
+    lift = np.cos(2 * np.pi * phase / phases)
     parts = [
         capsule((0, 0, 0.98), (0, 0, 1.28), 0.18, squeeze=0.65, columns=12),
         ellipsoid((0, 0, 1.40), (0.10, 0.21, 0.09)),

@@ -1,4 +1,4 @@
-"""What a site file says of the gate: where its latch lies, how fast speed rises, who is told."""
+"""What a site file says of the gate: where its latch lies, how fast speed rises, who may poll."""
 
 from pathlib import Path
 from typing import Annotated
@@ -30,7 +30,6 @@ class GateEntry(Entry):
     rise_per_s: Annotated[Number, Field(gt=0, le=100)] = 0.5
     low_speed: Annotated[Number, Field(gt=0, le=0.5)] = 0.1
     hold_ms: Annotated[Number, Field(ge=20, le=200)] = 200.0
-    callback: Annotated[Text, Field(pattern=r"^[^:]+:[A-Za-z_]\w*$")] | None = None
     modbus: ModbusEntry | None = None
 
     def folder_path(self, beside: Path) -> Path | None:

@@ -7,9 +7,12 @@ from dataclasses import dataclass
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine import Machine
-from elbowroom.sensing import Snapshot
+from elbowroom.sensing import DepthFrame, Snapshot
 from elbowroom.simulate import InterventionRoom, render
 from elbowroom.simulate.knock import Knock, PlacedKnocks, reported_joints
+
+GOLDEN = 0.6180339887
+"""Its multiples, less the whole, keep neighbours apart."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,6 +25,7 @@ class Simulated:
         joints: positions that hold throughout [m or rad]; None: it moves.
         seed: of the sensors' noise.
         knocks: what is knocked, and when.
+        skew_ms: cameras are exposed up to so long before the moment, each by its share [ms]; 0: all at once.
     """
 
     cameras: Sequence[DepthCamera]
@@ -29,6 +33,7 @@ class Simulated:
     joints: Mapping[str, float] | None = None
     seed: int = 0
     knocks: Sequence[Knock] = ()
+    skew_ms: float = 0.0
 
     @property
     def name(self) -> str:
@@ -45,9 +50,24 @@ class Simulated:
         room, placed = InterventionRoom(machine=self.machine), PlacedKnocks(self.knocks, self.cameras)
         for number, time_s in enumerate(times_s):
             moment = room.at(time_s, joints=self.joints)
-            frames = render(placed.cameras(moment.time_s), moment, seed=self.seed + number)
             told = reported_joints(self.knocks, moment.joints, moment.time_s)
-            yield Snapshot(tuple(frames), told, now_ns=moment.stamp_ns)
+            if not self.skew_ms:
+                frames = render(placed.cameras(moment.time_s), moment, seed=self.seed + number)
+                yield Snapshot(tuple(frames), told, now_ns=moment.stamp_ns)
+                continue
+            exposed, joints_of = list[DepthFrame](), dict[str, Mapping[str, float]]()
+            for index, lag_s in enumerate(self._lags_s()):
+                then = room.at(time_s - lag_s, joints=self.joints)
+                camera = placed.cameras(then.time_s)[index]
+                exposed += render([camera], then, seed=self.seed + number)
+                joints_of[camera.name] = reported_joints(self.knocks, then.joints, then.time_s)
+            yield Snapshot(tuple(exposed), told, joints_of, now_ns=moment.stamp_ns)
+
+    def _lags_s(self) -> list[float]:
+        """By camera, how long before the moment it is exposed [s]: evenly spread, neighbours far apart."""
+        many = len(self.cameras)
+        order = sorted(range(many), key=lambda number: number * GOLDEN % 1)
+        return [order.index(number) / max(1, many - 1) * self.skew_ms / 1e3 for number in range(many)]
 
     def close(self) -> None:
         """Nothing is held."""

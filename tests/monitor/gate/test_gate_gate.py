@@ -28,6 +28,7 @@ from elbowroom.monitor.gate.gate import Gate
 from elbowroom.monitor.gate.state import Phase, Rules
 from elbowroom.monitor.gate.told import GateRows, gate_lines
 from elbowroom.motion import Cause, Level, Motion, Verdict
+from elbowroom.motion.verdict import Creep
 
 MOTIONS = (Motion("slide", +1, 0.1), Motion("slide", -1, 0.1))
 RULES = Rules(tuple(motion.name for motion in MOTIONS))
@@ -245,7 +246,8 @@ def test_only_status_reset_and_hold_can_be_asked(run: Run) -> None:
 
 
 def test_hold_counts_if_it_is_of_now(run: Run) -> None:
-    unseen = tuple(verdict(motion, 0.01, Cause.UNSEEN) for motion in MOTIONS)
+    creep = Creep(0.1, 0.05, 0.2, Cause.NONE)
+    unseen = tuple(replace(verdict(motion, 0.01, Cause.UNSEEN), creep=creep) for motion in MOTIONS)
     run.gate.clock_ns = time.monotonic_ns
     run.gate.rules = replace(RULES, deadline_ns=10**10)
     run.passes(3, verdicts=unseen)
@@ -350,7 +352,7 @@ def test_end_is_a_stop_for_the_watchdog(run: Run, folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("travel", "speed"), [(0.0, 0), (0.1, 0), (0.125, 0.5), (0.2, 1), (0.3, 1), (0.5, 1), (0.9, 1)]
+    ("travel", "speed"), [(0.0, 0), (0.1, 0), (0.125, 0.25), (0.2, 1), (0.3, 1), (0.5, 1), (0.9, 1)]
 )
 def test_speed_is_the_one_that_rests_a_braking_distance_before_the_block(travel: float, speed: float) -> None:
     assert speed_of(verdict(MOTIONS[0], travel)) == pytest.approx(speed)
@@ -366,14 +368,27 @@ def test_every_cause_of_a_verdict_is_a_reason() -> None:
         claim = Claim.of(Verdict.stop(MOTIONS[0], "m", cause), 0.1)
         assert claim.reason is Reason[cause.name]
         assert claim.reason.is_fault == (cause in (Cause.FAULT, Cause.STALE, Cause.INPUT, Cause.WATCH))
-        assert claim.overridable == (cause is Cause.UNSEEN)
+        assert not claim.overridable  # nobody says how far one may creep
 
 
 def test_escape_needs_room_to_brake_at_low_speed() -> None:
-    near, far = (verdict(MOTIONS[0], travel, Cause.SURFACE) for travel in (0.0009, 0.0011))
-    assert not Claim.of(near, 0.1, escapes=True).escapes
-    assert Claim.of(far, 0.1, escapes=True).escapes
-    assert not Claim.of(Verdict.stop(MOTIONS[0], "m", Cause.INPUT), 0.1, escapes=True).escapes
+    near, far = (verdict(MOTIONS[0], travel, Cause.SURFACE) for travel in (0.0099, 0.0101))
+    assert not Claim.of(replace(near, escapes=True), 0.1).escapes
+    assert Claim.of(replace(far, escapes=True), 0.1).escapes
+    assert not Claim.of(far, 0.1).escapes
+    stop = replace(Verdict.stop(MOTIONS[0], "m", Cause.INPUT), escapes=True)
+    assert not Claim.of(stop, 0.1).escapes
+
+
+@pytest.mark.parametrize("cause", Cause)
+def test_override_goes_where_the_verdict_says_how_far_and_no_faster(cause: Cause) -> None:
+    creep = Creep(0.02, 0.004, 0.03, Cause.SURFACE)
+    stop = replace(verdict(MOTIONS[0], 0.01, cause), creep=creep)
+    claim = Claim.of(stop, 0.1)
+    assert claim.overridable == (cause is Cause.UNSEEN)
+    assert claim.creep_speed == pytest.approx(0.04)
+    assert not Claim.of(replace(stop, creep=replace(creep, travel=0.0)), 0.1).overridable
+    assert not Claim.of(replace(stop, level=Level.DECELERATE), 0.1).overridable
 
 
 # rows and lines

@@ -33,7 +33,7 @@ PAGE = (Path(__file__).resolve().parents[3] / "docs" / "safety.md").read_text(en
 RULES = Rules(("slide +", "slide -", "turn +"))
 WATCH = Fault(Reason.WATCH, "cam1", "camera cam1 has moved")
 FAULTS = [Fault(reason, subject) for reason in Reason if reason.is_fault for subject in ("", "cam1")]
-BARRIERS = [Reason.SURFACE, Reason.MACHINE, Reason.BLIND, Reason.OUTSIDE_GRID, Reason.UNSEEN]
+BARRIERS = [Reason.SURFACE, Reason.MACHINE, Reason.BLIND, Reason.OUTSIDE_GRID, Reason.UNSEEN, Reason.KEPT_OUT]
 
 
 def clear(motion: str) -> Claim:
@@ -389,6 +389,12 @@ def test_override_creeps_into_unseen_space_while_held() -> None:
     assert said.held_until_ns == (state.held_ns or 0) + 200 * MS
     state, said = run(Ticked(), state=state, every_ms=160)
     assert said.motions[0].speed == 0
+
+
+def test_override_is_no_faster_than_its_claim() -> None:
+    unseen = replace(blocked("slide +", Reason.UNSEEN), creep_speed=0.03)
+    _, said = run(whole(), *[Held(), whole(unseen)] * 10, every_ms=50)
+    assert said.motions[0].speed == 0.03 and said.motions[0].held
 
 
 @pytest.mark.parametrize("reason", [reason for reason in BARRIERS if reason is not Reason.UNSEEN])

@@ -14,6 +14,7 @@ from elbowroom.cli.evaluate.placement import placement
 from elbowroom.cli.evaluate.robots import robots
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
 from elbowroom.cli.evaluate.scale import scale_budget, scale_cameras
+from elbowroom.cli.evaluate.skew import skew
 from elbowroom.cli.evaluate.thesis import all_parts, calibration, more, motions, reconstruction, scale
 
 evaluate_app = typer.Typer(
@@ -54,5 +55,6 @@ evaluate_app.command(epilog=_example("robots packages --json robots.json"))(robo
 evaluate_app.command(epilog=_example("own-links packages --quick --json own_links.json"))(own_links)
 evaluate_app.command(epilog=_example("escape --quick --json escape.json"))(escape)
 evaluate_app.command(epilog=_example("hand --scenes 5 --json hand.json"))(hand)
+evaluate_app.command(epilog=_example("skew --quick --json skew.json"))(skew)
 evaluate_app.command(epilog=_example("cell --quick --json cell.json"))(cell)
 evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

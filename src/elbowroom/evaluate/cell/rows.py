@@ -13,7 +13,7 @@ from elbowroom.evaluate.rooms.scene import Comparison, only, settings_of
 from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.motion import Cause, Level, check_motions
-from elbowroom.motion.contacts import pairs_of
+from elbowroom.motion.contacts import watched_rows
 from elbowroom.reconstruct import FreeSpace, reconstruct
 from elbowroom.simulate import Moment, render
 
@@ -75,8 +75,10 @@ def cell_rows(
         InputError: a site that is no cell; see `cell_of` and `cell_scenes`.
     """
     cell, done = cell_of(site, voxel_size_m), 0
+    names = cell.machine.link_names
+    own_pairs = [(names[a], names[b]) for a, b in watched_rows(cell.machine)]
     for number, drawn in enumerate(cell_scenes(cell, seed, tuple(kinds))):
-        truths = _truths(cell, drawn.moment)
+        truths = _truths(cell, drawn.moment, own_pairs)
         if any(truth.travel < TOUCHING for truth in truths):
             continue
         space = _space_of(cell, drawn.moment, noise, seed + number)
@@ -104,12 +106,10 @@ def _settings(cell: Cell, noise: bool, seed: int) -> dict[str, object]:
     }
 
 
-def _truths(cell: Cell, moment: Moment) -> list[Contact]:
-    """How far each motion really can go."""
+def _truths(cell: Cell, moment: Moment, own: Sequence[tuple[str, str]]) -> list[Contact]:
+    """How far each motion really can go; `own`: links that must not touch each other."""
     machine, joints = cell.machine, moment.joints
     exact = ExactTravel(machine, moment.solids)
-    names, pairs = machine.link_names, pairs_of(machine.anywhere)
-    own = [(names[a], names[b]) for a, b in zip(pairs.sampled, pairs.other, strict=True)]
     return [
         _earlier(exact.until_contact(joints, motion), exact.until_own_contact(joints, motion, own))
         for motion in cell.motions
@@ -119,9 +119,9 @@ def _truths(cell: Cell, moment: Moment) -> list[Contact]:
 def _machines(cell: Cell) -> dict[str, Machine]:
     """As the site declares what links may be near, and without a word of it, where it declares anything."""
     machine = cell.machine
-    if not machine.stands:
+    if not (machine.stands or machine.contacts):
         return {"none": machine}
-    return {"declared": machine, "none": replace(machine, stands=())}
+    return {"declared": machine, "none": replace(machine, stands=(), contacts=())}
 
 
 def _space_of(cell: Cell, moment: Moment, noise: bool, seed: int) -> FreeSpace:

@@ -22,6 +22,7 @@ class Claim:
         reason: what holds it back.
         overridable: only unseen space ends the travel, so that a person who holds on may creep into it.
         escapes: the motion leads out of what the machine stands in, or beside.
+        creep_speed: at which that person may creep at most, a share of full speed.
 
     Raises:
         InputError: a speed that is no number from 0 to 1, or one above 0 at level stop.
@@ -33,6 +34,7 @@ class Claim:
     reason: Reason
     overridable: bool = False
     escapes: bool = False
+    creep_speed: float = 1.0
 
     def __post_init__(self) -> None:
         if not (isinstance(self.level, Level) and isinstance(self.reason, Reason)):
@@ -44,36 +46,37 @@ class Claim:
             )
 
     @classmethod
-    def of(cls, verdict: Verdict, low_speed: float, escapes: bool = False) -> Self:
+    def of(cls, verdict: Verdict, low_speed: float) -> Self:
         """What a verdict claims.
 
         Args:
             verdict: of one motion.
-            low_speed: at which one creeps, a share of full speed.
-            escapes: the motion leads out of contact.
+            low_speed: at which one creeps out of contact, a share of full speed.
 
         Raises:
             InputError: its free travel is no number of at least 0.
         """
-        motion = verdict.motion
+        motion, creep = verdict.motion, verdict.creep
         reason = Reason[verdict.cause.name]
-        # at a share f of full speed, braking takes f² S
-        creeps = verdict.free_travel > low_speed**2 * motion.braking_distance
+        # braking shrinks as speed does, and no faster: `braking_time_s` may hold a reaction time
+        has_room = verdict.free_travel > low_speed * motion.braking_distance
+        overridable = verdict.overridable and verdict.level is Level.STOP
         return cls(
             motion.name,
             verdict.level,
             speed_of(verdict),
             reason,
-            verdict.overridable and verdict.level is Level.STOP,
-            escapes and creeps and not reason.is_fault,
+            overridable and creep is not None and creep.travel > 0,
+            verdict.escapes and has_room and not reason.is_fault,
+            0.0 if creep is None else min(1.0, creep.braking_distance / motion.braking_distance),
         )
 
 
 def speed_of(verdict: Verdict) -> float:
-    """The greatest share of full speed from which the machine comes to rest one braking distance before the block.
+    """The greatest share of full speed from which the machine surely rests one braking distance before the block.
 
-    At constant deceleration v² = 2 a s, and S is the way from full speed: so at a free travel d between S and 2 S it is
-    the root of (d - S) / S. 0 at and within S, full speed from 2 S on.
+    S may hold a reaction time, whose way shrinks as the speed does: from a share f of full speed it rests within f S.
+    So at a free travel d between S and 2 S it is (d - S) / S. 0 at and within S, full speed from 2 S on.
 
     Args:
         verdict: of one motion.
@@ -87,22 +90,19 @@ def speed_of(verdict: Verdict) -> float:
     if verdict.level is Level.STOP:
         return 0.0
     if verdict.level is Level.DECELERATE:
-        return min(1.0, math.sqrt(max(travel - braking, 0.0) / braking))
+        return min(1.0, max(travel - braking, 0.0) / braking)
     return 1.0
 
 
-def claims_of(
-    verdicts: Sequence[Verdict], low_speed: float, escaping: frozenset[str] = frozenset()
-) -> tuple[Claim, ...]:
+def claims_of(verdicts: Sequence[Verdict], low_speed: float) -> tuple[Claim, ...]:
     """What the verdicts of a pass claim, in their order; one that says no usable travel claims nothing.
 
     Args:
         verdicts: of a pass.
-        low_speed: at which one creeps, a share of full speed.
-        escaping: names of the motions that lead out of contact.
+        low_speed: at which one creeps out of contact, a share of full speed.
     """
     claims = []
     for verdict in verdicts:
         with suppress(InputError):
-            claims.append(Claim.of(verdict, low_speed, verdict.motion.name in escaping))
+            claims.append(Claim.of(verdict, low_speed))
     return tuple(claims)

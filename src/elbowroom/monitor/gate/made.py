@@ -15,12 +15,14 @@ from elbowroom.sources import Room
 MS = 1_000_000
 
 
-def gate_of(room: Room, folder: Path | None = None) -> Gate | None:
+def gate_of(room: Room, folder: Path | None = None, callback: str | None = None) -> Gate | None:
     """The gate that a run of a room has; None: nobody asked for one.
 
     Args:
         room: with its site.
         folder: of the latch; None: as the site says.
+        callback: "package.module:function" or "file.py:function" that is told each decision; a site names none, as
+            opening a site runs nobody's code. None: nobody is called.
 
     Raises:
         InputError: the site has a gate and nobody says where its latch lies; or no motion is judged, or more than an
@@ -35,6 +37,8 @@ def gate_of(room: Room, folder: Path | None = None) -> Gate | None:
                 f"{room.site.path}: gate: no folder for the latch; write gate.folder, or give --gate"
             )
     if folder is None:
+        if callback is not None:
+            raise InputError("callback: there is no gate that could call it; give --gate")
         return None
     entry = entry or GateEntry()
     if room.unasked is not None:
@@ -44,9 +48,15 @@ def gate_of(room: Room, folder: Path | None = None) -> Gate | None:
     rules = Rules(
         names, round(entry.deadline_ms * MS), entry.rise_per_s, entry.low_speed, round(entry.hold_ms * MS)
     )
-    return Gate(
-        folder, identity(room.site.name, names), rules, _watchdog(entry, rules, room.site.path.parent)
+    watchdog = WatchdogLink(
+        {
+            "motions": names,
+            "deadline_ns": rules.deadline_ns,
+            "callback": callback,
+            "modbus": _address(entry, len(names)),
+        }
     )
+    return Gate(folder, identity(room.site.name, names), rules, watchdog)
 
 
 def identity(name: str, motions: tuple[str, ...]) -> str:
@@ -61,19 +71,14 @@ def identity(name: str, motions: tuple[str, ...]) -> str:
     )
 
 
-def _watchdog(entry: GateEntry, rules: Rules, beside: Path) -> WatchdogLink:
-    """The watchdog, with the outputs that the site names."""
-    modbus, callback = entry.modbus, entry.callback
-    if modbus is not None:
-        register_count(len(rules.motions))
-        package("pymodbus")
-    if callback is not None and callback.rpartition(":")[0].endswith(".py"):
-        callback = str(beside.absolute() / callback)
-    return WatchdogLink(
-        {
-            "motions": rules.motions,
-            "deadline_ns": rules.deadline_ns,
-            "callback": callback,
-            "modbus": None if modbus is None else [modbus.host, modbus.port],
-        }
-    )
+def _address(entry: GateEntry, motions: int) -> tuple[str, int] | None:
+    """Where a PLC polls, if the site says so.
+
+    Raises:
+        InputError, PackageError: as `gate_of`.
+    """
+    if entry.modbus is None:
+        return None
+    register_count(motions)
+    package("pymodbus")
+    return entry.modbus.host, entry.modbus.port

@@ -149,8 +149,10 @@ def _target(state: GateState, claim: Claim, held: bool, rules: Rules) -> float:
     """Where the speed of a motion tends to, as its claim stands alone."""
     if state.phase is not Phase.GUARDING:
         return rules.low_speed if held and claim.escapes else 0.0
+    if claim.level is Level.STOP and claim.escapes:
+        return rules.low_speed
     if claim.level is Level.STOP:
-        return rules.low_speed if claim.escapes or (claim.overridable and held) else 0.0
+        return min(rules.low_speed, claim.creep_speed) if claim.overridable and held else 0.0
     return min(claim.speed, rules.low_speed) if claim.escapes else claim.speed
 
 

@@ -7,7 +7,7 @@ from typing import Protocol
 from elbowroom.finding import Finding
 from elbowroom.monitor.health.drift.watch import Watch
 from elbowroom.monitor.health.known import Known
-from elbowroom.monitor.stages import timed
+from elbowroom.monitor.stages import raise_interrupt, timed
 from elbowroom.sensing import Snapshot
 
 
@@ -50,5 +50,6 @@ class Checks:
                 with timed("watch", stage_ms):
                     health = self.watch.hear(snapshot.fresh(self.max_age_ns))
         except Exception as error:
+            raise_interrupt(error)
             return Known(None, f"{type(error).__name__}: {error}", stage_ms, tuple(findings))
         return Known(health, None, stage_ms, tuple(findings))

@@ -71,14 +71,16 @@ def carve_cubes(cubes, lattice, views, answers):
         np.empty((cameras, 64), dtype=np.uint64),
         np.empty((cameras, 64), dtype=np.uint64),
     )
+    is_aged = views.cameras[views.order[-1]].aged_m > 0.0 if cameras else False
     for number in cubes:
         cube = cube_at(lattice, number)
         _ask_blocks(cube, views, answers, scratch)
         # camera by camera, so that the part of its image that the cube covers stays in the cache
         for c in views.order:
             _ask_voxels(cube, c, views, answers, scratch)
-        # first those that may see through: where three do, the others need not be asked, nor where there is a surface
-        for turn in range(2):
+        # first those that saw through, if they still do, then those that may: where three do, the others need not be
+        # asked, nor where there is a surface
+        for turn in range(0 if is_aged else 1, 3):
             for c in views.order:
                 _ask_pixels(cube, c, turn, views, answers, scratch)
         for word in range(cube.word, cube.word + 64):
@@ -201,7 +203,10 @@ def _dispute(camera, word, look, texels, answers, lanes):
 
 @uncounted(cache=True)
 def _ask_pixels(cube, c, turn, views, answers, scratch):
-    """Asks one camera pixel by pixel of voxels left to that: in turn 0 those it may see through, then others."""
+    """Asks one camera pixel by pixel of voxels left to that.
+
+    In turn 0 those that it saw through, in turn 1 those that it may see through, then others.
+    """
     planes, camera = answers.planes, views.cameras[c]
     blocks = scratch.undecided[c]
     while blocks:
@@ -209,18 +214,21 @@ def _ask_pixels(cube, c, turn, views, answers, scratch):
         blocks &= ~(np.uint64(1) << np.uint64(lane))
         word = cube.word + lane
         stopped = scratch.stopped[c, lane]
-        rest = scratch.unsettled[c, lane] & (~stopped if turn == 0 else stopped)
-        ageing = scratch.ageing[c, lane] if turn == 0 else NOTHING
+        rest = (
+            scratch.ageing[c, lane]
+            if turn == 0
+            else scratch.unsettled[c, lane] & (~stopped if turn == 1 else stopped)
+        )
         if not answers.complete:
             rest &= ~planes[THREE, word]
-            ageing &= ~planes[THREE, word]
-            if turn == 1:
+            if turn == 2:
                 rest &= ~planes[SURFACE, word]
-        if not rest | ageing:
+        if not rest:
             continue
-        boxes = voxels_of(cube, lane)
-        seen, disputed, surface, blind = settle_word(camera, views.texels, rest, boxes, scratch.voxel[0])
-        note_disputed(answers, word, disputed, surface, blind)
+        boxes, seen = voxels_of(cube, lane), rest
+        if turn > 0:
+            seen, disputed, surface, blind = settle_word(camera, views.texels, rest, boxes, scratch.voxel[0])
+            note_disputed(answers, word, disputed, surface, blind)
         if camera.aged_m > 0.0:
-            seen = still_through(camera, views.texels, seen | ageing, boxes, scratch.voxel[0])
+            seen = still_through(camera, views.texels, seen, boxes, scratch.voxel[0])
         note_through(answers, word, seen)

@@ -1,0 +1,1 @@
+"""Cameras that are not exposed together, and things that move meanwhile."""
