@@ -107,16 +107,22 @@ def embree_scene(corners: NDArray[np.float32], triangles: NDArray[np.int32]) -> 
     found = _embree()
     if found is None:
         return None
-    construction, core = found
-    scene = core.EmbreeScene()
+    construction, core, device = found
+    scene = core.EmbreeScene(device)
     construction.TriangleMesh(scene, corners, triangles)
     return scene
 
 
 @cache
-def _embree() -> tuple[Any, Any] | None:
+def _embree() -> tuple[Any, Any, Any] | None:
+    """Its modules, and one device for all scenes.
+
+    A scene that is given none makes one of its own, and ends it when it goes: while another thread cast rays, that
+    crashed the process now and then.
+    """
     try:
-        return import_module("embreex.mesh_construction"), import_module("embreex.rtcore_scene")
+        construction, core = import_module("embreex.mesh_construction"), import_module("embreex.rtcore_scene")
+        return construction, core, import_module("embreex.rtcore").EmbreeDevice()
     except ImportError:
         return None
 
