@@ -110,6 +110,6 @@ def test_a_part_that_lies_in_links_that_do_not_carry_it_is_refused(gripper):
     with pytest.raises(
         MachineError, match="part log lies in base, arm, right in all poses, which do not carry it"
     ):
-        gripper.with_part("left", Part.box("log", (3, 3, 3)))
+        gripper.with_part("left", Part.box("log", (9, 9, 9)))
     # the link that carries it and what hangs on that it may lie in
     assert gripper.with_part("arm", Part.box("part", (0.1, 0.15, 0.1)), POSE).parts == ("part",)
