@@ -1,4 +1,8 @@
-"""Ctrl-C as an end like others, or as a wish to be done."""
+"""Ctrl-C as a wish to be done: what runs comes to its end, and nothing is cut in two.
+
+An interrupt that is raised while compiled code runs can leave memory behind that is counted wrongly, and crash the
+process later. So the first one only asks.
+"""
 
 import signal
 import sys
@@ -6,29 +10,17 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-
-@contextmanager
-def ended_by_interrupt() -> Iterator[None]:
-    """Ctrl-C, and the system's request to end, leave the block as its end would."""
-
-    def interrupt(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, interrupt)
-    try:
-        yield
-    except KeyboardInterrupt:
-        pass
-    finally:
-        signal.signal(signal.SIGTERM, before)
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+"""Ctrl-C, and the system's request to end."""
 
 
 @contextmanager
-def asked_to_end(what_is_kept: str) -> Iterator[Callable[[], bool]]:
-    """Whether Ctrl-C asked to come to an end; a second one interrupts as ever.
+def asked_to_end(what_is_kept: str | None = None) -> Iterator[Callable[[], bool]]:
+    """Whether Ctrl-C or the system asked to come to an end; a second time interrupts as ever.
 
     Args:
-        what_is_kept: words for what is still done, such as "the best layout so far is verified and written".
+        what_is_kept: words for what is still done, such as "the best layout so far is verified and written"; None: the
+            end is near, and nothing is said.
     """
     asked = threading.Event()
 
@@ -36,10 +28,12 @@ def asked_to_end(what_is_kept: str) -> Iterator[Callable[[], bool]]:
         if asked.is_set():
             raise KeyboardInterrupt
         asked.set()
-        print(f"stopping: {what_is_kept}; Ctrl-C again ends at once", file=sys.stderr)
+        if what_is_kept is not None:
+            print(f"stopping: {what_is_kept}; Ctrl-C again ends at once", file=sys.stderr)
 
-    before = signal.signal(signal.SIGINT, ask)
+    before = [(each, signal.signal(each, ask)) for each in SIGNALS]
     try:
         yield asked.is_set
     finally:
-        signal.signal(signal.SIGINT, before)
+        for each, handler in before:
+            signal.signal(each, handler)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowroom.cli.interrupt import ended_by_interrupt
+from elbowroom.cli.interrupt import asked_to_end
 from elbowroom.cli.options import (
     Detail,
     JointsText,
@@ -205,6 +205,6 @@ def _watch(
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]
-        with ended_by_interrupt():
-            loop.run(faces, seconds)
+        with asked_to_end() as is_over:
+            loop.run(faces, seconds, is_over)
         add(view.log.row())

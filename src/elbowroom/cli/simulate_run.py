@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from elbowroom.cli.interrupt import ended_by_interrupt
+from elbowroom.cli.interrupt import asked_to_end
 from elbowroom.cli.noise import noise_named
 from elbowroom.cli.options import options_named
 from elbowroom.cli.progress import Steps
@@ -205,7 +205,7 @@ def _shoot(shot: Shot, asked: Asked, steps: Steps) -> tuple[int, dict[str, Any]]
     """Renders and writes one moment after the other; how many there are, and the row of results."""
     first: tuple[Moment, list[DepthFrame]] | None = None
     missing = []
-    with RecordingFolder(shot.images, shot.units) as recording, ended_by_interrupt():
+    with RecordingFolder(shot.images, shot.units) as recording, asked_to_end() as is_over:
         for number, time_s in enumerate(shot.times_s):
             if steps.console.is_terminal:
                 steps.begin(f"moment {number + 1} of {len(shot.times_s)}")
@@ -216,6 +216,8 @@ def _shoot(shot: Shot, asked: Asked, steps: Steps) -> tuple[int, dict[str, Any]]
             recording.add(frames, moment.joints or None)
             missing.append(float(np.mean([np.mean(frame.depth_m <= 0) for frame in frames])))
             first = first or (moment, frames)
+            if is_over():
+                break
     if first is None or not recording.moments:
         raise KeyboardInterrupt
     moment, frames = first

@@ -16,6 +16,9 @@ from elbowroom.sensing import Snapshot
 from elbowroom.sources import Room, Source
 from elbowroom.sources.pace import SLACK_S
 
+LISTENS_S = 0.1
+"""While it waits it listens so often for the wish to end [s]."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Loop:
@@ -36,8 +39,13 @@ class Loop:
     pace: Callable[[Snapshot], float | None] | None = None
     gate: Gate | None = None
 
-    def run(self, faces: Sequence[Face], seconds: float | None = None) -> None:
-        """Judges one snapshot after the other until the time is over or the source ends.
+    def run(
+        self,
+        faces: Sequence[Face],
+        seconds: float | None = None,
+        is_over: Callable[[], bool] = lambda: False,
+    ) -> None:
+        """Judges one snapshot after the other until the time is over, the source ends or somebody asks for the end.
 
         However it ends, every face is told, in order. What the source or a face raises ends the run: before it is
         raised again, every face is shown a pass in which all motions are stop.
@@ -46,6 +54,7 @@ class Loop:
             faces: who shows or keeps each pass, in the order in which they are told.
             seconds: how long, also where the pace waits; None: until the source ends. One pass is always made, if there
                 is a snapshot.
+            is_over: whether somebody asked for the end, asked after each pass and while the pace waits.
 
         Raises:
             InputError: the gate cannot begin; nothing else has begun then.
@@ -61,13 +70,13 @@ class Loop:
                 for face in faces:
                     face.begin(self.room)
                 for snapshot, source_ms in timed_source(self.room.source):
-                    if not self._waited(snapshot, until):
+                    if not self._waited(snapshot, until, is_over):
                         break
                     result = self.judge(snapshot)
                     done = Pass(snapshot, result, source_ms, self._decision(result))
                     for face in faces:
                         face.show(done)
-                    if time.perf_counter() >= until:
+                    if is_over() or time.perf_counter() >= until:
                         break
             except Exception as error:
                 self._say_stop(faces, snapshot, error)
@@ -83,14 +92,18 @@ class Loop:
         """What the gate makes of a pass."""
         return None if self.gate is None else self.gate.decide(result)
 
-    def _waited(self, snapshot: Snapshot, until_s: float) -> bool:
+    def _waited(self, snapshot: Snapshot, until_s: float, is_over: Callable[[], bool]) -> bool:
         """Sleeps while a snapshot is early, if the run does not end before; whether it did not."""
         early_s = (self.pace(snapshot) if self.pace is not None else None) or 0.0
         if early_s <= SLACK_S:
             return True
-        left_s = max(until_s - time.perf_counter(), 0.0)
-        time.sleep(min(early_s, left_s))
-        return early_s <= left_s
+        due_s = time.perf_counter() + early_s
+        while not is_over():
+            now_s = time.perf_counter()
+            if now_s >= min(due_s, until_s):
+                return due_s <= until_s
+            time.sleep(min(due_s - now_s, max(until_s - now_s, 0.0), LISTENS_S))
+        return False
 
     def _say_stop(self, faces: Sequence[Face], snapshot: Snapshot | None, error: Exception) -> None:
         """Shows a failed pass to every face, also to those behind one that cannot show it."""
