@@ -11,7 +11,6 @@ from elbowroom.cli.site_bag import from_bag, topics
 from elbowroom.cli.site_mask import mask
 from elbowroom.cli.site_moment import pose_to_draw, tight_notes
 from elbowroom.cli.site_own_links import own_links
-from elbowroom.cli.swept import say_swept, swept_row
 from elbowroom.errors import SiteError
 from elbowroom.files.json_rows import write_json
 
@@ -94,6 +93,7 @@ def check(
 
 def _findings(site: "Site") -> dict[str, Any]:
     """All that can be said of a site; raises on whatever is wrong with it."""
+    from elbowroom.cli.swept import swept_row
     from elbowroom.site import memory_of
     from elbowroom.site.notes import notes_of
     from elbowroom.sources import (
@@ -178,6 +178,8 @@ def _coverage(grid: "VoxelGrid", cameras: "Sequence[DepthCamera]") -> dict[str, 
 
 
 def _say(row: dict[str, Any]) -> None:
+    from elbowroom.cli.swept import say_swept
+
     shape = " x ".join(map(str, row["shape"]))
     wrong = sum(finding["stops"] for finding in row["findings"])
     lines = {

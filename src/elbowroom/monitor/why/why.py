@@ -153,7 +153,8 @@ def _advice(found: Why, source: ImageSource) -> list[str]:
         return [
             f"zone {found.verdict.zone} keeps all links out there: change it in the site, if it may be entered"
         ]
-    if cause is Cause.UNSEEN:
+    if cause in (Cause.UNSEEN, Cause.SURFACE):
+        # a surface of which no camera measured anything near is an edge across the voxel
         hidden = [c.camera for c in report.cameras if c.sight in (Sight.HIDDEN, Sight.EDGE)]
         hiding = f"{', '.join(hidden)} would see it, were nothing in between; " if hidden else ""
         return [f"{hiding}a camera that looks there from another side would settle it"]
