@@ -64,14 +64,17 @@ def test_optimise_by_the_empty_room_or_by_scenes(told, scenes, module, name):
     words = (
         f"optimise a.yaml --share 97 --cameras 9 --price --keep --scenes {scenes} --seconds 5 --points 400"
     )
-    words += " --views 2 --angle 80 --seed 7 --write new.yaml --out pictures"
+    words += " --people 2 --no-table --views 2 --angle 80 --seed 7 --write new.yaml --out pictures"
     assert told(module, name, words) == OptimiseOptions(
         site=Path("a.yaml"),
         share_pct=97.0,
         cameras=9,
         by_price=True,
         keep=True,
+        motions=False,
         scenes=scenes,
+        people=2,
+        table=False,
         seconds=5.0,
         points=400,
         required=Required(2, 80.0),
@@ -79,6 +82,11 @@ def test_optimise_by_the_empty_room_or_by_scenes(told, scenes, module, name):
         write=Path("new.yaml"),
         out=Path("pictures"),
     )
+
+
+def test_optimise_by_motions_looks_at_scenes_in_use(told):
+    options = told(in_use, "run_in_use", "optimise a.yaml --motions")
+    assert options.motions and options.scenes > 0
 
 
 def test_simulate(told):
