@@ -41,6 +41,8 @@ TYPED_ALONE = {
     "gate reset my_gate": "as the line before it",
     "site topics my_bag": "needs a bag, which tests of bags write",
     "site from-bag my_bag --out my_room.yaml": "as the line before it",
+    "placement optimise my_room.yaml --motions --cameras 12 --write placed.yaml": "needs a machine with speeds: "
+    "its own tests run it",
     "monitor --knock cam03:20mmz@5": "as the line before it",
     "monitor --knock larm:2deg@5": "as the line before it",
 }

@@ -1,6 +1,7 @@
 """The commands from end to end, on a small simulated room and on a recording of it."""
 
 import json
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -124,7 +125,7 @@ def test_ctrl_c_ends_the_monitor_with_its_summary(room, tmp_path, capsys, monkey
 
     def interrupted(self, done):
         self.log.add(done.result, done.source_ms)
-        raise KeyboardInterrupt
+        signal.raise_signal(signal.SIGINT)
 
     monkeypatch.setattr(TerminalView, "show", interrupted)
     out = tmp_path / "out.json"
