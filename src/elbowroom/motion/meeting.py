@@ -56,11 +56,11 @@ class Meeting:
         pairs, whole = pairs_of(machine.anywhere), with_things(machine)
         things = np.tile(machine.world_from_base, (len(machine.contacts), 1, 1))
         placed = np.concatenate([world_from_link, things]) if len(things) else world_from_link
-        apart = np.empty(len(pairs.sampled))
-        apart_now(pairs.bodies, placed, pairs.bodies.met, apart)
-        apart[apart <= TOUCH_M] = 0.0
-        gaps, least = np.empty(len(pairs.pair)), np.empty(len(pairs.sampled))
-        gaps_now(pairs, placed, gaps, least)
+        apart, gaps, least = (np.empty(len(each)) for each in (pairs.sampled, pairs.pair, pairs.sampled))
+        if len(pairs.sampled):
+            apart_now(pairs.bodies, placed, pairs.bodies.met, apart)
+            apart[apart <= TOUCH_M] = 0.0
+            gaps_now(pairs, placed, gaps, least)
         return cls(whole, pairs, placed, Now(apart, gaps, least))
 
     def first(self, way: Way, length: float) -> Met | None:

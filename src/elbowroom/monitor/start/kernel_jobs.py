@@ -75,25 +75,34 @@ def _machine_in_images() -> None:
 
 
 def _motion() -> None:
-    import numpy as np
-
     from elbowroom.geometry import VoxelGrid, bits
-    from elbowroom.machine import Part
     from elbowroom.machine.probe import probe
     from elbowroom.motion import Motion, blocks_in_reach, check_motion
     from elbowroom.reconstruct import FreeSpace
 
     grid = VoxelGrid((-0.2, -0.2, -0.2), (8, 8, 8), 0.05)
     nothing = bits.empty(grid)
-    space = FreeSpace(grid, nothing, nothing, nothing, nothing)
     motion = Motion("slide", 1, 0.01)
-    check_motion(space, probe(), {"slide": 0.0}, motion)
-    # links that could meet
+    for free in (nothing, ~nothing):
+        check_motion(FreeSpace(grid, free, nothing, nothing, nothing), probe(), {"slide": 0.0}, motion)
+    blocks_in_reach(grid, probe(), {"slide": 0.0}, [motion])
+
+
+def _own_links() -> None:
+    import numpy as np
+
+    from elbowroom.machine import Part
+    from elbowroom.machine.probe import probe
+    from elbowroom.motion import Motion
+    from elbowroom.motion.course import way_of
+    from elbowroom.motion.meeting import Meeting
+
     beside = np.eye(4)
     beside[0, 3] = 0.3
     both = replace(probe().with_part("base", Part.box("part", (0.1, 0.1, 0.1)), beside), allowed_contacts=())
-    check_motion(FreeSpace(grid, ~nothing, nothing, nothing, nothing), both, {"slide": 0.0}, motion)
-    blocks_in_reach(grid, probe(), {"slide": 0.0}, [motion])
+    start = both.positions({"slide": 0.0})
+    way = way_of(both, start, Motion("slide", 1, 0.01))
+    Meeting.of(both, both.world_from_link_array(start[None])[0]).first(way, way.length)
 
 
 def _watch() -> None:
@@ -121,8 +130,21 @@ JOBS = (
         "the machine's body",
     ),
     Job(
+        "carving",
+        _carving,
+        ("elbowroom.reconstruct.kernels.carve", "carve_cubes"),
+        after="the pixel test",
+    ),
+    Job(
         "motions",
         _motion,
+        ("elbowroom.motion.kernels.focus", "mark_ways"),
+        "motion",
+        "the machine's body",
+    ),
+    Job(
+        "own links",
+        _own_links,
         ("elbowroom.motion.kernels.meeting", "first_meeting"),
         "motion",
         "the machine's body",
@@ -133,12 +155,6 @@ JOBS = (
         ("elbowroom.monitor.health.drift.kernels.body", "surface_spots"),
         "motion",
         "the machine in images",
-    ),
-    Job(
-        "carving",
-        _carving,
-        ("elbowroom.reconstruct.kernels.carve", "carve_cubes"),
-        after="the pixel test",
     ),
     Job(
         "simulated cameras",
