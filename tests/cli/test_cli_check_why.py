@@ -1,6 +1,7 @@
 """`elbowroom check` and `site check` say by how much something is in the way, and what would change it."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -50,7 +51,7 @@ def test_a_surface_within_the_margin_is_told_from_one_that_is_in_the_way(far_cel
 
 
 def test_site_check_names_the_links_that_would_be_stopped_for_ever_before_and_with_a_recording(
-    far_cell, capsys
+    far_cell, tmp_path, capsys
 ):
     assert run(["site", "check", str(far_cell)]) == 0
     said = capsys.readouterr().out
@@ -60,6 +61,11 @@ def test_site_check_names_the_links_that_would_be_stopped_for_ever_before_and_wi
     assert run(["site", "check", str(far_cell)]) == 0
     said = capsys.readouterr().out
     assert "note      link " in said and ": a surface" in said and "within the margin of" in said
+    # what the note says is stopped, is
+    (named,) = set(re.findall(r"so (.+?) will be stopped", said))
+    for motion in named.split(", "):
+        joint, way = motion.split()
+        assert check(far_cell, joint, tmp_path, "--direction", way)["level"] == "stop"
 
 
 def test_site_check_is_silent_where_the_arm_may_move(cell, tmp_path, capsys, monkeypatch):
