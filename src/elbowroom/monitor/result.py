@@ -7,7 +7,7 @@ from typing import Self
 from elbowroom.finding import Finding
 from elbowroom.monitor.health.health import Health
 from elbowroom.monitor.health.known import Known
-from elbowroom.motion import Cause, Level, Verdict
+from elbowroom.motion import Cause, Distances, Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
 
 
@@ -29,6 +29,7 @@ class CycleResult:
         late: that frames were past their age when the verdicts were out, so that every one is stop, one sentence; None:
             they were in time, or there is no limit.
         skew_ms: between the stamps of the oldest and the newest frame that was used [ms]; None: there are no two.
+        distances: of the links from blocked space; None: nobody asked, or the pass failed.
     """
 
     sequence: int
@@ -42,6 +43,7 @@ class CycleResult:
     findings: tuple[Finding, ...] = ()
     late: str | None = None
     skew_ms: float | None = None
+    distances: Distances | None = None
 
     def knowing(self, known: Known) -> Self:
         """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""

@@ -19,6 +19,7 @@ from elbowroom.site.placement_entry import PlacementEntry
 from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, speed_of_people, up_to
 from elbowroom.site.recording_entry import RecordingEntry, SevenScenes
 from elbowroom.site.room_entry import RoomEntry
+from elbowroom.site.separation_entry import SeparationEntry
 from elbowroom.site.watch_entry import WatchEntry
 from elbowroom.site.zone_entry import ZoneEntry
 
@@ -139,6 +140,7 @@ class SiteEntry(Entry):
     placement: PlacementEntry | None = None
     watch: WatchEntry | None = None
     gate: GateEntry | None = None
+    separation: SeparationEntry = SeparationEntry()
     calibration: CalibrationEntry | None = None
 
     @property
