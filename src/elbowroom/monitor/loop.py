@@ -76,9 +76,9 @@ class Loop:
                 for snapshot, source_ms in timed_source(self.room.source):
                     if not self._waited(snapshot, until, is_over):
                         break
-                    begun_ns = self.cycle.clock_ns()
+                    begun_ns = self._time_ns()
                     result = self.judge(snapshot)
-                    judged_ns = self.cycle.clock_ns()
+                    judged_ns = self._time_ns()
                     decision = self._decision(result)
                     margins = self._margins(snapshot, result, begun_ns, judged_ns)
                     done = Pass(snapshot, result, source_ms, decision, margins)
@@ -100,13 +100,17 @@ class Loop:
         """What the gate makes of a pass."""
         return None if self.gate is None else self.gate.decide(result)
 
+    def _time_ns(self) -> int:
+        """The time by the clock that reaction times are measured by [ns]; 0: nobody measures any."""
+        return 0 if self.separating is None else self.separating.clock_ns()
+
     def _margins(
         self, snapshot: Snapshot, result: CycleResult, begun_ns: int, judged_ns: int
     ) -> Margins | None:
         """What is left of distances, with the time that it took until now."""
         if self.separating is None:
             return None
-        pass_ms, output_ms = (judged_ns - begun_ns) / 1e6, (self.cycle.clock_ns() - judged_ns) / 1e6
+        pass_ms, output_ms = (judged_ns - begun_ns) / 1e6, (self._time_ns() - judged_ns) / 1e6
         return self.separating.judged(snapshot, result, pass_ms, output_ms)
 
     def _waited(self, snapshot: Snapshot, until_s: float, is_over: Callable[[], bool]) -> bool:

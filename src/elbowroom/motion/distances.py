@@ -18,6 +18,7 @@ from elbowroom.geometry.bits import Words
 from elbowroom.geometry.kept import kept
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine, body_samples
+from elbowroom.machine.samples import ROUNDING_M as SAMPLE_ROUNDING_M
 from elbowroom.machine.samples import BodySamples
 from elbowroom.machine.shape import Shape
 from elbowroom.motion.ground import Ground, grounds_of
@@ -136,7 +137,8 @@ def link_distances(
         if ground.links[row]
     ]
     found = sorted(zip((look.row for look in looks), spread(_Look.distances, looks), strict=True), key=_row)
-    return Distances(up_to_m, samples.cover_m + samples.bound_m + ROUNDING_M, tuple(d for _, d in found))
+    slack_m = samples.cover_m + samples.bound_m + SAMPLE_ROUNDING_M + ROUNDING_M
+    return Distances(up_to_m, slack_m, tuple(distances for _, distances in found))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,5 +1,7 @@
 """What looks after distances while a run lasts: it measures reaction times and says the margins of each pass."""
 
+import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Self
 
@@ -18,10 +20,12 @@ class Separating:
     Args:
         figures: of the site.
         watch: measures.
+        clock_ns: by which it is measured; it never goes back [ns].
     """
 
     figures: Figures
     watch: ReactionWatch
+    clock_ns: Callable[[], int] = time.perf_counter_ns
 
     @classmethod
     def of(cls, room: Room) -> Self:
