@@ -330,6 +330,32 @@ and no others. The recordings, the simulated room and random sites, described ri
         tables.contradiction_tables,
     ),
     Section(
+        "lag.json",
+        "The closed loop",
+        """
+People walk at up to 1.6 m/s through the simulated room, as near as 3 cm to a machine that moves one joint at a time
+at full speed, as its verdicts allow ([how](reliability.md#the-closed-loop)). A *window* is a time in which a motion
+that starts, or goes on, at full speed would touch something within its braking distance, by exact geometry (coal),
+thirty times a second. *should have stopped and did not*: not stopped at some time of the window later than a reaction
+time (skew, a period of 100 ms, a pass of 67 ms) after it began. *stopped before*: when it began. *stopped for
+nothing*: times of stop in which, and a reaction time before, nothing was in the way. Small cameras with noise and
+voxels of 10 cm: with better ones fewer are.
+""",
+        "elbowroom evaluate lag",
+        tables.lag_tables,
+    ),
+    Section(
+        "decision.json",
+        "Exposure to decision",
+        """
+The whole monitor (clocks, watch, pass, distances, gate with its latch on disk) on frames that lie in memory and are
+there when they are exposed: from the exposure of the oldest frame that a pass used to its decision. *running free*:
+the cameras' exposures are spread over a frame period, so the oldest frame is up to one older.
+""",
+        "elbowroom bench decision",
+        tables.decision_tables,
+    ),
+    Section(
         "latch.json",
         "The latch",
         """

@@ -39,6 +39,25 @@ class _Heard:
         """Nothing is to be done."""
 
 
+def gate_beside(loop: Loop, folder: Path) -> Gate:
+    """A gate that decides and keeps its latch, but has no watchdog: nobody listens to it.
+
+    Args:
+        loop: whose motions it decides of.
+        folder: a temporary one.
+    """
+    _, motions = loop.room.machine_and_motions()
+    entry = GateEntry()
+    rules = Rules(
+        tuple(motion.name for motion in motions),
+        round(entry.deadline_ms * NS_A_MS),
+        entry.rise_per_s,
+        entry.low_speed,
+        round(entry.hold_ms * NS_A_MS),
+    )
+    return Gate(folder / "gate", loop.room.site.name, rules)
+
+
 def measured_budget(loop: Loop, seconds: float) -> Budget:
     """Runs a loop for a while, with a gate of its own that nobody listens to, and says what it took.
 
@@ -52,18 +71,9 @@ def measured_budget(loop: Loop, seconds: float) -> Budget:
     separating = loop.separating
     if separating is None:
         raise InputError("budget: no motion is judged here, so no machine has to stop")
-    _, motions = loop.room.machine_and_motions()
-    entry, heard = GateEntry(), _Heard()
-    rules = Rules(
-        tuple(motion.name for motion in motions),
-        round(entry.deadline_ms * NS_A_MS),
-        entry.rise_per_s,
-        entry.low_speed,
-        round(entry.hold_ms * NS_A_MS),
-    )
+    heard = _Heard()
     with tempfile.TemporaryDirectory() as folder:
-        gate = Gate(Path(folder) / "gate", loop.room.site.name, rules)
-        replace(loop, gate=gate).run([heard], seconds)
+        replace(loop, gate=gate_beside(loop, Path(folder))).run([heard], seconds)
     if heard.fault is not None:
         raise InputError(f"budget: a pass failed: {heard.fault}")
     margins = least_margins(heard.margins)
