@@ -3,13 +3,11 @@
 from elbowroom.evaluate.speed.decision import DUE, decision_rows, words_of_worst
 
 
-def test_a_short_run_measures_both_cases():
-    together, free = decision_rows(0.6, cameras=2, size=(32, 24))
-    assert (together["case"], free["case"]) == ("exposed together", "running free")
-    for row in (together, free):
-        assert row["passes"] >= 2 and row["failed"] == 0
-        assert 0 < row["median_ms"] <= row["p99_ms"] <= row["max_ms"]
-        assert {"age_ms", "carve", "motion", "distances"} <= row["worst"].keys()
+def test_a_short_run_measures_the_whole_way():
+    together = next(decision_rows(0.5, cameras=2, size=(32, 24)))
+    assert together["case"] == "exposed together" and together["passes"] >= 2
+    assert 0 < together["median_ms"] <= together["p99_ms"] <= together["max_ms"]
+    assert {"age_ms", "carve", "motion", "distances"} <= together["worst"].keys()
     # the small room has nothing that is due, the whole one has
     assert not DUE[0].of(together)
     assert DUE[0].of({**together, "cameras": 21, "width": 640, "height": 480})

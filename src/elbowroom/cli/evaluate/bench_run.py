@@ -65,7 +65,7 @@ def run_bench_decision(
             "case": "{case}",
             "voxel": voxel,
             "passes": "{passes}",
-            "failed": "{failed}",
+            "too old": "{late}",
             "median": "{median_ms:.1f} ms",
             "99 %": "{p99_ms:.1f} ms",
             "worst": "{max_ms:.1f} ms",

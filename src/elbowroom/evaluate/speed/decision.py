@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from elbowroom.errors import InputError
 from elbowroom.evaluate.due import FULL_ROOM, Due
 from elbowroom.geometry import parallel
 from elbowroom.monitor import Pass
@@ -54,13 +55,15 @@ class _Heard:
     def show(self, done: Pass) -> None:
         """Notes how old the oldest frame is that was used, and where its time went."""
         now_ns = time.perf_counter_ns()
+        if done.result.fault is not None:
+            raise InputError(f"bench: a pass failed: {done.result.fault}")
         stamps = [frame.stamp_ns for frame in done.snapshot.frames if frame.stamp_ns is not None]
         self.rows.append(
             {
                 "ms": (now_ns - min(stamps)) / 1e6,
                 "age_ms": done.result.oldest_age_ms,
                 "stage_ms": dict(done.result.stage_ms),
-                "failed": done.result.fault is not None or done.result.late is not None,
+                "late": done.result.late is not None,
             }
         )
 
@@ -80,7 +83,10 @@ def decision_rows(
 
     Yields:
         A row for each case: from the exposure of the oldest frame that was used to the decision (median_ms, p99_ms,
-        max_ms), and where the time of the worst pass went (worst).
+        max_ms), how many passes were past their age (late), and where the time of the worst pass went (worst).
+
+    Raises:
+        InputError: a pass failed.
     """
     room = open_room(Site.simulated_room(), cameras=cameras, resolution=size)
     assert isinstance(room.source, Simulated)
@@ -103,7 +109,7 @@ def decision_rows(
             "threads": threads or parallel.default_threads(),
             "seconds": seconds,
             "passes": len(spent),
-            "failed": sum(row["failed"] for row in heard.rows),
+            "late": sum(row["late"] for row in heard.rows),
             "median_ms": float(np.median(spent)),
             "p99_ms": float(np.percentile(spent, 99)),
             "max_ms": float(spent.max()),
