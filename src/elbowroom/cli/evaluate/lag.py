@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.evaluate.options import Seed
+from elbowroom.cli.evaluate.options import Jobs, Seed
 from elbowroom.cli.options import JsonFile
 
 QUICK_MINUTES = 1.0
@@ -25,6 +25,7 @@ def lag(
             min=0.5, max=10, metavar="M_S", help="As what people are taken; feet are faster than 2."
         ),
     ] = 2.0,
+    jobs: Jobs = None,
     seed: Seed = 1,
     json: JsonFile = None,
 ) -> None:
@@ -42,6 +43,7 @@ def lag(
     from elbowroom.evaluate.due import sentence
     from elbowroom.evaluate.lag.lag import DUE, SKEWS_MS, lag_rows, lag_summary, parts_of
     from elbowroom.evaluate.lag.loop import Setting
+    from elbowroom.geometry.parallel import default_threads
 
     asked = QUICK_MINUTES if quick else minutes
     show = as_table(
@@ -62,5 +64,6 @@ def lag(
         sentence(DUE),
         "missed: not stopped at some time later than a reaction time after the window began; late: stopped within it",
     )
-    rows = lag_rows(asked, seed=seed, setting=Setting(ahead=ahead, people_speed_m_s=people_speed))
+    setting = Setting(ahead=ahead, people_speed_m_s=people_speed)
+    rows = lag_rows(asked, seed=seed, setting=setting, jobs=jobs or default_threads())
     measured("parts", rows, 2 * len(SKEWS_MS) * parts_of(asked), json, show, lag_summary)

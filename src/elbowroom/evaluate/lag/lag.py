@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,9 @@ from numpy.typing import NDArray
 
 from elbowroom.evaluate.due import Due
 from elbowroom.evaluate.lag.loop import TICK_S, Setting, Tick, run_loop
-from elbowroom.evaluate.lag.moves import find_moves
+from elbowroom.evaluate.lag.moves import Moves, find_moves
 from elbowroom.evaluate.lag.windows import Window, needless_of, share_pct, windows_of
+from elbowroom.evaluate.shares.work_force import do_work
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.motion import Level, Motion
 
@@ -35,7 +37,11 @@ class _Asked:
 
 
 def lag_rows(
-    minutes: float = 30.0, skews_ms: Sequence[float] = SKEWS_MS, seed: int = 1, setting: Setting | None = None
+    minutes: float = 30.0,
+    skews_ms: Sequence[float] = SKEWS_MS,
+    seed: int = 1,
+    setting: Setting | None = None,
+    jobs: int = 1,
 ) -> Iterator[dict[str, Any]]:
     """Simulated minutes of the closed loop, as often as there are skews.
 
@@ -44,8 +50,9 @@ def lag_rows(
     Args:
         minutes: of simulated time for each skew.
         skews_ms: between the exposures of a pass [ms].
-        seed: of the first part's moves and noise.
+        seed: of moves, choices and noise.
         setting: of cameras and voxels; None: small ones.
+        jobs: so many processes share the parts; the rows are the same, in another order.
 
     Yields:
         Rows of kind "part"; `lags_ms` are of windows in which it was stopped at all.
@@ -53,14 +60,29 @@ def lag_rows(
     Raises:
         PackageError: coal is not installed.
     """
-    base, moves = setting or Setting(), find_moves(ceiling_c_arm(), MOVES, np.random.default_rng(seed))
-    for skew_ms in skews_ms:
-        for part in range(parts_of(minutes)):
-            chosen = replace(base, skew_ms=skew_ms)
-            seconds = min(PART_S, 60 * minutes - part * PART_S)
-            ticks = list(run_loop(chosen, moves, seconds, seed + part))
-            for which, asked in (("every motion", _every(ticks)), ("the machine's own", _own(ticks))):
-                yield {**_said(chosen, part, seed, ticks), "which": which, **_counted(asked, chosen)}
+    work = [
+        partial(_part, replace(setting or Setting(), skew_ms=skew_ms), minutes, part, seed)
+        for skew_ms in skews_ms
+        for part in range(parts_of(minutes))
+    ]
+    for _, rows in do_work(work, jobs=jobs):
+        yield from rows
+
+
+def _part(setting: Setting, minutes: float, part: int, seed: int) -> list[dict[str, Any]]:
+    """The rows of one part."""
+    seconds = min(PART_S, 60 * minutes - part * PART_S)
+    ticks = list(run_loop(setting, _moves(seed), seconds, seed + part))
+    asked = {"every motion": _every(ticks), "the machine's own": _own(ticks)}
+    return [
+        {**_said(setting, part, seed, ticks), "which": which, **_counted(each, setting)}
+        for which, each in asked.items()
+    ]
+
+
+@cache
+def _moves(seed: int) -> Moves:
+    return find_moves(ceiling_c_arm(), MOVES, np.random.default_rng(seed))
 
 
 def parts_of(minutes: float) -> int:
@@ -170,7 +192,7 @@ def lag_summary(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     for row in rows:
         groups.setdefault((row["skew_ms"], row["which"]), []).append(row)
     summary = []
-    for own in groups.values():
+    for _, own in sorted(groups.items()):
         lags = [lag for row in own for lag in row["lags_ms"]]
         seconds = sum(row["seconds"] for row in own)
         summary.append(
