@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from elbowroom.cli.evaluate.options import Jobs, Seed
-from elbowroom.cli.options import JsonFile
+from elbowroom.cli.options import JsonFile, parse_resolution
 
 QUICK_MINUTES = 1.0
 
@@ -25,6 +25,9 @@ def lag(
             min=0.5, max=10, metavar="M_S", help="As what people are taken; feet are faster than 2."
         ),
     ] = 2.0,
+    resolution: Annotated[
+        str, typer.Option(metavar="WxH", help="Of the 12 cameras; what pixels do not resolve may be missed.")
+    ] = "64x48",
     jobs: Jobs = None,
     seed: Seed = 1,
     json: JsonFile = None,
@@ -64,6 +67,6 @@ def lag(
         sentence(DUE),
         "missed: not stopped at some time later than a reaction time after the window began; late: stopped within it",
     )
-    setting = Setting(ahead=ahead, people_speed_m_s=people_speed)
+    setting = Setting(ahead=ahead, people_speed_m_s=people_speed, size=parse_resolution(resolution))
     rows = lag_rows(asked, seed=seed, setting=setting, jobs=jobs or default_threads())
     measured("parts", rows, 2 * len(SKEWS_MS) * parts_of(asked), json, show, lag_summary)
