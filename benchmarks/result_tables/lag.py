@@ -7,6 +7,8 @@ from elbowroom.evaluate.speed import decision
 from result_tables.cells import Cell, Row, centimetres, of, table
 
 LAG: dict[str, Cell] = {
+    "cameras": lambda row: f"{row['cameras']} x {row['width']}x{row['height']}",
+    "voxel": centimetres,
     "skew, ms": of("skew_ms", 0),
     "of": of("which"),
     "minutes": of("minutes", 0),

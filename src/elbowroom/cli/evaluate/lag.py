@@ -27,7 +27,7 @@ def lag(
     ] = 2.0,
     resolution: Annotated[
         str, typer.Option(metavar="WxH", help="Of the 12 cameras; what pixels do not resolve may be missed.")
-    ] = "64x48",
+    ] = "160x120",
     jobs: Jobs = None,
     seed: Seed = 1,
     json: JsonFile = None,

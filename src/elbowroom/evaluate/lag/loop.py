@@ -48,7 +48,7 @@ class Setting:
     skew_ms: float = 0.0
     ahead: bool = False
     voxel_size_m: float = 0.1
-    size: tuple[int, int] = (64, 48)
+    size: tuple[int, int] = (160, 120)
     cameras: int = 12
     people_speed_m_s: float = 2.0
 
