@@ -31,6 +31,7 @@ class CycleResult:
             they were in time, or there is no limit.
         skew_ms: between the stamps of the oldest and the newest frame that was used [ms]; None: there are no two.
         sick: what is wrong with which source. A camera of it was left out; while joints are, every verdict is stop.
+        blind: that no camera gave anything that counts, so that every verdict is stop, one sentence; None: one did.
     """
 
     sequence: int
@@ -45,6 +46,7 @@ class CycleResult:
     late: str | None = None
     skew_ms: float | None = None
     sick: tuple[Sick, ...] = ()
+    blind: str | None = None
 
     def knowing(self, known: Known) -> Self:
         """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""
@@ -58,6 +60,7 @@ class CycleResult:
             health=known.health,
             findings=known.findings,
             sick=known.sick,
+            blind=known.blind,
         )
 
     @property
@@ -67,7 +70,8 @@ class CycleResult:
         """
         found = [each.text for each in self.sick if each.stops]
         wrong = "; ".join([*found, *(finding.text for finding in self.findings if finding.stops)])
-        return self.fault or self.late or wrong or (self.health.reason if self.health is not None else None)
+        watched = self.health.reason if self.health is not None else None
+        return self.fault or self.late or wrong or self.blind or watched
 
     @property
     def age_ms(self) -> float | None:

@@ -16,7 +16,7 @@ from elbowroom.guard.fault import Fault
 from elbowroom.guard.latch_file import LatchFile
 from elbowroom.guard.link import WatchdogLink
 from elbowroom.guard.reason import Reason
-from elbowroom.monitor.gate.claim import claims_of
+from elbowroom.monitor.gate.claim import Claim, claims_of
 from elbowroom.monitor.gate.faults import faults_of
 from elbowroom.monitor.gate.state import (
     Decision,
@@ -31,7 +31,9 @@ from elbowroom.monitor.gate.state import (
 )
 from elbowroom.monitor.gate.step import step
 from elbowroom.monitor.gate.told import decision_row, heartbeat_of
+from elbowroom.monitor.health.streams.cause import HealthCause
 from elbowroom.monitor.result import CycleResult
+from elbowroom.motion import Level
 
 
 @dataclass(slots=True, eq=False)
@@ -84,6 +86,8 @@ class Gate:
         asked = self._asked()
         try:
             claims = claims_of(result.verdicts, self.rules.low_speed)
+            if any(sick.cause is HealthCause.CAMERA_STARTING for sick in result.sick):
+                claims = tuple(Claim(each.motion, Level.STOP, 0.0, Reason.STARTING) for each in claims)
             self._pass(Judged(claims, faults_of(result)))
         except Exception as error:  # whatever fails here is a stop
             self._pass(Judged((), (Fault(Reason.FAULT, "gate", f"{type(error).__name__}: {error}"),)))

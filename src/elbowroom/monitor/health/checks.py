@@ -68,8 +68,10 @@ class Checks:
             raise_interrupt(error)
             fault = f"{type(error).__name__}: {error}"
             return Known(None, fault, stage_ms, tuple(findings), sick)
-        is_placed = self.streams is None or self.streams.joints_usable
-        return Known(health, None, stage_ms, tuple(findings), sick, is_placed)
+        if self.streams is None:
+            return Known(health, None, stage_ms, tuple(findings))
+        is_placed, blind = self.streams.joints_usable, self.streams.blind(sick)
+        return Known(health, None, stage_ms, tuple(findings), sick, is_placed, blind)
 
 
 def _told(look: Look, snapshot: Snapshot, stage_ms: dict[str, float]) -> Sequence[Finding]:

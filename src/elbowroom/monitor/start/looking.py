@@ -8,8 +8,8 @@ from elbowroom.monitor.health.drift.reference import CameraReference
 from elbowroom.monitor.health.model_look import ModelLook
 from elbowroom.monitor.health.nothing_look import NothingLook
 from elbowroom.monitor.health.source_look import SourceLook
-from elbowroom.monitor.health.values_look import ValuesLook
 from elbowroom.monitor.health.streams.streams import Streams, Ways
+from elbowroom.monitor.health.values_look import ValuesLook
 from elbowroom.site.plausible import look_at_site
 from elbowroom.sources import Played, Room
 from elbowroom.sources.looked import units_of
@@ -41,7 +41,9 @@ def streams_of(room: Room, references: Sequence[CameraReference]) -> Streams:
     """
     entry = room.site.entry
     machine, joints = room.machine, entry.joints
-    greatest = {} if machine is None else {name: joints[name].speed_of(machine.joint(name)) for name in joints}
+    greatest = (
+        {} if machine is None else {name: joints[name].speed_of(machine.joint(name)) for name in joints}
+    )
     ways = Ways(room.terms.max_age_ns, repeating(room), frozenset(entry.health.tolerated), greatest)
     return Streams(room.cameras, room.machine, ways, references)
 

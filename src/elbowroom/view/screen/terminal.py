@@ -264,8 +264,7 @@ def _stops(result: CycleResult) -> list[str]:
     found = () if result.health is None else result.health.stops.values()
     lines = [f"Stop: {reason}. Stays until the monitor is started again." for reason in found]
     lines += [f"Stop: {finding.text}" for finding in result.findings if finding.stops]
-    if result.late is not None:
-        lines.append(f"Stop: {result.late}")
+    lines += [f"Stop: {text}" for text in (result.late, result.blind) if text is not None]
     return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
 
 

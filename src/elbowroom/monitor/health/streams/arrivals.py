@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 MOST_A_PASS_NS = 500_000_000
-"""A pass counts for no more than this [ns]: where the monitor itself stalled, or a recording skipped, no source is late."""
+"""A pass counts for no more [ns]: where the monitor itself stalled, or a recording skipped, no source is late."""
 LEAST_STEPS = 3
 """After so many steps it is known how often something comes."""
 REMEMBERED = 15

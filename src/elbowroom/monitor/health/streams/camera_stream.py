@@ -137,6 +137,8 @@ class CameraStream:
         there = {cause for cause, held in self._held.items() if held.is_there}
         if there & {C.CAMERA_DISCONNECTED, C.CAMERA_FROZEN, C.CAMERA_STARTING}:
             there -= {C.CAMERA_GAPS, C.CAMERA_TOO_OLD}
+        if there & {C.CAMERA_DISCONNECTED, C.CAMERA_COVERED}:
+            there -= {C.CAMERA_STARTING}
         if there & {C.CAMERA_GAPS, C.CAMERA_CLOCK}:
             there -= {C.CAMERA_TOO_OLD}
         if C.CAMERA_COVERED in there:
@@ -159,15 +161,13 @@ class CameraStream:
             self.texts[cause] = text
         self._held[cause] = self._held[cause].hearing(is_bad)
 
-    def _hear_times(
-        self, frame: DepthFrame | None, moment: Moment, before: Arrivals, is_new: bool
-    ) -> None:
+    def _hear_times(self, frame: DepthFrame | None, moment: Moment, before: Arrivals, is_new: bool) -> None:
         """What arrivals, stamps and ages say."""
         now, waited_s = self._arrivals, self._arrivals.waited_ns / 1e9
         again = frame is not None and not is_new and frame is not self._last  # it gives, but nothing new
         if now.came == 0:
             self._say(C.CAMERA_STARTING, True, f"is awaited: no image has come for {waited_s:.1f} s")
-            gone = waited_s * 1e9 > START_NS or None
+            gone: bool | None = True if now.waited_ns > START_NS else None
         else:
             gone = True if now.is_gone else (False if is_new else None)
         self._say(C.CAMERA_DISCONNECTED, gone, f"gives no new image, for {waited_s:.1f} s")

@@ -65,6 +65,7 @@ class JointStream:
     _arrivals: Arrivals = field(default_factory=Arrivals, init=False)
     _last: Heard | None = field(default=None, init=False)
     _since_ns: int = field(default=0, init=False)
+    _apart_ns: int = field(default=0, init=False)
     _still_ns: dict[str, int] = field(default_factory=dict, init=False)
     _has_moved: bool = field(default=False, init=False)
 
@@ -76,19 +77,22 @@ class JointStream:
     def hear(self, heard: Heard) -> None:
         """Takes one pass into account."""
         self._since_ns += max(heard.went_ns, 0)
+        self._apart_ns += max(heard.went_ns, 0)
         missing = self._missing(heard.positions)
         self._hear_missing(missing)
         if missing is not None or heard.positions is None:
             self._arrivals = self._arrivals.passing(heard.went_ns, False)
             return
         wrong = self._not_finite(heard.positions)
-        if wrong is None:
-            self._hear_limits(heard.positions)
-            wrong = self._jump(heard)
-            self._hear_standing(heard)
-        self._say(C.JOINTS_IMPLAUSIBLE, wrong is not None, wrong or "")
-        if self._not_finite(heard.positions) is None:
-            self._last = heard
+        beyond = None if wrong is not None else self._beyond(heard.positions)
+        self._say(C.JOINTS_BEYOND, None if wrong is not None else beyond is not None, beyond or "")
+        if beyond is None:
+            wrong = wrong or self._impossible(heard.positions) or self._jump(heard)
+            self._say(C.JOINTS_IMPLAUSIBLE, wrong is not None, wrong or "")
+        if self._is_bad:
+            return
+        self._hear_standing(heard)
+        self._last, self._apart_ns = heard, 0
 
     @property
     def causes(self) -> Iterator[HealthCause]:
@@ -99,13 +103,14 @@ class JointStream:
     @property
     def is_usable(self) -> bool:
         """Whether the newest positions are some that the machine can be at."""
-        unusable = C.JOINTS_STARTING, C.JOINTS_MISSING, C.JOINTS_BEYOND
-        return not any(self._held[cause].is_there for cause in unusable) and self._is_possible
+        return not (
+            self._held[C.JOINTS_STARTING].is_there or self._held[C.JOINTS_MISSING].bad or self._is_bad
+        )
 
     @property
-    def _is_possible(self) -> bool:
-        held = self._held[C.JOINTS_IMPLAUSIBLE]
-        return not (held.is_there and held.bad)
+    def _is_bad(self) -> bool:
+        """Whether the newest positions are out of reach, or none."""
+        return bool(self._held[C.JOINTS_BEYOND].bad or self._held[C.JOINTS_IMPLAUSIBLE].bad)
 
     def _say(self, cause: HealthCause, is_bad: bool | None, text: str) -> None:
         if is_bad:
@@ -134,31 +139,31 @@ class JointStream:
                 return f"{name} is {positions[name]}, no finite number"
         return None
 
-    def _hear_limits(self, positions: Mapping[str, float]) -> None:
-        beyond = None
+    def _beyond(self, positions: Mapping[str, float]) -> str | None:
         for joint in self._commanded():
             value, over = positions[joint.name], self.machine.tolerance.of(joint.unit)
             if not joint.lower - over <= value <= joint.upper + over:
                 limits = f"{joint.lower:g} to {joint.upper:g} {joint.unit}"
-                beyond = beyond or f"{joint.name} is at {value:g} {joint.unit}, its limits are {limits}"
-        self._say(C.JOINTS_BEYOND, beyond is not None, beyond or "")
+                return f"{joint.name} is at {value:g} {joint.unit}, its limits are {limits}"
+        return None
+
+    def _impossible(self, positions: Mapping[str, float]) -> str | None:
+        try:
+            self.machine.checked(positions)
+        except MachineError as error:
+            return str(error)
+        return None
 
     def _commanded(self) -> Iterator[Joint]:
         return (joint for joint in self.machine.joints if joint.mimic is None)
 
     def _jump(self, heard: Heard) -> str | None:
-        """That the machine cannot have come here from where it was; None: it can."""
-        assert heard.positions is not None
-        try:
-            if not self._held[C.JOINTS_BEYOND].is_there:
-                self.machine.checked(heard.positions)
-        except MachineError as error:
-            return str(error)
+        """That the machine cannot have come here from where it was last; None: it can."""
         last = self._last
-        if last is None or last.positions is None:
+        if heard.positions is None or last is None or last.positions is None:
             return None
-        took_ns = heard.went_ns if heard.stamp_ns is None or last.stamp_ns is None else heard.stamp_ns - last.stamp_ns
-        took_s = (max(took_ns, heard.went_ns, 0) + UNSURE_NS) / 1e9
+        stamps_ns = 0 if heard.stamp_ns is None or last.stamp_ns is None else heard.stamp_ns - last.stamp_ns
+        took_s = (max(stamps_ns, self._apart_ns) + UNSURE_NS) / 1e9
         for joint in self._commanded():
             most = self.greatest.get(joint.name)
             went = abs(_way(joint, last.positions[joint.name], heard.positions[joint.name]))
@@ -180,9 +185,7 @@ class JointStream:
             self._say(C.JOINTS_FROZEN, True, text)
         elif still is not None:
             self._say(C.JOINTS_FROZEN, True, still)
-        elif is_new and not any(self._still_ns.values()):
-            self._say(C.JOINTS_FROZEN, False, "")
-        elif is_new and not heard.is_elsewhere and not self._is_commanded(heard):
+        elif is_new and (not any(self._still_ns.values()) or not self._should_move(heard)):
             self._say(C.JOINTS_FROZEN, False, "")
 
     def _standing(self, heard: Heard) -> str | None:
@@ -198,11 +201,13 @@ class JointStream:
                 return f"{name} stays at {heard.positions[name]:g} though it is commanded to move"
         stood_ns = min(self._still_ns.values(), default=0)
         if heard.is_elsewhere and self._has_moved and stood_ns > STILL_NS:
-            return f"positions have not changed for {stood_ns / 1e6:.0f} ms, and the machine is seen elsewhere"
+            return (
+                f"positions have not changed for {stood_ns / 1e6:.0f} ms, and the machine is seen elsewhere"
+            )
         return None
 
-    def _is_commanded(self, heard: Heard) -> bool:
-        return any(speed != 0 for speed in (heard.speeds or {}).values())
+    def _should_move(self, heard: Heard) -> bool:
+        return heard.is_elsewhere or any(speed != 0 for speed in (heard.speeds or {}).values())
 
 
 def _way(joint: Joint, start: float, end: float) -> float:

@@ -71,7 +71,7 @@ def agrees(new: Thumb, old: Thumb) -> bool | None:
         return None
     with np.errstate(invalid="ignore"):  # of pixels without a return, which do not count
         near = np.count_nonzero(_near(new.depth_m, old.depth_m) & both)
-    return near >= AGREES * np.count_nonzero(both)
+    return bool(near >= AGREES * np.count_nonzero(both))
 
 
 def _near(new: NDArray[np.float32], old: NDArray[np.float32]) -> NDArray[np.bool_]:
@@ -150,7 +150,9 @@ def _other_kind(pairs: Pairs) -> Odd | None:
     """Disparity for depth, or distance from the centre for planar depth, or the other way round."""
     inverse = pairs.new * pairs.old
     if _holds(inverse / np.median(inverse)):
-        return Odd(HealthCause.CAMERA_WRONG_ENCODING, "reads less where it read more: disparity, and no depth")
+        return Odd(
+            HealthCause.CAMERA_WRONG_ENCODING, "reads less where it read more: disparity, and no depth"
+        )
     for stretch in (pairs.stretch, 1 / pairs.stretch):
         if _holds(pairs.new / (pairs.old * stretch)):
             text = "gives distance from its centre for depth along its axis, or the other way round"
@@ -162,10 +164,12 @@ def _no_depths(new: Thumb, old: Thumb) -> Odd | None:
     """Numbers without any surface."""
     if new.smooth >= ROUGH * old.smooth:
         return None
-    text = f"gives numbers that are no depths: {new.smooth:.0%} of neighbours are alike, {old.smooth:.0%} were"
+    text = (
+        f"gives numbers that are no depths: {new.smooth:.0%} of neighbours are alike, {old.smooth:.0%} were"
+    )
     return Odd(HealthCause.CAMERA_WRONG_ENCODING, text)
 
 
-def _holds(ratio: NDArray[np.float32]) -> bool:
+def _holds(ratio: NDArray[np.floating]) -> bool:
     """Whether so many ratios are 1 that a rule holds."""
     return bool((np.abs(ratio - 1) <= NEAR_SHARE).mean() >= UNIFORM)

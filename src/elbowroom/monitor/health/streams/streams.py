@@ -122,6 +122,19 @@ class Streams:
             return replace(snapshot, frames=frames)
         return replace(snapshot, frames=frames, joints=None, joints_of={})
 
+    def blind(self, sick: Sequence[Sick]) -> str | None:
+        """That no camera gives anything that counts, one sentence; None: one does.
+
+        Args:
+            sick: what is wrong.
+        """
+        out = {each.source for each in sick if each.leaves_out}
+        if not out.issuperset(self._cameras):
+            return None
+        awaited = [each.source for each in sick if each.cause is HealthCause.CAMERA_STARTING]
+        named = f"; awaited: {', '.join(awaited)}" if awaited else ""
+        return f"no camera gives anything that counts{named}"
+
     @property
     def joints_usable(self) -> bool:
         """Whether the machine can be where it is said to be."""
