@@ -3,12 +3,13 @@
 from dataclasses import dataclass, replace
 from typing import Self
 
-MOST_A_PASS_NS = 500_000_000
-"""A pass counts for no more [ns]: where the monitor itself stalled, or a recording skipped, no source is late."""
+A_PASS_NS, MOST_A_PASS_NS = 50_000_000, 500_000_000
+"""A pass counts for no more [ns], for what is overdue and for what is gone: where the monitor itself stalled, or a
+recording skipped, no source is late. In a loop with longer passes it is passes that are counted."""
 LEAST_STEPS = 3
 """After so many steps it is known how often something comes."""
 REMEMBERED = 15
-OVERDUE_STEPS, OVERDUE_NS = 2.5, 100_000_000
+OVERDUE_STEPS, OVERDUE_NS = 2.25, 100_000_000
 """What did not come for so many usual steps, and for this long at least [ns], is overdue: one that is lost is not."""
 GONE_STEPS, GONE_NS = 5.0, 1_000_000_000
 """What did not come for so many usual steps, and for this long at least [ns], is gone."""
@@ -19,12 +20,14 @@ class Arrivals:
     """How things came.
 
     Args:
-        waited_ns: since something new came last, or since the start [ns].
-        steps_ns: the latest steps between things that came [ns].
+        waited_ns: since something new came last, or since the start [ns], each pass counted as `MOST_A_PASS_NS` at most.
+        passed_ns: likewise, each pass counted as `A_PASS_NS` at most.
+        steps_ns: the latest steps between things that came [ns], as `passed_ns`.
         came: how many did.
     """
 
     waited_ns: int = 0
+    passed_ns: int = 0
     steps_ns: tuple[int, ...] = ()
     came: int = 0
 
@@ -36,12 +39,13 @@ class Arrivals:
             is_new: whether something new came with it.
         """
         waited_ns = self.waited_ns + min(max(went_ns, 0), MOST_A_PASS_NS)
+        passed_ns = self.passed_ns + min(max(went_ns, 0), A_PASS_NS)
         if not is_new:
-            return replace(self, waited_ns=waited_ns)
+            return replace(self, waited_ns=waited_ns, passed_ns=passed_ns)
         # a gap is no step: else what comes with gaps would soon have them by right
-        is_step = self.came > 0 and not self._is_over(waited_ns, OVERDUE_STEPS, OVERDUE_NS)
-        steps_ns = (*self.steps_ns, waited_ns)[-REMEMBERED:] if is_step or self._learns else self.steps_ns
-        return replace(self, waited_ns=0, steps_ns=steps_ns, came=self.came + 1)
+        is_step = self.came > 0 and not self._is_over(passed_ns)
+        steps_ns = (*self.steps_ns, passed_ns)[-REMEMBERED:] if is_step or self._learns else self.steps_ns
+        return replace(self, waited_ns=0, passed_ns=0, steps_ns=steps_ns, came=self.came + 1)
 
     @property
     def usual_ns(self) -> int | None:
@@ -53,7 +57,7 @@ class Arrivals:
     @property
     def is_overdue(self) -> bool:
         """Whether the next one should have come."""
-        return self._is_over(self.waited_ns, OVERDUE_STEPS, OVERDUE_NS)
+        return self._is_over(self.passed_ns)
 
     @property
     def is_gone(self) -> bool:
@@ -64,6 +68,6 @@ class Arrivals:
     def _learns(self) -> bool:
         return self.came > 0 and self.usual_ns is None
 
-    def _is_over(self, waited_ns: int, steps: float, least_ns: int) -> bool:
+    def _is_over(self, passed_ns: int) -> bool:
         usual_ns = self.usual_ns
-        return usual_ns is not None and waited_ns > max(least_ns, steps * usual_ns)
+        return usual_ns is not None and passed_ns > max(OVERDUE_NS, OVERDUE_STEPS * usual_ns)

@@ -16,7 +16,7 @@ START_NS = 5_000_000_000
 """Positions may take so long to come at first; then they are missing [ns]."""
 UNSURE_NS = 50_000_000
 """By so much the time between two positions may be longer than is known [ns]."""
-STILL_NS = 150_000_000
+STILL_NS = 100_000_000
 """A joint that is commanded to move, and has not by so long, or that is seen elsewhere, stands still [ns]."""
 CLEARS = {
     C.JOINTS_STARTING: "the first positions of all joints",

@@ -20,7 +20,7 @@ UNIFORM = 0.6
 """One rule holds for an image where it holds for so many of its pixels."""
 SCALED = 0.1
 """A factor nearer to 1 than this is none."""
-ROUGH = 0.5
+ROUGH = 0.6
 """Of the neighbours that were alike before so few are alike where numbers are no depths."""
 LEAST_PAIRS = 100
 EQUAL_TILES = 0.25

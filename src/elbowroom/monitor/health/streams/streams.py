@@ -85,6 +85,9 @@ class Streams:
         now_ns = snapshot.moment_ns
         went_ns = 0 if now_ns is None or self._now_ns is None else now_ns - self._now_ns
         self._now_ns = now_ns if now_ns is not None else self._now_ns
+        if any(each.stops and each.kind == "clock" and not each.about for each in found):
+            # the monitor's own clock is in doubt: that is said, and nothing can be told of others by it
+            went_ns, snapshot, found = 0, replace(snapshot, now_ns=None, joints_ns=None), ()
         frames = {frame.camera: frame for frame in snapshot.frames}
         good = {name: each.good for name, each in self._cameras.items() if each.good is not None}
         for name, stream in self._cameras.items():

@@ -44,11 +44,11 @@ class Thumb:
 
     @cached_property
     def smooth(self) -> float:
-        """Of neighbours in a row that both have a return, the share of those within a tenth of each other."""
+        """Of neighbours in a row that both have a return, the share of those within a twentieth of each other."""
         left, right = self.depth_m[:, :-1], self.depth_m[:, 1:]
         both = self.returned[:, :-1] & self.returned[:, 1:]
         with np.errstate(invalid="ignore"):  # of pixels without a return, which do not count
-            near = np.abs(right - left) < 0.1 * np.abs(left)
+            near = np.abs(right - left) < 0.05 * np.abs(left)
         many = int(both.sum())
         return float((near & both).sum() / many) if many else 0.0
 
