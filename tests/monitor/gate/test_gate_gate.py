@@ -329,6 +329,24 @@ def test_whatever_fails_in_the_gate_is_stop(run: Run, monkeypatch: pytest.Monkey
     assert run.told.beats[-1].machine.per_mille == 0
 
 
+def test_a_run_whose_stop_could_not_be_latched_has_not_ended_well(
+    begin: Begin, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Short of memory, for one: the gate itself fails, twice, and the run ends by that error."""
+    run = begin()
+    run.passes()
+
+    def fails() -> list[Fault]:
+        raise MemoryError
+
+    monkeypatch.setattr(run.told, "faults", fails)
+    with pytest.raises(MemoryError):
+        run.passes()
+    run.end()
+    assert run.on_disk == [Reason.UNCLEAN_END]
+    assert begin().passes().latched[0].reason is Reason.UNCLEAN_END
+
+
 def test_two_monitors_cannot_share_a_folder(run: Run) -> None:
     with pytest.raises(InputError, match="another monitor"):
         Gate(run.folder, SITE, RULES).begin()

@@ -12,10 +12,12 @@ QUICK, QUICK_DEADLINE_MS = 1, 400.0
 def faults(
     times: Annotated[int, typer.Option(min=1, metavar="COUNT", help="How often each kind is thrown.")] = 26,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Each kind once, on a computer that may be busy: times say nothing.")
+        bool,
+        typer.Option("--quick", help="Each kind once, on a computer that may be busy: times say nothing."),
     ] = False,
     deadline: Annotated[
-        float, typer.Option(min=20, max=5000, metavar="MS", help="Of the gate; two without a pass are silence.")
+        float,
+        typer.Option(min=20, max=5000, metavar="MS", help="Of the gate; two without a pass are silence."),
     ] = 60.0,
     seed: Annotated[int, typer.Option(min=0, help="Of the moments and the cameras.")] = 1,
     json: JsonFile = None,
@@ -42,6 +44,7 @@ def faults(
             "input": "{input}",
             "fault": "{case}",
             "times": "{times}",
+            "shown": "{shown}",
             "silent": "{silent}",
             "misnamed": "{misnamed}",
             "median": text("{:.0f} ms", "median_ms"),
@@ -55,6 +58,9 @@ def faults(
         found = fault_rows(many, seed, QUICK_DEADLINE_MS if quick else deadline)
         rows = list(watched("faults", found, many * len(KINDS)))
         summary = fault_summary(rows)
-        for row in (*[row for row in rows if not (row["stopped"] and row["named"])], *summary):
+        for row in (
+            *[row for row in rows if not (row["stopped"] and row["named"]) and row["shown"]],
+            *summary,
+        ):
             add(row)
     show(summary)

@@ -4,6 +4,7 @@ import math
 import random as standard
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,9 +44,11 @@ def _images(change: Callable[[], Image]) -> Callable[[str, standard.Random], Wro
     return lambda camera, chance: OfImages(camera, change())
 
 
-def _depth(change: Callable[[Depth], Depth]) -> Callable[[str, standard.Random], Wrong]:
+def _depth(change: Callable[[Depth], NDArray[Any]]) -> Callable[[str, standard.Random], Wrong]:
     """A fault that makes other numbers of each image."""
-    return _images(lambda: lambda frame, live: replace(frame, depth_m=np.float32(change(frame.depth_m))))
+    return _images(
+        lambda: lambda frame, live: replace(frame, depth_m=np.asarray(change(frame.depth_m), np.float32))
+    )
 
 
 def _whole(change: Callable[[], Whole]) -> Callable[[str, standard.Random], Wrong]:
@@ -65,7 +68,9 @@ def _stuck() -> Image:
 
 def _stuck_whole() -> Image:
     """The frame before, given anew with its stamp."""
-    return lambda frame, live: replace(live.newest[frame.camera], depth_m=live.newest[frame.camera].depth_m.copy())
+    return lambda frame, live: replace(
+        live.newest[frame.camera], depth_m=live.newest[frame.camera].depth_m.copy()
+    )
 
 
 def _stuck_in_part() -> Image:
@@ -124,7 +129,9 @@ def _off(camera: str, chance: standard.Random) -> Wrong:
 
 
 def _swapped(camera: str, chance: standard.Random) -> Wrong:
-    other = chance.choice(sorted(set(PLACES) - {camera}))
+    # of those that are exposed at the same ticks, so that stamps go on
+    names = sorted(PLACES)
+    other = chance.choice([name for name in names[names.index(camera) % 2 :: 2] if name != camera])
     made: dict[str, tuple[DepthFrame, DepthFrame]] = {}
 
     def change(snapshot: Snapshot, live: Live) -> Snapshot:
@@ -165,7 +172,7 @@ def _taken(share: float) -> Callable[[Depth], Depth]:
 
 
 def _swapped_bytes(depth: Depth) -> Depth:
-    return np.float32((1000 * depth).astype(np.uint16).byteswap() / 1000)
+    return np.asarray((1000 * depth).astype(np.uint16).byteswap() / 1000, np.float32)
 
 
 def _joints(change: Callable[[float, float], float | None]) -> Callable[[], Whole]:
@@ -262,7 +269,12 @@ KINDS: Sequence[Kind] = (
     Kind("clock back by 1 s", "camera", ("camera_clock", "camera_too_old"), _stamped(-1_000_000_000)),
     Kind("clock ahead by 1 s", "camera", ("camera_clock",), _stamped(1_000_000_000)),
     Kind("missing", "joints", ("joints_missing",), _whole(_joints(lambda at, s: None))),
-    Kind("intermittent", "joints", ("joints_missing",), _whole(_joints(lambda at, s: None if s % 0.4 < 0.2 else at))),
+    Kind(
+        "intermittent",
+        "joints",
+        ("joints_missing",),
+        _whole(_joints(lambda at, s: None if s % 0.4 < 0.2 else at)),
+    ),
     Kind("stuck, while commanded to move", "joints", FROZEN, _whole(_joints_kept(False, True))),
     Kind("stuck with their stamp", "joints", FROZEN, _whole(_joints_kept(True, True))),
     Kind("stamp stands still", "joints", FROZEN, _whole(_joints_kept(True, False))),

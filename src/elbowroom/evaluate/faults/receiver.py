@@ -1,5 +1,6 @@
 """The receiver: polls the Modbus server as a PLC does, takes silence for stop, and notes when it stopped."""
 
+import logging
 import threading
 import time
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from elbowroom.guard.heartbeat import PHASES
 from elbowroom.guard.reason import Reason
 from elbowroom.guard.registers import HEAD, LAYOUT, crc16
 
+MS = 1_000_000
 EVERY_S = 0.004
 SILENT_S = 0.08
 """Without a right answer for so long it is stop."""
@@ -21,13 +23,13 @@ class Read:
     """What was read last.
 
     Args:
-        at_ns: when it was asked for [ns of `time.monotonic_ns`].
+        finished_ns: when the last pass was finished [ns of `time.monotonic_ns`], to 1 ms.
         per_mille: the machine's speed; 0 where nothing right was answered.
         phase: of the gate; "none": nothing right was answered.
         reason: its name; "none" likewise.
     """
 
-    at_ns: int
+    finished_ns: int
     per_mille: int = 0
     phase: str = "none"
     reason: str = "none"
@@ -50,10 +52,16 @@ class Receiver:
     """
 
     def __init__(self, port: int, motions: int) -> None:
-        self._made, self._port, self._count = package("pymodbus.client").ModbusTcpClient, port, HEAD + 2 * motions + 1
-        self.last = Read(time.monotonic_ns())
+        self._made, self._port, self._count = (
+            package("pymodbus.client").ModbusTcpClient,
+            port,
+            HEAD + 2 * motions + 1,
+        )
+        self.last = self.went = Read(time.monotonic_ns())
+        """What was read last, and last while the machine might move."""
         self.stopped_ns: int | None = None
         """Since when the machine stands [ns of `time.monotonic_ns`]; None: it may move, or never did."""
+        logging.getLogger("pymodbus").setLevel(logging.CRITICAL)  # silence is no news here
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._poll, daemon=True)
         self._thread.start()
@@ -80,7 +88,7 @@ class Receiver:
             if self.last.goes and not read.goes:
                 self.stopped_ns = time.monotonic_ns()
             elif read.goes:
-                self.stopped_ns = None
+                self.stopped_ns, self.went = None, read
             self.last = read
 
     def _read(self, client: Any, at_ns: int) -> Read | None:
@@ -94,4 +102,4 @@ class Receiver:
             return None
         if len(words) != self._count or words[0] != LAYOUT or crc16(words[:-1]) != words[-1]:
             return None
-        return Read(at_ns, words[6], PHASES[words[4]], Reason(words[7]).name.lower())
+        return Read(at_ns - words[3] * MS, words[6], PHASES[words[4]], Reason(words[7]).name.lower())

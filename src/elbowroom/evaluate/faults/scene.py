@@ -35,7 +35,9 @@ PLACES = {
 }
 URDF = f"""<robot name="slider">
   <link name="base"/>
-  <link name="box"><collision><geometry><box size="{2 * HALF_M} {2 * HALF_M} {2 * HALF_M}"/></geometry></collision></link>
+  <link name="box">
+    <collision><geometry><box size="{2 * HALF_M} {2 * HALF_M} {2 * HALF_M}"/></geometry></collision>
+  </link>
   <joint name="slide" type="prismatic">
     <parent link="base"/><child link="box"/><axis xyz="1 0 0"/>
     <limit lower="-0.5" upper="0.5" effort="1" velocity="1"/>

@@ -59,6 +59,7 @@ class Gate:
     _control: Control = field(init=False)
     _lock: int | None = field(default=None, init=False)
     _sequence: int = field(default=0, init=False)
+    _is_broken: bool = field(default=False, init=False)
 
     def begin(self) -> None:
         """Takes the folder and what its latch holds, and starts the watchdog. The machine is stop.
@@ -90,20 +91,25 @@ class Gate:
                 claims = tuple(Claim(each.motion, Level.STOP, 0.0, Reason.STARTING) for each in claims)
             self._pass(Judged(claims, faults_of(result)))
         except Exception as error:  # whatever fails here is a stop
+            self._is_broken = True  # until that stop is latched, this run cannot have ended well
             self._pass(Judged((), (Fault(Reason.FAULT, "gate", f"{type(error).__name__}: {error}"),)))
+            self._is_broken = False
         for request, answer in asked:
             self._answer(request, answer)
         return self._decision
 
     def end(self) -> None:
-        """Says stop for good. Where nothing is latched, the latch says that this run has ended as it was asked to."""
+        """Says stop for good. Where nothing is latched, the latch says that this run has ended as it was asked to; not
+        where a stop could not be latched: that reads as killed.
+        """
         latched = self._state.latched
         self._sequence += 1
         self._decision = self._stepped(Ended())
         self._send()
         if self.watchdog is not None:
             self.watchdog.end()
-        self._latch.end(latched)
+        if not self._is_broken:
+            self._latch.end(latched)
         self._control.end()
         self._let_go()
 

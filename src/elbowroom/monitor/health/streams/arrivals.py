@@ -20,8 +20,8 @@ class Arrivals:
     """How things came.
 
     Args:
-        waited_ns: since something new came last, or since the start [ns], each pass counted as `MOST_A_PASS_NS` at most.
-        passed_ns: likewise, each pass counted as `A_PASS_NS` at most.
+        waited_ns: since something new came last, or since the start [ns]; a pass counts as `MOST_A_PASS_NS` at most.
+        passed_ns: likewise; a pass counts as `A_PASS_NS` at most.
         steps_ns: the latest steps between things that came [ns], as `passed_ns`.
         came: how many did.
     """
