@@ -133,8 +133,12 @@ def _swapped(camera: str, chance: standard.Random) -> Wrong:
     names = sorted(PLACES)
     other = chance.choice([name for name in names[names.index(camera) % 2 :: 2] if name != camera])
     made: dict[str, tuple[DepthFrame, DepthFrame]] = {}
+    begun: list[int] = []
 
     def change(snapshot: Snapshot, live: Live) -> Snapshot:
+        begun.append(snapshot.now_ns or 0)
+        if min(f.stamp_ns or 0 for f in snapshot.frames if f.camera in (camera, other)) < begun[0]:
+            return snapshot  # an image that was handed out is not handed out again
         of = {frame.camera: frame for frame in snapshot.frames}
         frames = []
         for frame in snapshot.frames:
@@ -200,6 +204,8 @@ def _joints_kept(stamp: bool, value: bool) -> Callable[[], Whole]:
         def change(snapshot: Snapshot, live: Live) -> Snapshot:
             kept.append(snapshot)
             first = kept[0]
+            if snapshot is first:
+                return snapshot
             return replace(
                 snapshot,
                 joints=first.joints if value else snapshot.joints,
@@ -218,6 +224,7 @@ def _joints_slow() -> Whole:
     def change(snapshot: Snapshot, live: Live) -> Snapshot:
         if not kept or (snapshot.now_ns or 0) - (kept[0].now_ns or 0) > 500_000_000:
             kept[:] = [snapshot]
+            return snapshot
         return replace(snapshot, joints=kept[0].joints, joints_ns=kept[0].joints_ns)
 
     return change

@@ -1,5 +1,7 @@
 """Whether the next image is overdue, counted pass by pass."""
 
+from random import Random as random_of
+
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -53,3 +55,31 @@ def test_gaps_never_become_the_rule():
 def test_a_clock_that_goes_back_or_far_ahead_makes_nothing_late_by_more_than_a_pass(went_ns):
     *_, arrivals = heard([60] * 6)
     assert 0 <= arrivals.passing(went_ns, False).waited_ns <= MOST_A_PASS_NS
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([67, 100, 200]))
+def test_single_images_that_are_lost_make_nothing_late_however_passes_fall(seed, step_ms):
+    """As a bag is played: images with jitter, one in ten lost, never two in a row, and passes as long as they take."""
+    random = random_of(seed)
+    at_ms, next_ms, lost, arrivals = 0, step_ms, True, Arrivals()
+    for _ in range(400):
+        pass_ms = random.randint(5, 60)
+        at_ms, is_new = at_ms + pass_ms, False
+        while next_ms <= at_ms:
+            lost = not lost and random.random() < 0.1
+            is_new |= not lost
+            next_ms += step_ms + random.randint(-2, 2)
+        arrivals = arrivals.passing(pass_ms * MS, is_new)
+        assert not arrivals.is_overdue
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(100, 30_000))
+def test_a_stall_of_the_monitor_makes_no_camera_late(seed, stall_ms):
+    """After it each camera's next image comes within a step, as ever."""
+    random = random_of(seed)
+    arrivals = Arrivals()
+    for number in range(60):
+        arrivals = arrivals.passing(33 * MS, number % 2 == 0)
+    for _ in range(random.randint(0, 1)):
+        arrivals = arrivals.passing(33 * MS, False)
+    assert not arrivals.passing(stall_ms * MS, False).is_overdue

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 A_PASS_NS, MOST_A_PASS_NS = 50_000_000, 500_000_000
-"""A pass counts for no more [ns], for what is overdue and for what is gone: where the monitor itself stalled, or a
-recording skipped, no source is late. In a loop with longer passes it is passes that are counted."""
+"""A pass counts for no more than this or a usual step, for what is overdue, and for no more than the second, for what
+is gone [ns]: where the monitor itself stalled, or a recording skipped, no source is late."""
 LEAST_STEPS = 3
 """After so many steps it is known how often something comes."""
 REMEMBERED = 15
@@ -21,8 +21,8 @@ class Arrivals:
 
     Args:
         waited_ns: since something new came last, or since the start [ns]; a pass counts as `MOST_A_PASS_NS` at most.
-        passed_ns: likewise; a pass counts as `A_PASS_NS` at most.
-        steps_ns: the latest steps between things that came [ns], as `passed_ns`.
+        passed_ns: likewise; a pass counts as `A_PASS_NS` or a usual step at most.
+        steps_ns: the latest steps between things that came [ns], as `waited_ns`.
         came: how many did.
     """
 
@@ -39,12 +39,12 @@ class Arrivals:
             is_new: whether something new came with it.
         """
         waited_ns = self.waited_ns + min(max(went_ns, 0), MOST_A_PASS_NS)
-        passed_ns = self.passed_ns + min(max(went_ns, 0), A_PASS_NS)
+        passed_ns = self.passed_ns + min(max(went_ns, 0), max(A_PASS_NS, self.usual_ns or 0))
         if not is_new:
             return replace(self, waited_ns=waited_ns, passed_ns=passed_ns)
         # a gap is no step: else what comes with gaps would soon have them by right
         is_step = self.came > 0 and not self._is_over(passed_ns)
-        steps_ns = (*self.steps_ns, passed_ns)[-REMEMBERED:] if is_step or self._learns else self.steps_ns
+        steps_ns = (*self.steps_ns, waited_ns)[-REMEMBERED:] if is_step or self._learns else self.steps_ns
         return replace(self, waited_ns=0, passed_ns=0, steps_ns=steps_ns, came=self.came + 1)
 
     @property
