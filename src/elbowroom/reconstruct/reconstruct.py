@@ -20,6 +20,7 @@ from elbowroom.reconstruct.explained import explain
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.images import frames_by_camera, room_images
 from elbowroom.reconstruct.looking import found_in_space, require_plausible
+from elbowroom.reconstruct.parts import KeptViews
 from elbowroom.reconstruct.resolve import decide
 from elbowroom.reconstruct.source import ImageSource
 from elbowroom.reconstruct.terms import PEOPLE_SPEED_M_S, WITNESS_ANGLE_DEG, Terms
@@ -145,10 +146,13 @@ def free_space_of(
     with stage("explain"):
         explained = explain(grid, machine, images, fresh, terms)
     with stage("carve"):
-        evidence = carve_images(grid, images, explained, terms, complete=terms.needs_counts, focus=focus)
+        kept: list[KeptViews] = []
+        evidence = carve_images(
+            grid, images, explained, terms, complete=terms.needs_counts, focus=focus, kept=kept
+        )
     with stage("resolve"):
         space = decide(evidence, cameras, machine, fresh.joints_at_newest, terms)
-    source = ImageSource(images, explained.model_depth, terms, space.free_words, focus)
+    source = ImageSource(images, explained.model_depth, terms, space.free_words, focus, tuple(kept))
     space = replace(space, source=source, looked_at=focus)
     if machine is None or not machine.contacts:
         return space
