@@ -6,7 +6,7 @@ from typing import Self
 A_PASS_NS, MOST_A_PASS_NS = 50_000_000, 500_000_000
 """A pass counts for no more than this or a usual step, for what is overdue, and for no more than the second, for what
 is gone [ns]: where the monitor itself stalled, or a recording skipped, no source is late."""
-LEAST_STEPS = 3
+LEAST_STEPS = 8
 """After so many steps it is known how often something comes."""
 REMEMBERED = 15
 OVERDUE_STEPS, OVERDUE_NS = 2.25, 100_000_000
@@ -49,10 +49,10 @@ class Arrivals:
 
     @property
     def usual_ns(self) -> int | None:
-        """The median of the latest steps [ns]; None: too few are known."""
+        """The mean of the latest steps [ns]: passes fall as they fall, and only their sum is sure; None: too few are known."""
         if len(self.steps_ns) < LEAST_STEPS:
             return None
-        return sorted(self.steps_ns)[len(self.steps_ns) // 2]
+        return sum(self.steps_ns) // len(self.steps_ns)
 
     @property
     def is_overdue(self) -> bool:
