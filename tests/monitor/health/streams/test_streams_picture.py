@@ -106,4 +106,5 @@ def test_the_share_of_tiles_that_are_lost_is_what_is_taken(share, commissioned):
     taken = round(share * 16) * 4  # whole columns of tiles
     image[:, :taken] = 0
     assert cover.is_settled
-    assert cover.lost(Thumb.of(image)) == pytest.approx(taken / 64)
+    # spots are few, so that those of two columns of tiles are counted together
+    assert cover.lost(Thumb.of(image)) == pytest.approx(taken / 64, abs=1 / 16 if commissioned else 1e-6)

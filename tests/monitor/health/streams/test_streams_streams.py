@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from elbowroom.finding import Finding
 from elbowroom.machine.probe import probe
+from elbowroom.monitor.health.drift.commission import Commissioning
 from elbowroom.monitor.health.health import CameraHealth, Condition, Health
 from elbowroom.monitor.health.streams.cause import HealthCause, Sick
 from elbowroom.monitor.health.streams.streams import Streams, Ways, without_sick
@@ -301,3 +302,27 @@ def test_a_cause_that_the_site_tolerates_latches_nothing():
         sick = room.hear({**room.images(), "c1": None})
     assert words(sick) == {("c1", "gaps")} and sick[0].leaves_out and not sick[0].latches
     assert not replace(sick[0], cause=HealthCause.CAMERA_STARTING, tolerated=False).latches
+
+
+def commissioned():
+    """A room whose cameras were commissioned on what their sensors show, and nothing has come yet."""
+    room, commissioning = Room(), Commissioning(CAMERAS, None, 6)
+    for number in range(6):
+        commissioning.add(moment(room.images(), number))
+    told = Ways(greatest={"slide": 0.5})
+    room.streams = Streams(CAMERAS, MACHINE, told, commissioning.references(), lambda: 0)
+    return room
+
+
+@pytest.mark.parametrize("name", ["swapped", "wrong_scale", "wrong_encoding", "partly_covered", "covered"])
+def test_beside_what_was_commissioned_a_fault_is_there_from_the_first_image_on(name):
+    room, fault = commissioned(), fault_of_image(name)
+    about = {"c0", "c1"} if name == "swapped" else {"c0"}
+    for _ in range(3):
+        sick = room.hear(fault(room.images()))
+    assert {(camera, name) for camera in about} <= words(sick)
+    assert {source for source, _ in words(sick)} == about
+
+
+def test_commissioned_cameras_that_show_what_they_did_are_well():
+    commissioned().well(40)

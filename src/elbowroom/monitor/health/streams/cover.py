@@ -46,11 +46,11 @@ class Cover:
         Args:
             spots: depth where there is a spot, 0 elsewhere.
         """
-        fixed = spots.returned_per_tile >= LEAST_SPOTS
+        fixed = _in_blocks(spots.returned_per_tile) >= LEAST_SPOTS
         side = -(-len(spots.depth_m) // len(fixed)), -(-spots.depth_m.shape[1] // fixed.shape[1])
         within = np.kron(fixed, np.ones(side, dtype=np.bool_))[tuple(map(slice, spots.depth_m.shape))]
         counted = spots.returned | ~within
-        return cls(fixed.astype(np.float32), counted, spots.per_tile(counted), fixed)
+        return cls(fixed.astype(np.float32), counted, _shared(spots.per_tile(counted), fixed), fixed)
 
     @classmethod
     def unknown(cls, thumb: Thumb) -> "Cover":
@@ -80,5 +80,20 @@ class Cover:
 
     def _shares(self, thumb: Thumb) -> NDArray[np.float32]:
         """Of the pixels that count, the share of each tile that returns."""
-        found: NDArray[np.float32] = thumb.per_tile(thumb.returned & self.counted) / self.many
+        found: NDArray[np.float32] = (
+            _shared(thumb.per_tile(thumb.returned & self.counted), self.fixed) / self.many
+        )
         return found
+
+
+def _shared(counts: NDArray[np.float32], fixed: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """Counts of tiles; of those that were commissioned, where there are few spots, those of their block."""
+    return np.where(fixed, _in_blocks(counts), counts) if fixed.any() else counts
+
+
+def _in_blocks(counts: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The sum over the block of two by two tiles that each tile is in, shape as of the counts."""
+    rows, columns = counts.shape
+    padded = np.pad(counts, ((0, rows % 2), (0, columns % 2)))
+    sums = padded.reshape(-1, 2, padded.shape[1] // 2, 2).sum(axis=(1, 3))
+    return np.asarray(sums.repeat(2, axis=0).repeat(2, axis=1)[:rows, :columns], np.float32)
