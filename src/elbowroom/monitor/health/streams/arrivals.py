@@ -49,7 +49,7 @@ class Arrivals:
 
     @property
     def usual_ns(self) -> int | None:
-        """The mean of the latest steps [ns], as passes fall as they fall and their sum is sure; None: too few are known."""
+        """The mean of the latest steps [ns], as passes fall as they fall but their sum is sure; None: too few known."""
         if len(self.steps_ns) < LEAST_STEPS:
             return None
         return sum(self.steps_ns) // len(self.steps_ns)
