@@ -330,21 +330,6 @@ and no others. The recordings, the simulated room and random sites, described ri
         tables.contradiction_tables,
     ),
     Section(
-        "lag.json",
-        "The closed loop",
-        """
-People walk at up to 1.6 m/s through the simulated room, as near as 3 cm to a machine that moves one joint at a time
-at full speed, as its verdicts allow ([how](reliability.md#the-closed-loop)). A *window* is a time in which a motion
-that starts, or goes on, at full speed would touch something within its braking distance, by exact geometry (coal),
-thirty times a second. *should have stopped and did not*: not stopped at some time of the window later than a reaction
-time (skew, a period of 100 ms, a pass of 67 ms) after it began. *stopped before*: when it began. *stopped for
-nothing*: times of stop in which, and a reaction time before, nothing was in the way. Small cameras with noise and
-voxels of 10 cm: with better ones fewer are.
-""",
-        "elbowroom evaluate lag",
-        tables.lag_tables,
-    ),
-    Section(
         "decision.json",
         "Exposure to decision",
         """
@@ -394,7 +379,18 @@ def render(results: Path = RESULTS) -> str:
         "",
         "*due* is what the project set out to reach; what misses it stands in bold.",
     ]
-    for section in SECTIONS:
+    return "\n".join([*lines, *rendered(SECTIONS, results)]) + "\n"
+
+
+def rendered(sections: Sequence[Section], results: Path) -> list[str]:
+    """Sections as lines of Markdown.
+
+    Args:
+        sections: in their order.
+        results: folder of their files.
+    """
+    lines: list[str] = []
+    for section in sections:
         lines += ["", f"## {section.title}", section.text]
         path = results / section.file
         if not path.is_file():
@@ -403,7 +399,7 @@ def render(results: Path = RESULTS) -> str:
             continue
         content = json.loads(path.read_text(encoding="utf-8"))
         lines += [*section.tables(content["rows"]), "", _origin(content.get("meta", {}))]
-    return "\n".join(lines) + "\n"
+    return lines
 
 
 def _origin(meta: Mapping[str, Any]) -> str:

@@ -68,8 +68,8 @@ def reconstruct(
         now_ns: the time now [ns, the clock of the frames]; needed for an age limit.
         max_age_ns: frames older than this are not used [ns]; None: no limit.
         explain_tolerance_m: how near to the machine's model a return counts as the machine, besides its noise [m].
-        body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: half a
-            voxel.
+        body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: by
+            what a pixel covers (`growth.growth_of`).
         focus: blocks of 4 voxels that are looked at, of `motion.blocks_in_reach`; all others stay unseen. None: all.
         witness_angle_deg: by rule `three`, cameras nearer to each other than this, as seen from the grid, are one
             witness [deg]; 0: each is one.
