@@ -90,7 +90,8 @@ def decision_rows(
     """
     room = open_room(Site.simulated_room(), cameras=cameras, resolution=size)
     assert isinstance(room.source, Simulated)
-    moments = list(itertools.islice(room.source.at(np.arange(MOMENTS) / RATE_HZ), MOMENTS))
+    there = list(itertools.islice(room.source.at(np.arange(MOMENTS) / RATE_HZ), MOMENTS))
+    moments = [*there, *there[-2:0:-1]]  # and back: a machine that jumped would be stopped, and rightly
     for case, spread in SPREADS.items():
         # the room is commissioned as it is simulated; then its moments come from memory
         loop = started(room, lambda step: None)
