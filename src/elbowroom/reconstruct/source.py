@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.reconstruct.free_space import FreeSpace, Index
+from elbowroom.reconstruct.growth import pixel_width_m
 from elbowroom.reconstruct.images import Image, RoomImages
+from elbowroom.reconstruct.kernels.box import ALL
 from elbowroom.reconstruct.parts import NONE, KeptViews, free_parts
 from elbowroom.reconstruct.point_report import PointReport, Sight
 from elbowroom.reconstruct.sight import sight_of, surface_about
@@ -81,7 +83,8 @@ class ImageSource:
         Args:
             space: judged by detail `pixel` and rule `three`, and no less free than the images say; else none are. None
                 are as well where the terms say that nothing is looked at again.
-            index: of the voxel; of one that cameras were not asked of none are.
+            index: of the voxel; of one that cameras were not asked of none are. Where pixels are wider than it, all of
+                them are or none is, and none that anybody disputes.
 
         Returns:
             A word, as of `parts.free_parts`.
@@ -89,10 +92,14 @@ class ImageSource:
         terms = self.terms
         if not self.kept or not terms.look_again or terms.detail != "pixel" or terms.rule != "three":
             return NONE
-        word, _ = bits.place_of(index, space.grid)
+        word, bit = bits.place_of(index, space.grid)
         if self._more_is_blocked(space) or not (self.focus is None or self.focus[word]):
             return NONE
-        return free_parts(space.grid, index, self.kept)
+        fine = pixel_width_m(self.images.cameras, space.grid.centre_of(np.array(index))) <= space.grid.voxel_size_m
+        if not fine and space.disputed_words[word] & bit:
+            return NONE
+        free = free_parts(space.grid, index, self.kept)
+        return free if fine or free == ALL else NONE
 
     def _more_is_blocked(self, space: FreeSpace) -> bool:
         """Whether somebody blocked what the images say is free, such as a zone to keep out of; asked again and again of
