@@ -16,6 +16,7 @@ from elbowroom.machine import (
 )
 from elbowroom.machine.c_arm import ceiling_c_arm as ceiling_c_arm
 from elbowroom.motion import (
+    Braking as Braking,
     Cause as Cause,
     JointPath as JointPath,
     Level as Level,
@@ -25,6 +26,7 @@ from elbowroom.motion import (
     check_motion as check_motion,
     check_motions as check_motions,
     joint_motions as joint_motions,
+    machine_speed as machine_speed,
     most_cautious as most_cautious,
 )
 from elbowroom.reconstruct import (

@@ -1,13 +1,15 @@
 """Motions checked against free space: how far, how urgent, and why."""
 
-from elbowroom.motion.braking import braking_distance
+from elbowroom.motion.braking import Braking, braking_distance
 from elbowroom.motion.check import check_motion, check_motions, joint_motions
 from elbowroom.motion.creep import Override, with_creep
 from elbowroom.motion.focus import blocks_in_reach
 from elbowroom.motion.motion import JointPath, Motion
+from elbowroom.motion.speed import machine_speed
 from elbowroom.motion.verdict import Cause, Creep, Level, Verdict, most_cautious
 
 __all__ = [
+    "Braking",
     "Cause",
     "Creep",
     "JointPath",
@@ -20,6 +22,7 @@ __all__ = [
     "check_motion",
     "check_motions",
     "joint_motions",
+    "machine_speed",
     "most_cautious",
     "with_creep",
 ]

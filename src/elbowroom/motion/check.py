@@ -77,7 +77,7 @@ def check_motions(
     start = machine.positions(joints)
     ways = [way_of(machine, start, motion) for motion in motions]
     with parallel.threads(threads):
-        scene = _Scene.of(space, machine, start)
+        scene = Scene.of(space, machine, start)
         return parallel.spread(lambda pair: scene.verdict(*pair), list(zip(motions, ways, strict=True)))
 
 
@@ -117,7 +117,7 @@ def joint_motions(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Scene:
+class Scene:
     """What the motions of one check share."""
 
     space: FreeSpace
