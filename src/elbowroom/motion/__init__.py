@@ -5,24 +5,35 @@ from elbowroom.motion.check import check_motion, check_motions, joint_motions
 from elbowroom.motion.creep import Override, with_creep
 from elbowroom.motion.focus import blocks_in_reach
 from elbowroom.motion.motion import JointPath, Motion
+from elbowroom.motion.path import Blocked, PathVerdict, check_path, check_stop, longest_safe_prefix
+from elbowroom.motion.path_file import read_path
 from elbowroom.motion.speed import machine_speed
+from elbowroom.motion.trajectory import MachineState, Trajectory
 from elbowroom.motion.verdict import Cause, Creep, Level, Verdict, most_cautious
 
 __all__ = [
+    "Blocked",
     "Braking",
     "Cause",
     "Creep",
     "JointPath",
     "Level",
+    "MachineState",
     "Motion",
     "Override",
+    "PathVerdict",
+    "Trajectory",
     "Verdict",
     "blocks_in_reach",
     "braking_distance",
     "check_motion",
     "check_motions",
+    "check_path",
+    "check_stop",
     "joint_motions",
+    "longest_safe_prefix",
     "machine_speed",
     "most_cautious",
+    "read_path",
     "with_creep",
 ]

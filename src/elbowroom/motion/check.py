@@ -131,6 +131,12 @@ class Scene:
 
     @classmethod
     def of(cls, space: FreeSpace, machine: Machine, start: NDArray[np.float64]) -> Self:
+        """What does not depend on the motion.
+
+        Args:
+            space, machine: as of `check_motions`.
+            start: where its joints are, of `machine.positions`, shape (n_joints,).
+        """
         voxel_size_m = space.grid.voxel_size_m
         placed = machine.world_from_link_array(start[None])[0]
         starts = tuple(Start.of(machine, ground, placed) for ground in grounds_of(space, machine))
@@ -145,6 +151,7 @@ class Scene:
         )
 
     def verdict(self, motion: Motion | JointPath, way: Way) -> Verdict:
+        """The answer for one motion, in the unit of its way."""
         speeds = cluster_speeds(self.machine, self.skin, self.world_from_link, way)
         block, reaches = self._first_block(speeds, way)
         met = self.meeting.first(way, way.length if block is None else block.travel)

@@ -25,7 +25,7 @@ class Motion:
         clearance: what shall be left where the joint rests; only `Verdict.safe_speed` asks for it, too [m or rad].
 
     Raises:
-        InputError: another direction, or a distance that is not a finite number above 0, or below 0 where none is meant.
+        InputError: another direction, a distance that is not a finite number above 0, or one of the last two below 0.
     """
 
     joint: str

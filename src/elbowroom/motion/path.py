@@ -7,9 +7,9 @@ commanded. Then, with brakes at their worst, the machine rests
     beside the path   in q(t + T_r) + product of [-b_j-, b_j+]      if each joint brakes by itself
     b_j+-             = max over s in [t + T_r, t + T_r + t_j / 2] of the speed of joint j either way, times t_j / 2
 
-b_j is v t_j / 2, the braking distance of a single joint (`braking_distance`), as it shrinks with the speed and no faster:
-a braking time may hold a reaction time, in which the joint still follows the path. A joint whose brakes are better stops
-earlier, by as much as it likes: so all of that box counts, and not a line through it.
+b_j is v t_j / 2, the braking distance of a single joint (`braking_distance`), as it shrinks with the speed and no
+faster: a braking time may hold a reaction time, in which the joint still follows the path. A joint whose brakes are
+better stops earlier, by as much as it likes: so all of that box counts, and not a line through it.
 """
 
 from collections.abc import Mapping
@@ -18,15 +18,23 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.errors import InputError
+from elbowroom.errors import InputError, JointsError
 from elbowroom.machine import Machine
 from elbowroom.motion.braking import Braking
 from elbowroom.motion.check import Scene
-from elbowroom.motion.course import way_of
+from elbowroom.motion.course import Way, way_of
+from elbowroom.motion.kernels.mover import Course
 from elbowroom.motion.path_way import PathWay
-from elbowroom.motion.trajectory import Trajectory
+from elbowroom.motion.speed import STANDS
+from elbowroom.motion.stops import Stops
+from elbowroom.motion.trajectory import MachineState, Trajectory
 from elbowroom.motion.verdict import Cause, Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
+
+FASTER_MEASURED = 0.1
+"""A joint may be measured to be faster than its full speed by this share."""
+ONCE_S = 1e-6
+"""Stops that are commanded within this time are one that is commanded at once [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +88,8 @@ class PathVerdict:
 
     Args:
         path: what was asked.
-        level: what to do now: stop where a stop that is commanded at once is not free all the way, or just so; else by
-            how many times its travel the way is free, as for a motion.
+        level: what to do now, by the table of motions, in time: a stop is commanded no later than now where the way is
+            free for as long as a stop takes and no longer; slow down up to twice that, take care up to five times.
         blocked: the first point of the path that is blocked; None: none is, as far as was looked.
         stop_blocked: the first stop from the path, before that point, which is blocked beside the path; None: none is.
         follow_until_s: the machine may follow the path so long; a stop that is commanded by then ends at rest in free
@@ -150,8 +158,8 @@ def check_path(
 ) -> PathVerdict:
     """How far a machine may follow a path, so that it can stop at any moment and rest in space seen to be free.
 
-    The machine is swept along the path by the laws of `check_motion`, all of them, and so is what it takes to stop. Less
-    evidence never lets it follow a path for longer.
+    The machine is swept along the path by the laws of `check_motion`, all of them, and so is what it takes to stop.
+    Less evidence never lets it follow a path for longer.
 
     Args:
         space: the free space, of now; what moves there later is for whoever asks again.
@@ -173,12 +181,42 @@ def check_path(
     if horizon_s is not None and not horizon_s > 0:
         raise InputError(f"check_path: horizon_s is {horizon_s}, must be above 0 [s]")
     way = PathWay.of(machine, dict(joints), path, braking)
-    looked_s = way.rests_s if horizon_s is None else min(way.begin_s + max(horizon_s, way.stop_s), way.rests_s)
+    looked_s = (
+        way.rests_s if horizon_s is None else min(way.begin_s + max(horizon_s, way.stop_s), way.rests_s)
+    )
     motion = way.asked(machine, looked_s)
     start = machine.positions(joints)
     scene = Scene.of(space, machine, start)
-    verdict = scene.verdict(motion, way_of(machine, start, motion))
-    return _judged(path, way, verdict, looked_s)
+    along = scene.verdict(motion, way_of(machine, start, motion))
+    judged = _judged(path, way, along, looked_s)
+    if not braking.leaves_path or judged.follow_until_s is None:
+        return judged
+    stops = _stops_of(machine, way, braking, judged.follow_until_s)
+    return _with_stops(judged, scene.verdict(motion, stops), way)
+
+
+def _stops_of(machine: Machine, way: PathWay, braking: Braking, until_s: float) -> Way:
+    """The stops that are commanded from the beginning on up to a time, of which a stop at once is always one."""
+    times = way.times_s - way.begin_s
+    knots = np.concatenate([[-1.0], times[1:]])  # where the machine is, is no time of the path's
+    length = max(until_s - way.begin_s, ONCE_S)
+    return Way(Course(knots, way.positions), length, "s", Stops.of(machine, way, braking))
+
+
+def _with_stops(judged: PathVerdict, verdict: Verdict, way: PathWay) -> PathVerdict:
+    """What the stops beside the path leave of what may be followed."""
+    if verdict.cause is Cause.NONE:
+        return judged
+    blocked = Blocked.of(verdict, way.begin_s + verdict.free_travel)
+    if verdict.free_travel <= 0:
+        return replace(judged, level=Level.STOP, stop_blocked=blocked, follow_until_s=None, rests_by_s=None)
+    return replace(
+        judged,
+        level=_level(way, blocked.time_s, True),
+        stop_blocked=blocked,
+        follow_until_s=blocked.time_s,
+        rests_by_s=min(blocked.time_s + way.stop_s, judged.rests_by_s or way.rests_s),
+    )
 
 
 def longest_safe_prefix(
@@ -191,8 +229,8 @@ def longest_safe_prefix(
 ) -> Trajectory | None:
     """The longest part of a path, from its beginning, from all of which a stop ends at rest in space seen to be free.
 
-    So a machine that is told to stop at its end, or before, stays in that space (an execution shield). Asked again while
-    it moves, with the space of then, it gives the next part.
+    So a machine that is told to stop at its end, or before, stays in that space (an execution shield). Asked again
+    while it moves, with the space of then, it gives the next part.
 
     Args:
         space, machine, path, joints, braking, horizon_s: as of `check_path`.
@@ -217,7 +255,7 @@ def _judged(path: Trajectory, way: PathWay, verdict: Verdict, looked_s: float) -
     stops = until_s < way.begin_s
     return PathVerdict(
         path,
-        Level.STOP if stops else verdict.level,
+        _level(way, until_s, stops or blocked is not None),
         blocked,
         None,
         None if stops else until_s,
@@ -225,3 +263,47 @@ def _judged(path: Trajectory, way: PathWay, verdict: Verdict, looked_s: float) -
         looked_s,
         verdict.escapes,
     )
+
+
+def _level(way: PathWay, until_s: float, is_blocked: bool) -> Level:
+    """By how long the way is free, with the stop that ends it."""
+    if not is_blocked:
+        return Level.CLEAR
+    stop_s = max(way.stop_s, ONCE_S)
+    return Level.at(until_s - way.begin_s + stop_s, stop_s)
+
+
+def check_stop(space: FreeSpace, machine: Machine, state: MachineState, braking: Braking) -> PathVerdict:
+    """Whether a machine that is told to stop now comes to rest in free space: its braking volume, from where it is.
+
+    Until it brakes each joint goes on as fast as it is. It is `check_path` for a path that ends here, at these speeds.
+
+    Args:
+        space, machine, braking: as of `check_path`.
+        state: where it is and how fast.
+
+    Returns:
+        `is_free` if so; the path's time 0 is now.
+
+    Raises:
+        MachineError, JointsError: as `check_path`; a joint that is faster than its full speed by more than a tenth.
+    """
+    names, speeds = [], []
+    for name in machine.joint_names:
+        speed = state.velocities.get(name, 0.0)
+        full = braking.speeds.get(name)
+        if full is None and abs(speed) < STANDS:
+            speed = 0.0  # a joint that nobody commands, and what its encoder says of noise
+        if full is not None and abs(speed) > full * (1 + FASTER_MEASURED):
+            raise JointsError(
+                f"machine's state: joint {name} moves at {speed:g} a second, its full speed is {full:g} [m/s or rad/s]"
+            )
+        if full is not None and abs(speed) > full:
+            speed *= abs(speed) / full  # it brakes for longer, too
+        if speed:
+            names.append(name)
+            speeds.append(speed)
+    if not names:
+        names, speeds = list(machine.joint_names[:1]), [0.0]
+    path = Trajectory(names, [0.0], [[state.positions[name] for name in names]], [speeds])
+    return check_path(space, machine, path, state.positions, braking)

@@ -1,4 +1,4 @@
-"""A trajectory as the sweep takes it: where the machine is, along the path, and on until it rests; and when it is where."""
+"""A trajectory as the sweep takes it: from where the machine is, along the path, and on until it rests."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -63,13 +63,15 @@ class PathWay:
         moving = [name for name in path.joint_names if name in machine.joint_names]
         _require_inside(machine, straight.times_s, rows, start)
         _require_speeds(moving, straight, braking)
+        moving = [name for name in moving if name in braking.speeds]
         _require_begin(machine, rows[0], start)
         slowest_s = max((braking.times_s[name] for name in moving), default=0.0)
         stop_s = braking.reaction_time_s + slowest_s / 2
         times, knots = [straight.times_s[:1], straight.times_s], [start[None], rows]
+        after_s: NDArray[np.float64] = np.array([path.end_s + stop_s])
         last = _coasting(machine, rows[-1], path, stop_s)
         if last is not None:
-            times, knots = [*times, [path.end_s + stop_s]], [*knots, last[None]]
+            times, knots = [*times, after_s], [*knots, last[None]]
         positions = np.concatenate(knots)
         steps = np.abs(np.diff(positions, axis=0)).max(axis=1, initial=0.0)
         return cls(
@@ -146,21 +148,27 @@ def _require_inside(
         text = f"path: at {times[out[0]]:g} s joint {name} is at {value:g} {joint.unit}, out of its limits"
         degrees = np.degrees([joint.lower, joint.upper])
         hint = ""
-        if joint.unit == "rad" and degrees[0] <= rows[:, column].min() and rows[:, column].max() <= degrees[1]:
+        if (
+            joint.unit == "rad"
+            and degrees[0] <= rows[:, column].min()
+            and rows[:, column].max() <= degrees[1]
+        ):
             hint = "; if these are degrees, write radians"
         raise JointsError(f"{text}, {joint.lower:g} to {joint.upper:g} {joint.unit}{hint}")
 
 
 def _require_speeds(moving: list[str], path: Trajectory, braking: Braking) -> None:
-    """Refuses a joint without a speed, or faster than that."""
+    """Refuses a joint that moves and has no speed, or is faster than that."""
     steps = np.diff(path.times_s)
     for name, column in zip(path.joint_names, path.positions.T, strict=True):
-        if name not in moving:
+        speeds = np.abs(np.diff(column)) / steps
+        if name not in moving or not speeds.any():
             continue
         if name not in braking.speeds:
             known = ", ".join(braking.speeds) or "none"
-            raise JointsError(f"path: joint {name} has no speed and no braking time; joints that have: {known}")
-        speeds = np.abs(np.diff(column)) / steps
+            raise JointsError(
+                f"path: joint {name} has no speed and no braking time; joints that have: {known}"
+            )
         fast = np.flatnonzero(speeds > braking.speeds[name] * (1 + FASTER))
         if len(fast):
             raise JointsError(
@@ -175,6 +183,6 @@ def _require_begin(machine: Machine, first: NDArray[np.float64], start: NDArray[
         unit = machine.joint(name).unit
         if abs(said - here) > machine.tolerance.of(unit):
             raise JointsError(
-                f"path: it begins with joint {name} at {said:g} {unit}, and the machine is at {here:g} {unit}: it is the "
-                "path of another moment, or the machine is elsewhere"
+                f"path: it begins with joint {name} at {said:g} {unit}, and the machine is at {here:g} {unit}: it is "
+                "the path of another moment, or the machine is elsewhere"
             )

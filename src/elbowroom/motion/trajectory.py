@@ -86,7 +86,7 @@ class Trajectory:
         return speeds
 
     def straightened(self) -> Self:
-        """The same in straight lines, none of which is farther than `STRAIGHT` from the curve; itself without velocities.
+        """The same in straight lines, none farther than `STRAIGHT` from the curve; itself without velocities.
 
         Raises:
             JointsError: two points are too far apart for the speeds that they have.
@@ -119,12 +119,14 @@ class Trajectory:
         step, way = self.times_s[n + 1] - self.times_s[n], self.positions[n + 1] - self.positions[n]
         before, after = step * self.velocities[n], step * self.velocities[n + 1]
         # the second derivative is straight: it is greatest at an end
-        bend = max(np.abs(6 * way - 4 * before - 2 * after).max(), np.abs(6 * way - 2 * before - 4 * after).max())
+        bend = max(
+            np.abs(6 * way - 4 * before - 2 * after).max(), np.abs(6 * way - 2 * before - 4 * after).max()
+        )
         pieces = int(np.ceil(np.sqrt(bend / (8 * STRAIGHT)))) if bend > 0 else 1
         if pieces > MOST_PIECES:
             raise JointsError(
-                f"path: from {self.times_s[n]:g} to {self.times_s[n + 1]:g} s joints would go far off at the velocities "
-                "that are given; are these per second, and in the unit of the positions?"
+                f"path: from {self.times_s[n]:g} to {self.times_s[n + 1]:g} s joints would go far off at the "
+                "velocities that are given; are these per second, and in the unit of the positions?"
             )
         return max(1, pieces)
 
