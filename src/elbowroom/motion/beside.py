@@ -11,8 +11,10 @@ from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.touched import NOTHING
 from elbowroom.motion.kernels.volume import Volume
 
-FINEST_IN_VOXELS = 1 / 4
-"""A box of joint positions is cut until no point moves farther in it [voxel edges]."""
+FINEST_IN_VOXELS = 1 / 32
+"""A box is cut until no point moves farther in it, as in the shortest intervals of the sweep [voxel edges]."""
+FINEST_STEP_IN_VOXELS = 1 / 4
+"""The moment of the first blocked stop is found to within what moves no point farther [voxel edges]."""
 MOST_BOXES = 20_000
 """So many parts of one box are looked at; what is not known to be free then is blocked."""
 
@@ -28,7 +30,8 @@ def first_stop_blocked(
         way: with stops.
         volume: what is blocked.
     """
-    stops, finest = way.stops, FINEST_IN_VOXELS * volume.lattice.edge
+    stops, edge = way.stops, volume.lattice.edge
+    finest, step = FINEST_IN_VOXELS * edge, FINEST_STEP_IN_VOXELS * edge
     assert stops is not None
     asked = np.flatnonzero(speeds > 0).astype(np.int32)
     cutting = Cutting(finest, MOST_BOXES)
@@ -40,5 +43,5 @@ def first_stop_blocked(
         )
         return None if kind == NOTHING else Block(begin_s, kind, cluster, place)
 
-    found = stops.first(way.length, finest / float(speeds.max()), look)
+    found = stops.first(way.length, step / float(speeds.max()), look)
     return None if found is None else found[1]._replace(travel=found[0])

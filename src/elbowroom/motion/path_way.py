@@ -62,7 +62,7 @@ class PathWay:
                 rows[:, machine.joint_names.index(name)] = column
         moving = [name for name in path.joint_names if name in machine.joint_names]
         _require_inside(machine, straight.times_s, rows, start)
-        _require_speeds(moving, straight, braking)
+        _require_speeds(moving, straight, path.end_velocities, braking)
         moving = [name for name in moving if name in braking.speeds]
         _require_begin(machine, rows[0], start)
         slowest_s = max((braking.times_s[name] for name in moving), default=0.0)
@@ -157,11 +157,13 @@ def _require_inside(
         raise JointsError(f"{text}, {joint.lower:g} to {joint.upper:g} {joint.unit}{hint}")
 
 
-def _require_speeds(moving: list[str], path: Trajectory, braking: Braking) -> None:
+def _require_speeds(
+    moving: list[str], path: Trajectory, at_end: NDArray[np.float64], braking: Braking
+) -> None:
     """Refuses a joint that moves and has no speed, or is faster than that."""
     steps = np.diff(path.times_s)
-    for name, column in zip(path.joint_names, path.positions.T, strict=True):
-        speeds = np.abs(np.diff(column)) / steps
+    for name, column, last in zip(path.joint_names, path.positions.T, at_end.tolist(), strict=True):
+        speeds = np.append(np.abs(np.diff(column)) / steps, abs(last))
         if name not in moving or not speeds.any():
             continue
         if name not in braking.speeds:
@@ -170,7 +172,7 @@ def _require_speeds(moving: list[str], path: Trajectory, braking: Braking) -> No
                 f"path: joint {name} has no speed and no braking time; joints that have: {known}"
             )
         fast = np.flatnonzero(speeds > braking.speeds[name] * (1 + FASTER))
-        if len(fast):
+        if len(fast) and len(path.times_s) > 1:
             raise JointsError(
                 f"path: at {path.times_s[fast[0]]:g} s joint {name} moves at {speeds[fast[0]]:g} a second, its full "
                 f"speed is {braking.speeds[name]:g} [m/s or rad/s]: slow the path down, or correct the speed"

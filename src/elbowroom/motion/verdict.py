@@ -169,10 +169,10 @@ class Verdict:
     def safe_speed(self) -> float:
         """The greatest share of full speed, 0 to 1, whose stopping travel fits into the free travel (`safe_share`).
 
-        The stopping travel is reaction and braking; it has to fit into the free travel less the motion's clearance. A
+        The stopping travel, reaction and braking, has to fit into the free travel less the motion's clearance. A
         joint limit holds nothing back: whoever drives the joint stops it there. Where nothing is met within a reach
-        that is shorter than the stopping travel, the reach counts as blocked. It does not change the level: a stop may have
-        a safe speed above 0, at which the machine would still rest before the block.
+        that is shorter than the stopping travel, the reach counts as blocked. It does not change the level: a stop may
+        have a safe speed above 0, at which the machine would still rest before the block.
         """
         motion = self.motion
         reaction, clearance, looked_at = 0.0, 0.0, motion.reach

@@ -4,6 +4,7 @@ Shares no code with what it checks but the machine's kinematics: curves are SciP
 """
 
 import heapq
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,7 +99,7 @@ class ExactPath:
             begin_s, end_s: of the path [s].
         """
         places = [self.joints(time_s) for time_s in np.linspace(begin_s, end_s, 33)]
-        return sum(self.moved(near, a, b) for a, b in zip(places[:-1], places[1:], strict=True))
+        return sum(self.moved(near, a, b) for a, b in pairwise(places))
 
     def speed_at(self, time_s: float) -> float:
         """How fast the fastest corner of the machine moves at a time, above 0 [m/s].
@@ -119,7 +120,7 @@ class ExactPath:
     def colliding_stop(
         self, time_s: float, rng: np.random.Generator
     ) -> tuple[Nearest, NDArray[np.float64]] | None:
-        """A stop commanded at a time in which each joint brakes by itself and something is touched; None: none was found.
+        """A stop commanded at a time in which each joint brakes by itself and something is touched; None: none.
 
         Corners of the box of joint positions and places in it are tried, and then about the one that comes nearest.
 

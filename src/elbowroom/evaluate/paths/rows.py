@@ -48,7 +48,13 @@ def path_rows(
     for name in machines:
         for number, scene in enumerate(islice(path_scenes(name, voxel_size_m, seed), paths)):
             exact = ExactPath(scene)
-            said = {"kind": "path", "machine": name, "path": number, "voxel_size_m": voxel_size_m, "seed": seed}
+            said = {
+                "kind": "path",
+                "machine": name,
+                "path": number,
+                "voxel_size_m": voxel_size_m,
+                "seed": seed,
+            }
             for brakes, judge in ((ALONG, _along), (BESIDE, _beside)):
                 braking = replace(scene.braking, leaves_path=brakes == BESIDE)
                 verdict = check_path(scene.space, scene.machine, scene.path, scene.joints, braking)
@@ -68,11 +74,17 @@ def path_rows(
 def _along(
     scene: PathScene, exact: ExactPath, verdict: PathVerdict, _: np.random.Generator
 ) -> dict[str, object]:
-    """Beside the first contact on the path; where it may be followed from the beginning, or not at all, so is its end."""
+    """Beside the first contact on the path."""
     contact = exact.first_contact()
     rests_s = verdict.blocked.time_s if verdict.blocked is not None else verdict.looked_until_s
     if contact is None:
-        return {"true_s": None, "true_link": None, "true_solid": None, "beyond": False, "shortfall_voxels": None}
+        return {
+            "true_s": None,
+            "true_link": None,
+            "true_solid": None,
+            "beyond": False,
+            "shortfall_voxels": None,
+        }
     time_s, near = contact
     short = exact.way(near, min(rests_s, time_s), time_s) / scene.space.grid.voxel_size_m
     return {
@@ -87,12 +99,17 @@ def _along(
 def _beside(
     scene: PathScene, exact: ExactPath, verdict: PathVerdict, rng: np.random.Generator
 ) -> dict[str, object]:
-    """Stops are tried before the last moment that is said to be safe: none may touch; and from there on: one soon does."""
+    """Stops are tried before the last moment that is said to be safe, where none may touch, and from there on."""
     safe_s = verdict.follow_until_s
     before = np.linspace(scene.path.begin_s, safe_s, LOOKS) if safe_s is not None else ()
     tried = [exact.colliding_stop(float(time_s), rng) for time_s in before]
     found = next((stop for stop in tried if stop is not None), None)
-    said: dict[str, object] = {"true_s": None, "true_link": None, "true_solid": None, "beyond": found is not None}
+    said: dict[str, object] = {
+        "true_s": None,
+        "true_link": None,
+        "true_solid": None,
+        "beyond": found is not None,
+    }
     short = None
     if verdict.stop_blocked is not None:
         after = _next_touching(scene, exact, verdict.stop_blocked.time_s, rng)
