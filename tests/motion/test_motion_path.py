@@ -153,7 +153,7 @@ ends = st.tuples(st.floats(-0.4, 0.4), st.floats(-1.2, 1.2), st.floats(-0.8, 0.8
 def test_no_stop_of_what_may_be_followed_meets_a_block_and_less_evidence_allows_no_more(
     arm, seen, unseen, points, leaves
 ):
-    times = 1.5 * np.arange(len(points) + 1)
+    times = 2.5 * np.arange(len(points) + 1)
     path = Trajectory(NAMES, times, [[0.0, 0.0, 0.0], *points])
     blocked = nothing_in(GRID)
     for ball in seen:

@@ -12,13 +12,17 @@ from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.stages import raise_interrupt, timed
 from elbowroom.motion import (
+    Braking,
     Cause,
     Level,
+    MachineState,
     Motion,
     Override,
+    PathVerdict,
     Verdict,
     blocks_in_reach,
     check_motions,
+    check_moving,
     with_creep,
 )
 from elbowroom.reconstruct import FreeSpace, Terms, free_space_of
@@ -39,6 +43,8 @@ class Cycle:
         keeps_images: results keep the images that their free space was made of, so that it can be explained.
         override: how fast an operator may creep where nobody sees; None: of no stop it is said.
         clock_ns: by which the time that a pass takes is told [ns]; it never goes back.
+        braking: how the machine comes to rest; then, where a snapshot says how fast all of its joints are that have a
+            speed, a stop that is not free makes motions that are being made stop. None: that is not asked.
 
     Raises:
         InputError: no motions, since then nothing would ever say stop.
@@ -53,6 +59,7 @@ class Cycle:
     keeps_images: bool = False
     clock_ns: Callable[[], int] = time.perf_counter_ns
     override: Override | None = None
+    braking: Braking | None = None
     sequence: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -76,7 +83,8 @@ class Cycle:
             oldest_ms = snapshot.oldest_age_ms
             space = self._space_of(snapshot, stage_ms)
             with timed("motion", stage_ms):
-                given = _usable(self._checked(space, snapshot.joints or {}))
+                checked, stopping = self._checked(space, snapshot)
+                given = _usable(checked)
             late = self._late(snapshot, begun_ns)
         except Exception as error:  # at this border a fault becomes a decision: stop
             raise_interrupt(error)
@@ -88,7 +96,10 @@ class Cycle:
         verdicts = tuple(given.get(motion) or self._stop(motion) for motion in self.motions)
         kept = space if self.keeps_images else space.released()
         result = CycleResult(self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault)
-        return replace(result, late=late, skew_ms=snapshot.fresh(self.terms.max_age_ns).skew_ms)
+        skew_ms = snapshot.fresh(self.terms.max_age_ns).skew_ms
+        return replace(
+            result, late=late, skew_ms=skew_ms, stopping=stopping, velocities=snapshot.velocities or None
+        )
 
     def failed(
         self, error: Exception, snapshot: Snapshot | None, stage_ms: dict[str, float] | None = None
@@ -121,11 +132,24 @@ class Cycle:
             timer=lambda stage: timed(stage, stage_ms),
         )
 
-    def _checked(self, space: FreeSpace, joints: Mapping[str, float]) -> Sequence[Verdict]:
-        verdicts = check_motions(space, self.machine, joints, self.motions)
+    def _checked(self, space: FreeSpace, snapshot: Snapshot) -> tuple[Sequence[Verdict], PathVerdict | None]:
+        """The verdicts, and whether the machine's stop is free where it is known how fast it moves."""
+        joints, stopping, speeds = snapshot.joints or {}, None, self._speeds(snapshot.velocities)
+        if self.braking is None or speeds is None:
+            verdicts = check_motions(space, self.machine, joints, self.motions)
+        else:
+            state = MachineState(joints, speeds)
+            verdicts, stopping = check_moving(space, self.machine, state, self.motions, self.braking)
         if self.override is None:
-            return verdicts
-        return with_creep(space, self.machine, joints, verdicts, self.override)
+            return verdicts, stopping
+        return with_creep(space, self.machine, joints, verdicts, self.override), stopping
+
+    def _speeds(self, velocities: Mapping[str, float]) -> Mapping[str, float] | None:
+        """Of the joints that have a speed; None: of one of them it is not known."""
+        names = () if self.braking is None else self.braking.speeds
+        if not names or not all(name in velocities for name in names):
+            return None
+        return {name: velocities[name] for name in names}
 
     def _number(self) -> int:
         self.sequence += 1

@@ -7,7 +7,7 @@ from typing import Self
 from elbowroom.finding import Finding
 from elbowroom.monitor.health.health import Health
 from elbowroom.monitor.health.known import Known
-from elbowroom.motion import Cause, Level, Verdict
+from elbowroom.motion import Cause, Level, PathVerdict, Verdict, machine_speed
 from elbowroom.reconstruct.free_space import FreeSpace
 
 
@@ -29,6 +29,8 @@ class CycleResult:
         late: that frames were past their age when the verdicts were out, so that every one is stop, one sentence; None:
             they were in time, or there is no limit.
         skew_ms: between the stamps of the oldest and the newest frame that was used [ms]; None: there are no two.
+        stopping: whether the machine, as fast as it is, would come to rest in free space; None: that is not known.
+        velocities: how fast its joints are, by name [m/s or rad/s]; None: that is not known.
     """
 
     sequence: int
@@ -42,6 +44,8 @@ class CycleResult:
     findings: tuple[Finding, ...] = ()
     late: str | None = None
     skew_ms: float | None = None
+    stopping: PathVerdict | None = None
+    velocities: Mapping[str, float] | None = None
 
     def knowing(self, known: Known) -> Self:
         """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""
@@ -63,6 +67,11 @@ class CycleResult:
         """
         wrong = "; ".join(finding.text for finding in self.findings if finding.stops)
         return self.fault or self.late or wrong or (self.health.reason if self.health is not None else None)
+
+    @property
+    def safe_speed(self) -> float:
+        """The greatest share of full speed that is safe for the machine, as `machine_speed`; 0 without a verdict."""
+        return machine_speed(self.verdicts, self.velocities) if self.verdicts else 0.0
 
     @property
     def age_ms(self) -> float | None:

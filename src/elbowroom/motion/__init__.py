@@ -1,11 +1,12 @@
 """Motions checked against free space: how far, how urgent, and why."""
 
 from elbowroom.motion.braking import Braking, braking_distance
+from elbowroom.motion.braking_volume import check_moving, check_stop
 from elbowroom.motion.check import check_motion, check_motions, joint_motions
 from elbowroom.motion.creep import Override, with_creep
 from elbowroom.motion.focus import blocks_in_reach
 from elbowroom.motion.motion import JointPath, Motion
-from elbowroom.motion.path import Blocked, PathVerdict, check_path, check_stop, longest_safe_prefix
+from elbowroom.motion.path import Blocked, PathVerdict, check_path, longest_safe_prefix
 from elbowroom.motion.path_file import read_path
 from elbowroom.motion.speed import machine_speed
 from elbowroom.motion.trajectory import MachineState, Trajectory
@@ -28,6 +29,7 @@ __all__ = [
     "braking_distance",
     "check_motion",
     "check_motions",
+    "check_moving",
     "check_path",
     "check_stop",
     "joint_motions",

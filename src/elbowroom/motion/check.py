@@ -77,8 +77,7 @@ def check_motions(
     start = machine.positions(joints)
     ways = [way_of(machine, start, motion) for motion in motions]
     with parallel.threads(threads):
-        scene = Scene.of(space, machine, start)
-        return parallel.spread(lambda pair: scene.verdict(*pair), list(zip(motions, ways, strict=True)))
+        return Scene.of(space, machine, start).verdicts(motions, ways)
 
 
 def joint_motions(
@@ -149,6 +148,15 @@ class Scene:
             blocks_inside(machine, tuple(start.ground for start in starts), placed),
             placed,
         )
+
+    def verdicts(self, motions: Sequence[Motion | JointPath], ways: Sequence[Way]) -> list[Verdict]:
+        """The answers for several motions, in their order.
+
+        Args:
+            motions: what is asked.
+            ways: of each where it leads.
+        """
+        return parallel.spread(lambda pair: self.verdict(*pair), list(zip(motions, ways, strict=True)))
 
     def verdict(self, motion: Motion | JointPath, way: Way) -> Verdict:
         """The answer for one motion, in the unit of its way."""

@@ -18,21 +18,18 @@ from typing import Any
 
 import numpy as np
 
-from elbowroom.errors import InputError, JointsError
+from elbowroom.errors import InputError
 from elbowroom.machine import Machine
 from elbowroom.motion.braking import Braking
 from elbowroom.motion.check import Scene
 from elbowroom.motion.course import Way, way_of
 from elbowroom.motion.kernels.mover import Course
 from elbowroom.motion.path_way import PathWay
-from elbowroom.motion.speed import STANDS
 from elbowroom.motion.stops import Stops
-from elbowroom.motion.trajectory import MachineState, Trajectory
+from elbowroom.motion.trajectory import Trajectory
 from elbowroom.motion.verdict import Cause, Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
 
-FASTER_MEASURED = 0.1
-"""A joint may be measured to be faster than its full speed by this share."""
 ONCE_S = 1e-6
 """Stops that are commanded within this time are one that is commanded at once [s]."""
 
@@ -180,18 +177,31 @@ def check_path(
     """
     if horizon_s is not None and not horizon_s > 0:
         raise InputError(f"check_path: horizon_s is {horizon_s}, must be above 0 [s]")
-    way = PathWay.of(machine, dict(joints), path, braking)
-    looked_s = (
-        way.rests_s if horizon_s is None else min(way.begin_s + max(horizon_s, way.stop_s), way.rests_s)
-    )
-    motion = way.asked(machine, looked_s)
-    start = machine.positions(joints)
-    scene = Scene.of(space, machine, start)
-    along = scene.verdict(motion, way_of(machine, start, motion))
+    way = PathWay.of(machine, joints, path, braking)
+    scene = Scene.of(space, machine, machine.positions(joints))
+    return path_in(scene, path, way, braking, horizon_s)
+
+
+def path_in(
+    scene: Scene, path: Trajectory, way: PathWay, braking: Braking, horizon_s: float | None = None
+) -> PathVerdict:
+    """The answer for a path.
+
+    Args:
+        scene: in which the machine stands where the path begins.
+        path: what was asked.
+        way: of it.
+        braking, horizon_s: as of `check_path`.
+    """
+    looked_s = way.rests_s
+    if horizon_s is not None:
+        looked_s = min(way.begin_s + max(horizon_s, way.stop_s), looked_s)
+    motion = way.asked(scene.machine, looked_s)
+    along = scene.verdict(motion, way_of(scene.machine, way.positions[0], motion))
     judged = _judged(path, way, along, looked_s)
     if not braking.leaves_path or judged.follow_until_s is None:
         return judged
-    stops = _stops_of(machine, way, braking, judged.follow_until_s)
+    stops = _stops_of(scene.machine, way, braking, judged.follow_until_s)
     return _with_stops(judged, scene.verdict(motion, stops), way)
 
 
@@ -271,39 +281,3 @@ def _level(way: PathWay, until_s: float, is_blocked: bool) -> Level:
         return Level.CLEAR
     stop_s = max(way.stop_s, ONCE_S)
     return Level.at(until_s - way.begin_s + stop_s, stop_s)
-
-
-def check_stop(space: FreeSpace, machine: Machine, state: MachineState, braking: Braking) -> PathVerdict:
-    """Whether a machine that is told to stop now comes to rest in free space: its braking volume, from where it is.
-
-    Until it brakes each joint goes on as fast as it is. It is `check_path` for a path that ends here, at these speeds.
-
-    Args:
-        space, machine, braking: as of `check_path`.
-        state: where it is and how fast.
-
-    Returns:
-        `is_free` if so; the path's time 0 is now.
-
-    Raises:
-        MachineError, JointsError: as `check_path`; a joint that is faster than its full speed by more than a tenth.
-    """
-    names, speeds = [], []
-    for name in machine.joint_names:
-        speed = state.velocities.get(name, 0.0)
-        full = braking.speeds.get(name)
-        if full is None and abs(speed) < STANDS:
-            speed = 0.0  # a joint that nobody commands, and what its encoder says of noise
-        if full is not None and abs(speed) > full * (1 + FASTER_MEASURED):
-            raise JointsError(
-                f"machine's state: joint {name} moves at {speed:g} a second, its full speed is {full:g} [m/s or rad/s]"
-            )
-        if full is not None and abs(speed) > full:
-            speed *= abs(speed) / full  # it brakes for longer, too
-        if speed:
-            names.append(name)
-            speeds.append(speed)
-    if not names:
-        names, speeds = list(machine.joint_names[:1]), [0.0]
-    path = Trajectory(names, [0.0], [[state.positions[name] for name in names]], [speeds])
-    return check_path(space, machine, path, state.positions, braking)

@@ -1,5 +1,6 @@
 """A trajectory as the sweep takes it: from where the machine is, along the path, and on until it rests."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Self
 
@@ -40,7 +41,7 @@ class PathWay:
     end_s: float
 
     @classmethod
-    def of(cls, machine: Machine, joints: dict[str, float], path: Trajectory, braking: Braking) -> Self:
+    def of(cls, machine: Machine, joints: Mapping[str, float], path: Trajectory, braking: Braking) -> Self:
         """A path of a machine, after finding it possible.
 
         Args:

@@ -25,12 +25,17 @@ def machine_speed(verdicts: Iterable[Verdict], velocities: Mapping[str, float] |
     every = list(verdicts)
     if not every:
         raise InputError("machine_speed: no verdicts; without a verdict the machine must stop")
-    counted = every if velocities is None else [v for v in every if _is_made(v, velocities)]
+    counted = every if velocities is None else [v for v in every if is_made(v, velocities)]
     return min(verdict.safe_speed for verdict in counted or every)
 
 
-def _is_made(verdict: Verdict, velocities: Mapping[str, float]) -> bool:
-    """Whether a motion is made at these velocities; one that is no number makes it."""
+def is_made(verdict: Verdict, velocities: Mapping[str, float]) -> bool:
+    """Whether a motion is being made at these velocities; one that is no number makes it.
+
+    Args:
+        verdict: of the motion.
+        velocities: by joint [m/s or rad/s].
+    """
     motion = verdict.motion
     if not isinstance(motion, Motion) or motion.joint not in velocities:
         return True

@@ -24,6 +24,7 @@ class Snapshot:
         now_ns: the time now [ns, the clock of the frames]; None: nothing has a time.
         clock_bounds_ns: by camera, how much older its frame may be than its stamp says, since its clock is known no
             better [ns]; a camera that is missing: not at all. It is part of every age.
+        velocities: how fast joints are now, by name [m/s or rad/s]; of a joint that is missing nobody knows.
     """
 
     frames: tuple[DepthFrame, ...]
@@ -31,6 +32,7 @@ class Snapshot:
     joints_of: Mapping[str, Positions] = field(default_factory=dict)
     now_ns: int | None = None
     clock_bounds_ns: Mapping[str, int] = field(default_factory=dict)
+    velocities: Positions = field(default_factory=dict)
 
     @classmethod
     def taken(
@@ -62,7 +64,8 @@ class Snapshot:
         newest = max((frame.stamp_ns for frame in young if frame.stamp_ns is not None), default=now_ns)
         if newest is None:
             raise InputError("joints: a record needs frames with times, or now_ns")
-        return cls(tuple(frames), joints.at(newest), joints_of, now_ns)
+        speeds = joints.velocities_at(newest)
+        return cls(tuple(frames), joints.at(newest), joints_of, now_ns, velocities=speeds)
 
     def joints_at(self, camera: str) -> Positions | None:
         """Where the machine was at the time of a camera's frame, by name [m or rad]; None: not known."""

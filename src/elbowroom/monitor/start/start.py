@@ -50,8 +50,8 @@ def _cycle(room: Room) -> Cycle | SpaceCycle:
     if room.unasked is not None:
         return SpaceCycle(room.grid, room.cameras, room.machine, room.terms)
     machine, motions = room.machine_and_motions()
-    override = room.site.override(machine)
-    return Cycle(room.grid, room.cameras, machine, motions, room.terms, override=override)
+    override, braking = room.site.override(machine), room.site.braking(machine)
+    return Cycle(room.grid, room.cameras, machine, motions, room.terms, override=override, braking=braking)
 
 
 def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
