@@ -11,8 +11,9 @@ from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.touched import NOTHING
 from elbowroom.motion.kernels.volume import Volume
 
-FINEST_IN_VOXELS = 1 / 32
-"""A box is cut until no point moves farther in it, as in the shortest intervals of the sweep [voxel edges]."""
+FINEST_IN_VOXELS, FINEST_SHARED_IN_VOXELS = 1 / 16, 1 / 32
+"""A box is cut until no point moves farther in it; and where the machine reaches into blocked voxels as it stands, as
+little as in the sweep's shortest intervals, by half of what a body is grown by there (`motion.shared`) [voxel edges]."""
 FINEST_STEP_IN_VOXELS = 1 / 4
 """The moment of the first blocked stop is found to within what moves no point farther [voxel edges]."""
 MOST_BOXES = 20_000
@@ -31,7 +32,8 @@ def first_stop_blocked(
         volume: what is blocked.
     """
     stops, edge = way.stops, volume.lattice.edge
-    finest, step = FINEST_IN_VOXELS * edge, FINEST_STEP_IN_VOXELS * edge
+    finest = (FINEST_IN_VOXELS if volume.shared.others else FINEST_SHARED_IN_VOXELS) * edge
+    step = FINEST_STEP_IN_VOXELS * edge
     assert stops is not None
     asked = np.flatnonzero(speeds > 0).astype(np.int32)
     cutting = Cutting(finest, MOST_BOXES)

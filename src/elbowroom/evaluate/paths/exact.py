@@ -18,9 +18,9 @@ from elbowroom.motion import Trajectory
 
 LEAST_STEP_M = 2e-5
 """No step along a path is shorter than what moves the fastest point by this [m]."""
-LOOKS = 12
+LOOKS = 4
 """At so many moments before what is said to be safe stops are tried."""
-STOPS, BETTER = 48, 24
+STOPS, BETTER = 24, 10
 """So many stops are tried at one moment, and so many more about the one that comes nearest."""
 NEAR_ENOUGH_M = 0.3
 """What stays farther away than this is not looked at closer [m]."""
