@@ -12,8 +12,8 @@ from elbowroom.motion.kernels.touched import NOTHING
 from elbowroom.motion.kernels.volume import Volume
 
 FINEST_IN_VOXELS, FINEST_SHARED_IN_VOXELS = 1 / 16, 1 / 32
-"""A box is cut until no point moves farther in it; and where the machine reaches into blocked voxels as it stands, as
-little as in the sweep's shortest intervals, by half of what a body is grown by there (`motion.shared`) [voxel edges]."""
+"""A box is cut until no point moves farther in it; and where the machine reaches into blocked voxels as it stands, no
+farther than half of what a body is grown by there (`motion.shared`) [voxel edges]."""
 FINEST_STEP_IN_VOXELS = 1 / 4
 """The moment of the first blocked stop is found to within what moves no point farther [voxel edges]."""
 MOST_BOXES = 20_000
