@@ -13,7 +13,10 @@ ROWS_A_PATH = 2
 
 
 def paths(
-    count: Annotated[int, typer.Option("--paths", min=1, help="Paths of each machine.")] = 200,
+    count: Annotated[int, typer.Option("--paths", min=1, metavar="COUNT", help="Paths of the UR5.")] = 200,
+    c_arm: Annotated[
+        int | None, typer.Option(min=1, metavar="COUNT", help="Paths of the C-arm. Default: as many.")
+    ] = None,
     quick: Annotated[bool, typer.Option("--quick", help=f"{QUICK_PATHS} paths of each.")] = False,
     voxel_size: OneVoxelSize = 0.02,
     seed: Seed = 1,
@@ -29,7 +32,7 @@ def paths(
     from elbowroom.cli.evaluate.measured import measured
     from elbowroom.cli.evaluate.shown import as_table, text
     from elbowroom.evaluate.due import sentence
-    from elbowroom.evaluate.paths.rows import DUE, MACHINES, path_rows, path_summary
+    from elbowroom.evaluate.paths.rows import DUE, path_rows, path_summary
 
     show = as_table(
         {
@@ -45,5 +48,6 @@ def paths(
         sentence(DUE),
     )
     many = QUICK_PATHS if quick else count
-    rows = path_rows(paths=many, voxel_size_m=voxel_size, seed=seed)
-    measured("paths", rows, ROWS_A_PATH * len(MACHINES) * many, json, show, path_summary)
+    others = min(many, c_arm or many)
+    rows = path_rows({"UR5": many, "C-arm": others}, voxel_size_m=voxel_size, seed=seed)
+    measured("paths", rows, ROWS_A_PATH * (many + others), json, show, path_summary)

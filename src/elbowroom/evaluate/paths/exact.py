@@ -18,11 +18,11 @@ from elbowroom.motion import Trajectory
 
 LEAST_STEP_M = 2e-5
 """No step along a path is shorter than what moves the fastest point by this [m]."""
-LOOKS = 4
+LOOKS = 3
 """At so many moments before what is said to be safe stops are tried."""
-STOPS, BETTER = 24, 10
+STOPS, BETTER = 16, 8
 """So many stops are tried at one moment, and so many more about the one that comes nearest."""
-NEAR_ENOUGH_M = 0.3
+NEAR_ENOUGH_M = 0.1
 """What stays farther away than this is not looked at closer [m]."""
 WINDOW = 64
 """At so many moments of a braking time the speeds of joints are looked at."""

@@ -12,9 +12,8 @@ from elbowroom.evaluate.paths.exact import LOOKS, ExactPath
 from elbowroom.evaluate.paths.scenes import Name, PathScene, path_scenes
 from elbowroom.evaluate.rooms.exact import Nearest
 from elbowroom.evaluate.rooms.scene import SAME, settings_of
-from elbowroom.motion import PathVerdict, check_path
+from elbowroom.motion import Cause, PathVerdict, check_path
 
-MACHINES: tuple[Name, ...] = ("UR5", "C-arm")
 ALONG, BESIDE = "along the path", "each joint by itself"
 MOST_SHORT_VOXELS = 12
 """Where no stop is found that touches something so far beyond what is said to be safe, none is looked for."""
@@ -27,13 +26,12 @@ DUE = (
 
 
 def path_rows(
-    machines: Sequence[Name] = MACHINES, *, paths: int = 200, voxel_size_m: float = 0.02, seed: int = 1
+    paths: Mapping[Name, int], *, voxel_size_m: float = 0.02, seed: int = 1
 ) -> Iterator[dict[str, object]]:
     """Random paths in the volume of exact truth.
 
     Args:
-        machines: whose.
-        paths: how many of each.
+        paths: how many of each machine.
         voxel_size_m: edge of a voxel [m].
         seed: of moments, poses, paths, and of the stops that are tried.
 
@@ -45,8 +43,8 @@ def path_rows(
     Raises:
         PackageError: coal, or the package with the UR5, is not installed.
     """
-    for name in machines:
-        for number, scene in enumerate(islice(path_scenes(name, voxel_size_m, seed), paths)):
+    for name, many in paths.items():
+        for number, scene in enumerate(islice(path_scenes(name, voxel_size_m, seed), many)):
             exact = ExactPath(scene)
             said = {
                 "kind": "path",
@@ -83,6 +81,7 @@ def _along(
             "true_link": None,
             "true_solid": None,
             "beyond": False,
+            "tried_beyond": False,
             "shortfall_voxels": None,
         }
     time_s, near = contact
@@ -92,6 +91,7 @@ def _along(
         "true_link": near.link,
         "true_solid": near.solid,
         "beyond": rests_s > time_s + SAME,
+        "tried_beyond": False,
         "shortfall_voxels": short,
     }
 
@@ -116,7 +116,9 @@ def _beside(
         if after is not None:
             time_s, near, short = after
             said |= {"true_s": time_s, "true_link": near.link, "true_solid": near.solid}
-    return said | {"shortfall_voxels": short}
+    grid = verdict.cause is Cause.OUTSIDE_GRID  # there is no wall where the watched box ends
+    tried_beyond = verdict.stop_blocked is not None and not grid
+    return said | {"tried_beyond": tried_beyond, "shortfall_voxels": short}
 
 
 def _next_touching(
@@ -153,6 +155,9 @@ def path_summary(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 def _summed(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     short = [row["shortfall_voxels"] for row in rows if row["shortfall_voxels"] is not None]
+    # where stops were tried and none touches, the shortfall is unknown, and counts as greater than all others
+    unknown = sum(row["true_s"] is None and row["tried_beyond"] for row in rows)
+    middle = float(np.median([*short, *[np.inf] * unknown])) if short or unknown else None
     ended = [row for row in rows if row["cause"] != "none"]
     return {
         **settings_of(rows),
@@ -162,8 +167,9 @@ def _summed(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "free_to_the_end": len(rows) - len(ended),
         "no_prefix": sum(row["follow_until_s"] is None for row in rows),
         "beyond": sum(row["beyond"] for row in rows),
-        "compared": len(short),
-        "median_shortfall_voxels": float(np.median(short)) if short else None,
+        "compared": len(short) + unknown,
+        "unknown": unknown,
+        "median_shortfall_voxels": middle if middle is None or np.isfinite(middle) else None,
         "greatest_shortfall_voxels": max(short, default=None),
         "ended_without_truth": sum(row["true_s"] is None for row in ended),
         "ended_by_the_grid": sum(row["cause"] == "outside_grid" for row in ended),
