@@ -34,7 +34,7 @@ STEP_S = (0.02, 0.1)
 """Between points of paths that have no velocities, and of those that have."""
 SHARES = (0.3, 1.0)
 """The joint that is fastest moves at between these shares of full speed at its fastest."""
-TRIES = 1000
+TRIES = 300
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,16 +70,22 @@ def path_scenes(name: Name, voxel_size_m: float, seed: int) -> Iterator[PathScen
 
     Raises:
         PackageError: coal, or the package with the UR5, is not installed.
-        InputError: no path was found.
+        InputError: no path was found, or no moment in which the machine is clear of what stands there.
     """
     site, machine, grid, moments = _ur5(voxel_size_m, seed) if name == "UR5" else _c_arm(voxel_size_m, seed)
     braking = replace(site.braking(machine), reaction_time_s=REACTION_S)
     names = machine.link_names
     own = [(names[a], names[b]) for a, b in watched_rows(machine)]
+    passed_over = 0
     for number, moment in enumerate(moments):
+        if passed_over == TRIES:
+            raise InputError(
+                f"paths: no moment in {TRIES} in which {name} is clear of all by {voxel_size_m / 4:g} m"
+            )
         truth = ExactTravel(machine, moment.solids)
         enough_m = CLEAR_VOXELS * voxel_size_m
         if truth.nearest(moment.joints, (), enough_m).distance_m < enough_m:
+            passed_over += 1
             continue
         apart = [pair for pair in own if truth.apart(moment.joints, *pair, CLEAR_M).distance_m >= CLEAR_M]
         volume = FreeSpace.from_occupied(grid, true_occupancy(grid, moment).occupied)
