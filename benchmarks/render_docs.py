@@ -200,7 +200,8 @@ joints moving, the fastest at 30 to 100 % of its full speed; T_r = 0.1 s; the vo
 path*: the machine brakes along it; the truth is the first contact on the path, by exact mesh distance. *each joint by
 itself*: stops at random and at corners are tried at three moments before what is said to be safe, where none may touch
 anything, and after it until one does. So a shortfall is known at most, and *unknown* where none touches within 12
-voxels of the way; these count as greater than all others in the median. *shortfall*: as the way of the point that touches.
+voxels of the way; these count as greater than all others in the median. *shortfall*: as the way of the point that
+touches.
 """,
         "elbowroom evaluate paths --c-arm 50",
         tables.path_tables,

@@ -25,12 +25,12 @@ class Terms:
         margin: of cameras without one of their own.
         max_age_ns: frames older than this are not used [ns]; None: no limit.
         explain_tolerance_m: how near to the machine's model a return counts as the machine, besides its noise [m].
-        body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: half a
-            voxel.
+        body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: by
+            what a pixel covers (`growth.growth_of`).
         witness_angle_deg: by rule `three`, cameras nearer to each other than this, as seen from the grid, are one
             witness (`witnesses`) [deg]; 0: each is one.
-        look_again: voxels in the way that no one camera sees all of are looked at again in parts. False: what the
-            volume says holds, so that who has images and who has only the volume say the same.
+        look_again: voxels in the way are looked at again in parts. False: what the volume says holds, so that who has
+            images and who has only the volume say the same.
         people_speed_m_s: the most that anything but the machine moves: what a camera saw to be free holds for what
             such a thing cannot have reached since [m/s].
         nothing_moves: somebody vouches that nothing but the machine moves here: only then that speed is 0.
