@@ -345,6 +345,17 @@ and no others. The recordings, the simulated room and random sites, described ri
         tables.contradiction_tables,
     ),
     Section(
+        "decision.json",
+        "Exposure to decision",
+        """
+The whole monitor (clocks, watch, pass, distances, gate with its latch on disk) on frames that lie in memory and are
+there when they are exposed: from the exposure of the oldest frame that a pass used to its decision. *running free*:
+the cameras' exposures are spread over a frame period, so the oldest frame is up to one older.
+""",
+        "elbowroom bench decision",
+        tables.decision_tables,
+    ),
+    Section(
         "latch.json",
         "The latch",
         """
@@ -383,7 +394,18 @@ def render(results: Path = RESULTS) -> str:
         "",
         "*due* is what the project set out to reach; what misses it stands in bold.",
     ]
-    for section in SECTIONS:
+    return "\n".join([*lines, *rendered(SECTIONS, results)]) + "\n"
+
+
+def rendered(sections: Sequence[Section], results: Path) -> list[str]:
+    """Sections as lines of Markdown.
+
+    Args:
+        sections: in their order.
+        results: folder of their files.
+    """
+    lines: list[str] = []
+    for section in sections:
         lines += ["", f"## {section.title}", section.text]
         path = results / section.file
         if not path.is_file():
@@ -392,7 +414,7 @@ def render(results: Path = RESULTS) -> str:
             continue
         content = json.loads(path.read_text(encoding="utf-8"))
         lines += [*section.tables(content["rows"]), "", _origin(content.get("meta", {}))]
-    return "\n".join(lines) + "\n"
+    return lines
 
 
 def _origin(meta: Mapping[str, Any]) -> str:

@@ -18,6 +18,7 @@ from elbowroom.machine.c_arm import ceiling_c_arm as ceiling_c_arm
 from elbowroom.motion import (
     Braking as Braking,
     Cause as Cause,
+    Distances as Distances,
     JointPath as JointPath,
     Level as Level,
     MachineState as MachineState,
@@ -33,6 +34,7 @@ from elbowroom.motion import (
     joint_motions as joint_motions,
     longest_safe_prefix as longest_safe_prefix,
     machine_speed as machine_speed,
+    link_distances as link_distances,
     most_cautious as most_cautious,
     read_path as read_path,
 )

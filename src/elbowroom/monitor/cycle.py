@@ -14,6 +14,7 @@ from elbowroom.monitor.stages import raise_interrupt, timed
 from elbowroom.motion import (
     Braking,
     Cause,
+    Distances,
     Level,
     MachineState,
     Motion,
@@ -23,6 +24,7 @@ from elbowroom.motion import (
     blocks_in_reach,
     check_motions,
     check_moving,
+    link_distances,
     with_creep,
 )
 from elbowroom.reconstruct import FreeSpace, Terms, free_space_of
@@ -43,6 +45,7 @@ class Cycle:
         keeps_images: results keep the images that their free space was made of, so that it can be explained.
         override: how fast an operator may creep where nobody sees; None: of no stop it is said.
         clock_ns: by which the time that a pass takes is told [ns]; it never goes back.
+        look_m: how far from the machine distances are asked, and so looked, in each pass [m]; None: they are not.
         braking: how the machine comes to rest; then, where a snapshot says how fast all of its joints are that have a
             speed, a stop that is not free makes motions that are being made stop. None: that is not asked.
 
@@ -59,6 +62,7 @@ class Cycle:
     keeps_images: bool = False
     clock_ns: Callable[[], int] = time.perf_counter_ns
     override: Override | None = None
+    look_m: float | None = None
     braking: Braking | None = None
     sequence: int = field(default=0, init=False)
 
@@ -85,6 +89,7 @@ class Cycle:
             with timed("motion", stage_ms):
                 checked, stopping = self._checked(space, snapshot)
                 given = _usable(checked)
+            distances = self._distances(space, snapshot, stage_ms)
             late = self._late(snapshot, begun_ns)
         except Exception as error:  # at this border a fault becomes a decision: stop
             raise_interrupt(error)
@@ -98,7 +103,12 @@ class Cycle:
         result = CycleResult(self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault)
         skew_ms = snapshot.fresh(self.terms.max_age_ns).skew_ms
         return replace(
-            result, late=late, skew_ms=skew_ms, stopping=stopping, velocities=snapshot.velocities or None
+            result,
+            late=late,
+            skew_ms=skew_ms,
+            distances=distances,
+            stopping=stopping,
+            velocities=snapshot.velocities or None,
         )
 
     def failed(
@@ -114,6 +124,11 @@ class Cycle:
         verdicts = tuple(self._stop(motion) for motion in self.motions)
         return failure(self._number(), error, snapshot, stage_ms, verdicts)
 
+    def unplaced(self, snapshot: Snapshot) -> CycleResult:
+        """A pass in which nobody knows where the machine is: stop for every motion, by what came in."""
+        verdicts = tuple(self._stop(motion, Cause.INPUT) for motion in self.motions)
+        return CycleResult(self._number(), snapshot.now_ns or 0, None, verdicts, {}, snapshot.oldest_age_ms)
+
     def _late(self, snapshot: Snapshot, begun_ns: int) -> str | None:
         """What is said where a frame that was used has come of age since its pass began."""
         return lateness(snapshot, self.terms, (self.clock_ns() - begun_ns) / 1e6)
@@ -121,7 +136,8 @@ class Cycle:
     def _space_of(self, snapshot: Snapshot, stage_ms: dict[str, float]) -> FreeSpace:
         reach = None
         if self.focused:
-            reach = blocks_in_reach(self.grid, self.machine, snapshot.joints or {}, self.motions)
+            joints, around_m = snapshot.joints or {}, self.look_m or 0.0
+            reach = blocks_in_reach(self.grid, self.machine, joints, self.motions, around_m)
         return free_space_of(
             self.grid,
             self.cameras,
@@ -150,6 +166,15 @@ class Cycle:
         if not names or not all(name in velocities for name in names):
             return None
         return {name: velocities[name] for name in names}
+
+    def _distances(
+        self, space: FreeSpace, snapshot: Snapshot, stage_ms: dict[str, float]
+    ) -> Distances | None:
+        """How far the links are from what is blocked, if anybody asks."""
+        if self.look_m is None:
+            return None
+        with timed("distances", stage_ms):
+            return link_distances(space, self.machine, snapshot.joints or {}, self.look_m)
 
     def _number(self) -> int:
         self.sequence += 1

@@ -7,7 +7,8 @@ from typing import Self
 from elbowroom.finding import Finding
 from elbowroom.monitor.health.health import Health
 from elbowroom.monitor.health.known import Known
-from elbowroom.motion import Cause, Level, PathVerdict, Verdict, machine_speed
+from elbowroom.monitor.health.streams.cause import Sick
+from elbowroom.motion import Cause, Distances, Level, PathVerdict, Verdict, machine_speed
 from elbowroom.reconstruct.free_space import FreeSpace
 
 
@@ -29,6 +30,9 @@ class CycleResult:
         late: that frames were past their age when the verdicts were out, so that every one is stop, one sentence; None:
             they were in time, or there is no limit.
         skew_ms: between the stamps of the oldest and the newest frame that was used [ms]; None: there are no two.
+        distances: of the links from blocked space; None: nobody asked, or the pass failed.
+        sick: what is wrong with which source. A camera of it was left out; while joints are, every verdict is stop.
+        blind: that no camera gave anything that counts, so that every verdict is stop, one sentence; None: one did.
         stopping: whether the machine, as fast as it is, would come to rest in free space; None: that is not known.
         velocities: how fast its joints are, by name [m/s or rad/s]; None: that is not known.
     """
@@ -44,6 +48,9 @@ class CycleResult:
     findings: tuple[Finding, ...] = ()
     late: str | None = None
     skew_ms: float | None = None
+    sick: tuple[Sick, ...] = ()
+    blind: str | None = None
+    distances: Distances | None = None
     stopping: PathVerdict | None = None
     velocities: Mapping[str, float] | None = None
 
@@ -58,6 +65,8 @@ class CycleResult:
             fault=self.fault or known.fault,
             health=known.health,
             findings=known.findings,
+            sick=known.sick,
+            blind=known.blind,
         )
 
     @property
@@ -65,8 +74,10 @@ class CycleResult:
         """Why every verdict is stop, whatever the space is: the fault, else frames that are too old by now, else input
         that cannot be right, else what the watch found; None: none of them.
         """
-        wrong = "; ".join(finding.text for finding in self.findings if finding.stops)
-        return self.fault or self.late or wrong or (self.health.reason if self.health is not None else None)
+        found = [each.text for each in self.sick if each.stops]
+        wrong = "; ".join([*found, *(finding.text for finding in self.findings if finding.stops)])
+        watched = self.health.reason if self.health is not None else None
+        return self.fault or self.late or wrong or self.blind or watched
 
     @property
     def safe_speed(self) -> float:

@@ -4,6 +4,7 @@ from elbowroom.motion.braking import Braking, braking_distance
 from elbowroom.motion.braking_volume import check_moving, check_stop
 from elbowroom.motion.check import check_motion, check_motions, joint_motions
 from elbowroom.motion.creep import Override, with_creep
+from elbowroom.motion.distances import Distances, LinkDistances, Nearest, link_distances
 from elbowroom.motion.focus import blocks_in_reach
 from elbowroom.motion.motion import JointPath, Motion
 from elbowroom.motion.path import Blocked, PathVerdict, check_path, longest_safe_prefix
@@ -17,10 +18,13 @@ __all__ = [
     "Braking",
     "Cause",
     "Creep",
+    "Distances",
     "JointPath",
     "Level",
+    "LinkDistances",
     "MachineState",
     "Motion",
+    "Nearest",
     "Override",
     "PathVerdict",
     "Trajectory",
@@ -33,6 +37,7 @@ __all__ = [
     "check_path",
     "check_stop",
     "joint_motions",
+    "link_distances",
     "longest_safe_prefix",
     "machine_speed",
     "most_cautious",

@@ -6,7 +6,9 @@ from elbowroom.cli.evaluate.bits import bits
 from elbowroom.cli.evaluate.cell import cell
 from elbowroom.cli.evaluate.contradictions import contradictions
 from elbowroom.cli.evaluate.escape import escape
+from elbowroom.cli.evaluate.faults import faults
 from elbowroom.cli.evaluate.hand import hand
+from elbowroom.cli.evaluate.lag import lag
 from elbowroom.cli.evaluate.latch import latch
 from elbowroom.cli.evaluate.looks import looks
 from elbowroom.cli.evaluate.own_links import own_links
@@ -50,7 +52,9 @@ evaluate_app.command(epilog=_example("bits --json now.json --against benchmarks/
 evaluate_app.command(epilog=_example("contradictions --sites 5 --right 20 --json contradictions.json"))(
     contradictions
 )
+evaluate_app.command(epilog=_example("lag --quick --json lag.json"))(lag)
 evaluate_app.command(epilog=_example("latch --quick --json latch.json"))(latch)
+evaluate_app.command(epilog=_example("faults --quick --json faults.json"))(faults)
 evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
 evaluate_app.command(epilog=_example("robots packages --json robots.json"))(robots)
 evaluate_app.command(epilog=_example("own-links packages --quick --json own_links.json"))(own_links)
