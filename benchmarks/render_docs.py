@@ -192,6 +192,21 @@ than exact, as the way of the point that touches.
         tables.travel_tables,
     ),
     Section(
+        "paths.json",
+        "Paths",
+        """
+Random smooth paths of a UR5 on a table and of the C-arm, through two points drawn at random, people beside them, all
+joints moving, the fastest at 30 to 100 % of its full speed; T_r = 0.1 s; the volume is the exact truth. *along the
+path*: the machine brakes along it; the truth is the first contact on the path, by exact mesh distance. *each joint by
+itself*: stops at random and at corners are tried at three moments before what is said to be safe, where none may touch
+anything, and after it until one does. So a shortfall is known at most, and *unknown* where none touches within 12
+voxels of the way; these count as greater than all others in the median. *shortfall*: as the way of the point that
+touches.
+""",
+        "elbowroom evaluate paths --c-arm 50",
+        tables.path_tables,
+    ),
+    Section(
         "placement_figures.json",
         "Placement",
         """

@@ -18,6 +18,7 @@ from result_tables.verdicts import (
     escape_tables,
     hand_tables,
     own_links_tables,
+    path_tables,
     poses_tables,
     travel_tables,
 )
@@ -40,6 +41,7 @@ __all__ = [
     "looks_tables",
     "machine_tables",
     "own_links_tables",
+    "path_tables",
     "placement_tables",
     "poses_tables",
     "robot_tables",

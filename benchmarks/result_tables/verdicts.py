@@ -6,6 +6,7 @@ from elbowroom.evaluate.cell import rows as cell
 from elbowroom.evaluate.escape import escape
 from elbowroom.evaluate.hand import hand
 from elbowroom.evaluate.own_links import own_links
+from elbowroom.evaluate.paths import rows as path_rows
 from elbowroom.evaluate.rooms import alone, poses, travel
 from result_tables.cells import Row, centimetres, of, same, table
 
@@ -101,6 +102,23 @@ def poses_tables(rows: Sequence[Row]) -> list[str]:
             "truly clear": of("truly_clear"),
             "of these stop %": of("stop_where_clear_pct", 2, due=poses.DUE),
             "the very level of the truth %": of("same_level_pct", 2),
+        },
+    )
+
+
+def path_tables(rows: Sequence[Row]) -> list[str]:
+    """How far paths may be followed, beside the truth."""
+    return table(
+        _summaries(rows),
+        {
+            "voxel": centimetres,
+            **same("machine", "brakes", "paths"),
+            "free to the end": of("free_to_the_end"),
+            "beyond the truth": of("beyond", due=path_rows.DUE),
+            "compared": of("compared"),
+            "of these unknown": of("unknown"),
+            "median shortfall, voxels": of("median_shortfall_voxels", 2, due=path_rows.DUE),
+            "greatest known": of("greatest_shortfall_voxels", 2),
         },
     )
 

@@ -16,18 +16,27 @@ from elbowroom.machine import (
 )
 from elbowroom.machine.c_arm import ceiling_c_arm as ceiling_c_arm
 from elbowroom.motion import (
+    Braking as Braking,
     Cause as Cause,
     Distances as Distances,
     JointPath as JointPath,
     Level as Level,
+    MachineState as MachineState,
     Motion as Motion,
+    PathVerdict as PathVerdict,
+    Trajectory as Trajectory,
     Verdict as Verdict,
     braking_distance as braking_distance,
     check_motion as check_motion,
     check_motions as check_motions,
+    check_path as check_path,
+    check_stop as check_stop,
     joint_motions as joint_motions,
+    longest_safe_prefix as longest_safe_prefix,
+    machine_speed as machine_speed,
     link_distances as link_distances,
     most_cautious as most_cautious,
+    read_path as read_path,
 )
 from elbowroom.reconstruct import (
     Evidence as Evidence,

@@ -83,7 +83,7 @@ def ask(
         print(line)
     if pictures:
         print(f"{len(pictures)} pictures, one of each camera that has the voxel in its image, in {out}")
-    for line in _by_the_sites_word(machine, room.allowances):
+    for line in by_the_sites_word(machine, room.allowances):
         print(line)
     print(NOT_CERTIFIED)
 
@@ -103,8 +103,13 @@ def _said(motion: Motion, verdict: Verdict) -> Iterator[str]:
         yield "It leads out of blocked space that the machine stands in or close beside."
 
 
-def _by_the_sites_word(machine: Machine, allowances: Sequence[str]) -> Iterator[str]:
-    """What is not looked at, as every summary says it."""
+def by_the_sites_word(machine: Machine, allowances: Sequence[str]) -> Iterator[str]:
+    """What is not looked at, as every summary says it.
+
+    Args:
+        machine: says which of its links.
+        allowances: of the room.
+    """
     if machine.unchecked_links:
         yield f"Not checked, by the site's word: {', '.join(machine.unchecked_links)}."
     if machine.bodiless_links:
@@ -117,7 +122,10 @@ def _travel(motion: Motion, verdict: Verdict) -> str:
         travel_text(distance, verdict.free_travel_unit)
         for distance in (verdict.free_travel, motion.looked_at, motion.braking_distance)
     )
-    return f"Free travel: {free} of {looked_at} looked at; it brakes within {brakes}."
+    return (
+        f"Free travel: {free} of {looked_at} looked at; it brakes within {brakes}. "
+        f"Greatest safe speed: {100 * verdict.safe_speed:.0f} % of full speed."
+    )
 
 
 def _creeping(verdict: Verdict, creep: Creep) -> str:

@@ -12,14 +12,18 @@ from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.stages import raise_interrupt, timed
 from elbowroom.motion import (
+    Braking,
     Cause,
     Distances,
     Level,
+    MachineState,
     Motion,
     Override,
+    PathVerdict,
     Verdict,
     blocks_in_reach,
     check_motions,
+    check_moving,
     link_distances,
     with_creep,
 )
@@ -42,6 +46,8 @@ class Cycle:
         override: how fast an operator may creep where nobody sees; None: of no stop it is said.
         clock_ns: by which the time that a pass takes is told [ns]; it never goes back.
         look_m: how far from the machine distances are asked, and so looked, in each pass [m]; None: they are not.
+        braking: how the machine comes to rest; then, where a snapshot says how fast all of its joints are that have a
+            speed, a stop that is not free makes motions that are being made stop. None: that is not asked.
 
     Raises:
         InputError: no motions, since then nothing would ever say stop.
@@ -57,6 +63,7 @@ class Cycle:
     clock_ns: Callable[[], int] = time.perf_counter_ns
     override: Override | None = None
     look_m: float | None = None
+    braking: Braking | None = None
     sequence: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -80,7 +87,8 @@ class Cycle:
             oldest_ms = snapshot.oldest_age_ms
             space = self._space_of(snapshot, stage_ms)
             with timed("motion", stage_ms):
-                given = _usable(self._checked(space, snapshot.joints or {}))
+                checked, stopping = self._checked(space, snapshot)
+                given = _usable(checked)
             distances = self._distances(space, snapshot, stage_ms)
             late = self._late(snapshot, begun_ns)
         except Exception as error:  # at this border a fault becomes a decision: stop
@@ -94,7 +102,14 @@ class Cycle:
         kept = space if self.keeps_images else space.released()
         result = CycleResult(self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault)
         skew_ms = snapshot.fresh(self.terms.max_age_ns).skew_ms
-        return replace(result, late=late, skew_ms=skew_ms, distances=distances)
+        return replace(
+            result,
+            late=late,
+            skew_ms=skew_ms,
+            distances=distances,
+            stopping=stopping,
+            velocities=snapshot.velocities or None,
+        )
 
     def failed(
         self, error: Exception, snapshot: Snapshot | None, stage_ms: dict[str, float] | None = None
@@ -133,11 +148,24 @@ class Cycle:
             timer=lambda stage: timed(stage, stage_ms),
         )
 
-    def _checked(self, space: FreeSpace, joints: Mapping[str, float]) -> Sequence[Verdict]:
-        verdicts = check_motions(space, self.machine, joints, self.motions)
+    def _checked(self, space: FreeSpace, snapshot: Snapshot) -> tuple[Sequence[Verdict], PathVerdict | None]:
+        """The verdicts, and whether the machine's stop is free where it is known how fast it moves."""
+        joints, stopping, speeds = snapshot.joints or {}, None, self._speeds(snapshot.velocities)
+        if self.braking is None or speeds is None:
+            verdicts = check_motions(space, self.machine, joints, self.motions)
+        else:
+            state = MachineState(joints, speeds)
+            verdicts, stopping = check_moving(space, self.machine, state, self.motions, self.braking)
         if self.override is None:
-            return verdicts
-        return with_creep(space, self.machine, joints, verdicts, self.override)
+            return verdicts, stopping
+        return with_creep(space, self.machine, joints, verdicts, self.override), stopping
+
+    def _speeds(self, velocities: Mapping[str, float]) -> Mapping[str, float] | None:
+        """Of the joints that have a speed; None: of one of them it is not known."""
+        names = () if self.braking is None else self.braking.speeds
+        if not names or not all(name in velocities for name in names):
+            return None
+        return {name: velocities[name] for name in names}
 
     def _distances(
         self, space: FreeSpace, snapshot: Snapshot, stage_ms: dict[str, float]

@@ -8,7 +8,7 @@ from elbowroom.finding import Finding
 from elbowroom.monitor.health.health import Health
 from elbowroom.monitor.health.known import Known
 from elbowroom.monitor.health.streams.cause import Sick
-from elbowroom.motion import Cause, Distances, Level, Verdict
+from elbowroom.motion import Cause, Distances, Level, PathVerdict, Verdict, machine_speed
 from elbowroom.reconstruct.free_space import FreeSpace
 
 
@@ -33,6 +33,8 @@ class CycleResult:
         distances: of the links from blocked space; None: nobody asked, or the pass failed.
         sick: what is wrong with which source. A camera of it was left out; while joints are, every verdict is stop.
         blind: that no camera gave anything that counts, so that every verdict is stop, one sentence; None: one did.
+        stopping: whether the machine, as fast as it is, would come to rest in free space; None: that is not known.
+        velocities: how fast its joints are, by name [m/s or rad/s]; None: that is not known.
     """
 
     sequence: int
@@ -49,6 +51,8 @@ class CycleResult:
     sick: tuple[Sick, ...] = ()
     blind: str | None = None
     distances: Distances | None = None
+    stopping: PathVerdict | None = None
+    velocities: Mapping[str, float] | None = None
 
     def knowing(self, known: Known) -> Self:
         """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""
@@ -74,6 +78,11 @@ class CycleResult:
         wrong = "; ".join([*found, *(finding.text for finding in self.findings if finding.stops)])
         watched = self.health.reason if self.health is not None else None
         return self.fault or self.late or wrong or self.blind or watched
+
+    @property
+    def safe_speed(self) -> float:
+        """The greatest share of full speed that is safe for the machine, as `machine_speed`; 0 without a verdict."""
+        return machine_speed(self.verdicts, self.velocities) if self.verdicts else 0.0
 
     @property
     def age_ms(self) -> float | None:

@@ -92,6 +92,8 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
         "kind": "cycle",
         **shared,
         "level": result.level.name.lower(),
+        "safe_speed": result.safe_speed,
+        "stopping": None if result.stopping is None else result.stopping.row(),
         "cycle_ms": result.cycle_ms,
         "stage_ms": dict(result.stage_ms),
         "source_ms": source_ms,

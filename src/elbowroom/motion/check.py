@@ -77,8 +77,7 @@ def check_motions(
     start = machine.positions(joints)
     ways = [way_of(machine, start, motion) for motion in motions]
     with parallel.threads(threads):
-        scene = _Scene.of(space, machine, start)
-        return parallel.spread(lambda pair: scene.verdict(*pair), list(zip(motions, ways, strict=True)))
+        return Scene.of(space, machine, start).verdicts(motions, ways)
 
 
 def joint_motions(
@@ -117,7 +116,7 @@ def joint_motions(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Scene:
+class Scene:
     """What the motions of one check share."""
 
     space: FreeSpace
@@ -131,6 +130,12 @@ class _Scene:
 
     @classmethod
     def of(cls, space: FreeSpace, machine: Machine, start: NDArray[np.float64]) -> Self:
+        """What does not depend on the motion.
+
+        Args:
+            space, machine: as of `check_motions`.
+            start: where its joints are, of `machine.positions`, shape (n_joints,).
+        """
         voxel_size_m = space.grid.voxel_size_m
         placed = machine.world_from_link_array(start[None])[0]
         starts = tuple(Start.of(machine, ground, placed) for ground in grounds_of(space, machine))
@@ -144,7 +149,17 @@ class _Scene:
             placed,
         )
 
+    def verdicts(self, motions: Sequence[Motion | JointPath], ways: Sequence[Way]) -> list[Verdict]:
+        """The answers for several motions, in their order.
+
+        Args:
+            motions: what is asked.
+            ways: of each where it leads.
+        """
+        return parallel.spread(lambda pair: self.verdict(*pair), list(zip(motions, ways, strict=True)))
+
     def verdict(self, motion: Motion | JointPath, way: Way) -> Verdict:
+        """The answer for one motion, in the unit of its way."""
         speeds = cluster_speeds(self.machine, self.skin, self.world_from_link, way)
         block, reaches = self._first_block(speeds, way)
         met = self.meeting.first(way, way.length if block is None else block.travel)

@@ -10,6 +10,7 @@ from elbowroom.errors import MachineError
 from elbowroom.machine import Machine
 from elbowroom.motion.kernels.mover import Course
 from elbowroom.motion.motion import JointPath, Motion
+from elbowroom.motion.stops import Stops
 
 ROUNDING = 1e-6
 """A waypoint beyond a limit by this much is rounding, not a fault [m or rad]."""
@@ -22,12 +23,15 @@ class Way:
     Args:
         course: joint positions at knots of rising travel; columns are `machine.joint_names`.
         length: travel that is looked at, 0 where the joint stands at its limit [unit].
-        unit: "m", "rad", or "m or rad".
+        unit: "m", "rad", or "m or rad"; "s" where travel is a time.
+        stops: where the machine may come to rest beside the course, after a stop that is commanded on it; then that is
+            looked at, and not the course. None: it stays on it.
     """
 
     course: Course
     length: float
     unit: str
+    stops: Stops | None = None
 
     @property
     def rates(self) -> NDArray[np.float64]:

@@ -1,6 +1,6 @@
 """Whether and when a machine meets itself on its way."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -16,6 +16,7 @@ from elbowroom.motion.course import Way
 from elbowroom.motion.kernels.closing import Travelling
 from elbowroom.motion.kernels.meeting import Now, Pairs, Steps, first_meeting, gaps_now
 from elbowroom.motion.kernels.mover import Mover
+from elbowroom.motion.meeting_beside import first_stop_meeting
 from elbowroom.motion.sweep import cluster_speeds
 
 STEP_IN_COVERS = 2.0
@@ -82,7 +83,13 @@ class Meeting:
         moving = moves_with[bodies.one] != moves_with[bodies.other]
         if not moving.any():
             return None
-        travel, pair, place = self._first(way, length, moving)
+        if way.stops is None:
+            travel, pair, place = self._first(way, length, moving)
+        else:
+            looked_at = replace(way, length=length)
+            travel, pair, place = first_stop_meeting(
+                self.machine, self.pairs, self.now, looked_at, np.flatnonzero(moving)
+            )
         if pair < 0:
             return None
         rows = sorted((bodies.one[pair], bodies.other[pair]), reverse=True)

@@ -20,21 +20,32 @@ class Motion:
         direction: +1 or -1, the way in which the joint's value changes.
         braking_distance: S, at full speed [m or rad along the joint].
         reach: how far to look [m or rad along the joint]; None: 5 braking distances.
+        reaction_distance: what the joint still goes at full speed before it brakes, v T_r, as far as S does not hold it
+            already; only `Verdict.safe_speed` asks for it [m or rad along the joint].
+        clearance: what shall be left where the joint rests; only `Verdict.safe_speed` asks for it, too [m or rad].
 
     Raises:
-        InputError: another direction, or a distance that is not a finite number above 0.
+        InputError: another direction, a distance that is not a finite number above 0, or one of the last two below 0.
     """
 
     joint: str
     direction: int
     braking_distance: float
     reach: float | None = None
+    reaction_distance: float = 0.0
+    clearance: float = 0.0
 
     def __post_init__(self) -> None:
         if isinstance(self.direction, bool) or self.direction not in (1, -1):
             raise InputError(f"motion of {self.joint}: direction is {self.direction}, must be +1 or -1")
         object.__setattr__(self, "direction", int(self.direction))
         _check_distances(f"motion of {self.joint}", self.braking_distance, self.reach)
+        for name in ("reaction_distance", "clearance"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value >= 0):
+                raise InputError(
+                    f"motion of {self.joint}: {name} is {value}, must be a finite number of at least 0 [m or rad]"
+                )
 
     @property
     def name(self) -> str:

@@ -1,13 +1,13 @@
 """How fast the machine's points move along a way, and where they first meet a block."""
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import bits
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.body import FIXED, SLIDES
+from elbowroom.motion.beside import first_stop_blocked
+from elbowroom.motion.block import Block
 from elbowroom.motion.course import Way
 from elbowroom.motion.kernels.mover import Skin, bound_speeds
 from elbowroom.motion.kernels.shared import WORDS, Shared
@@ -22,18 +22,6 @@ SAMPLE_HALVINGS = 3
 about samples are no larger than a voxel and one look at a corner settles most of them."""
 MOST_HALVINGS = 40
 """No interval is cut more often: a travel of 10^12 finest steps."""
-
-
-class Block(NamedTuple):
-    """The first block on a way: its travel, its kind (as kernels number it), the cluster that meets it, where; the
-    numbers of all voxels that are met there, and from where the sweep can go on."""
-
-    travel: float
-    kind: int
-    cluster: int
-    place_in_world: NDArray[np.float64]
-    met: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
-    asked: Asked | None = None
 
 
 def volume_of(space: FreeSpace) -> Volume:
@@ -113,6 +101,8 @@ def find_block(
     """
     if way.length == 0 or not (speeds > 0).any():
         return None
+    if way.stops is not None:
+        return first_stop_blocked(machine, skin, speeds, way, volume)
     finest = volume.lattice.edge * FINEST_STEP_IN_VOXELS
     halvings = int(np.clip(np.ceil(np.log2(way.length * speeds.max() / finest)), 0, MOST_HALVINGS))
     if asked is None:

@@ -33,6 +33,7 @@ from enum import Enum
 from typing import Any, Self
 
 from elbowroom.errors import InputError
+from elbowroom.motion.braking import safe_share
 from elbowroom.motion.motion import JointPath, Motion
 
 
@@ -165,6 +166,23 @@ class Verdict:
         return self.level.band
 
     @property
+    def safe_speed(self) -> float:
+        """The greatest share of full speed, 0 to 1, whose stopping travel fits into the free travel (`safe_share`).
+
+        The stopping travel, reaction and braking, has to fit into the free travel less the motion's clearance. A
+        joint limit holds nothing back: whoever drives the joint stops it there. Where nothing is met within a reach
+        that is shorter than the stopping travel, the reach counts as blocked. It does not change the level: a stop may
+        have a safe speed above 0, at which the machine would still rest before the block.
+        """
+        motion = self.motion
+        reaction, clearance, looked_at = 0.0, 0.0, motion.reach
+        if isinstance(motion, Motion):
+            reaction, clearance, looked_at = motion.reaction_distance, motion.clearance, motion.looked_at
+        if self.cause is Cause.NONE and (looked_at is None or self.free_travel < looked_at):
+            return 1.0
+        return safe_share(self.free_travel - clearance, reaction + motion.braking_distance)
+
+    @property
     def overridable(self) -> bool:
         """Whether an operator who holds on may drive on at low speed: only into space that nobody sees."""
         return self.cause is Cause.UNSEEN
@@ -185,6 +203,7 @@ class Verdict:
             "free_travel": self.free_travel,
             "free_travel_unit": self.free_travel_unit,
             "braking_distance": motion.braking_distance,
+            "safe_speed": self.safe_speed,
             "cause": self.cause.name.lower(),
             "overridable": self.overridable,
             "link": self.link,

@@ -1,9 +1,9 @@
-"""A machine's joint positions over time, to be asked at each frame's time of exposure."""
+"""A machine's joint positions over time, perhaps with velocities, to be asked at each frame's time of exposure."""
 
 import csv
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from decimal import Decimal
 from pathlib import Path
 
@@ -15,6 +15,8 @@ from elbowroom.errors import JointsError
 END_SLACK_NS = 1_000_000
 """A record answers up to 1 ms beyond its ends with its first or last row; farther out it knows nothing."""
 MAX_CSV_BYTES = 1_000_000_000
+VELOCITY = "_velocity"
+"""Ends the name of the column that holds a joint's velocity."""
 STAMP_COLUMN = "stamp_ns"
 STAMP_COLUMNS = {"stamp_ns": 1, "stamp_us": 1_000, "stamp_ms": 1_000_000, "stamp_s": 1_000_000_000}
 """Names that the column of times may have, and the nanoseconds of its unit."""
@@ -30,6 +32,7 @@ class JointRecord:
         positions: per joint its positions [m or rad], shape (n,).
         max_gap_ns: rows farther apart than this have nothing known between them; None: any two rows are
             joined.
+        velocities: per joint its velocities [m/s or rad/s], shape (n,); of joints that are missing they are not known.
 
     Raises:
         JointsError: no rows, no joints, lengths that differ, stamps that do not rise, numbers that are not
@@ -39,6 +42,7 @@ class JointRecord:
     stamps_ns: NDArray[np.int64]
     positions: Mapping[str, NDArray[np.float64]]
     max_gap_ns: int | None = None
+    velocities: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         stamps = np.array(self.stamps_ns)
@@ -56,21 +60,10 @@ class JointRecord:
             )
         if not self.positions:
             raise JointsError("joint record: no joints; at least one is needed")
-        positions = {}
-        for joint, given in self.positions.items():
-            values = np.array(given, dtype=np.float64)
-            if values.shape != stamps.shape:
-                raise JointsError(
-                    f"joint record: {joint} has shape {values.shape}, its stamps have {stamps.shape}"
-                )
-            if not np.isfinite(values).all():
-                row = int(np.argmin(np.isfinite(values)))
-                raise JointsError(f"joint record: {joint}[{row}] is {values[row]}, must be a finite number")
-            values.setflags(write=False)
-            positions[joint] = values
         stamps.setflags(write=False)
         object.__setattr__(self, "stamps_ns", stamps)
-        object.__setattr__(self, "positions", positions)
+        for name in ("positions", "velocities"):
+            object.__setattr__(self, name, _columns(getattr(self, name), stamps.shape))
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -122,6 +115,19 @@ class JointRecord:
                 found |= self._turned(yaw, before, share)
         return found
 
+    def velocities_at(self, stamp_ns: int) -> dict[str, float]:
+        """How fast joints were at a time, straight between the two rows around it, of those of which it is known.
+
+        Args:
+            stamp_ns: time [ns], one at which `at` knows the positions.
+
+        Returns:
+            Velocity by joint [m/s or rad/s].
+        """
+        since = self.stamps_ns - self.stamps_ns[0]
+        asked = stamp_ns - int(self.stamps_ns[0])
+        return {joint: float(np.interp(asked, since, values)) for joint, values in self.velocities.items()}
+
     def _turned(self, yaw: str, before: int, share: float) -> dict[str, float]:
         """The angles of a base at a share of the way between two rows, the shortest way."""
         angles = [yaw, *(yaw.replace("/yaw", f"/{angle}") for angle in ("pitch", "roll"))]
@@ -140,6 +146,7 @@ class JointRecord:
     def from_csv(cls, path: str | Path, max_gap_ns: int | None = None) -> "JointRecord":
         """From a file with a header `stamp_ns,<joint>,...` and a row per time.
 
+        A column `<joint>_velocity` beside that of a joint holds its velocity.
         Times may be any column, also `stamp_us`, `stamp_ms` or `stamp_s`, whose numbers may have a decimal point.
 
         Args:
@@ -164,7 +171,31 @@ class JointRecord:
         except (csv.Error, UnicodeDecodeError) as error:
             raise JointsError(f"{path}: not a CSV file in UTF-8 ({error})") from None
         columns = np.array(rows, dtype=np.float64).T
-        return cls(np.array(stamps, dtype=np.int64), dict(zip(names, columns, strict=True)), max_gap_ns)
+        told = dict(zip(names, columns, strict=True))
+        speeds = {name for name in names if name.endswith(VELOCITY) and name.removesuffix(VELOCITY) in told}
+        return cls(
+            np.array(stamps, dtype=np.int64),
+            {name: told[name] for name in names if name not in speeds},
+            max_gap_ns,
+            {name.removesuffix(VELOCITY): told[name] for name in names if name in speeds},
+        )
+
+
+def _columns(
+    given: Mapping[str, NDArray[np.float64]], shape: tuple[int, ...]
+) -> dict[str, NDArray[np.float64]]:
+    """Read-only columns by joint, found to be as long as the stamps, and finite."""
+    found = {}
+    for joint, column in given.items():
+        values = np.array(column, dtype=np.float64)
+        if values.shape != shape:
+            raise JointsError(f"joint record: {joint} has shape {values.shape}, its stamps have {shape}")
+        if not np.isfinite(values).all():
+            row = int(np.argmin(np.isfinite(values)))
+            raise JointsError(f"joint record: {joint}[{row}] is {values[row]}, must be a finite number")
+        values.setflags(write=False)
+        found[joint] = values
+    return found
 
 
 def _read_rows(

@@ -26,6 +26,7 @@ class Snapshot:
             better [ns]; a camera that is missing: not at all. It is part of every age.
         joints_ns: when `joints` were so [ns, the clock of the frames]; None: nobody says.
         commanded: at which speeds the machine is commanded to move, by joint [m/s or rad/s]; None: nobody says.
+        velocities: how fast joints are now, by name [m/s or rad/s]; of a joint that is missing nobody knows.
     """
 
     frames: tuple[DepthFrame, ...]
@@ -35,6 +36,7 @@ class Snapshot:
     clock_bounds_ns: Mapping[str, int] = field(default_factory=dict)
     joints_ns: int | None = None
     commanded: Positions | None = None
+    velocities: Positions = field(default_factory=dict)
 
     @classmethod
     def taken(
@@ -66,7 +68,8 @@ class Snapshot:
         newest = max((frame.stamp_ns for frame in young if frame.stamp_ns is not None), default=now_ns)
         if newest is None:
             raise InputError("joints: a record needs frames with times, or now_ns")
-        return cls(tuple(frames), joints.at(newest), joints_of, now_ns)
+        speeds = joints.velocities_at(newest)
+        return cls(tuple(frames), joints.at(newest), joints_of, now_ns, velocities=speeds)
 
     def joints_at(self, camera: str) -> Positions | None:
         """Where the machine was at the time of a camera's frame, by name [m or rad]; None: not known."""

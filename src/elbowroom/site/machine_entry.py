@@ -17,7 +17,7 @@ from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.machine.joint_state import JointTolerance
 from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.together import Member
-from elbowroom.motion import Motion, Override, braking_distance
+from elbowroom.motion import Braking, Motion, Override, braking_distance
 from elbowroom.motion.creep import REDUCED_SPEED_M_S, SHARE_OF_FULL_SPEED
 from elbowroom.site.contact_entry import ContactEntry, PartEntry, StandEntry, require_protected
 from elbowroom.site.entry import Entry, Flag, Matrix, NotNegative, Number, Positive, Text
@@ -162,11 +162,14 @@ def _as_xacro(value: str | float | bool) -> str:
 
 
 class JointEntry(Entry):
-    """Full speed of a joint, in metres or degrees a second, and the time in which it brakes from it."""
+    """Full speed of a joint, in metres or degrees a second, the time in which it brakes from it, and what shall be left
+    of its way where it rests."""
 
     max_speed_m_s: Annotated[Positive, up_to(20, "m/s", MM_A_SECOND)] | None = None
     max_speed_deg_s: Annotated[Positive, up_to(5000, "degrees a second")] | None = None
     braking_time_s: Annotated[Positive, up_to(60, "s", MILLISECONDS)]
+    clearance_mm: Annotated[NotNegative, up_to(5000, "mm")] | None = None
+    clearance_deg: Annotated[NotNegative, up_to(360, "degrees")] | None = None
 
     @model_validator(mode="after")
     def _one_speed(self) -> "JointEntry":
@@ -187,6 +190,22 @@ class JointEntry(Entry):
         does, key = ("slides", "max_speed_m_s") if joint.unit == "m" else ("turns", "max_speed_deg_s")
         raise SiteError(f"joints.{joint.name}: {joint.name} {does}, its speed is written {key}")
 
+    def clearance_of(self, joint: Joint) -> float:
+        """What shall be left of the way [m or rad].
+
+        Raises:
+            SiteError: it is given in the unit of another kind of joint.
+        """
+        own, other = (
+            (self.clearance_mm, self.clearance_deg)
+            if joint.unit == "m"
+            else (self.clearance_deg, self.clearance_mm)
+        )
+        if other is not None:
+            key = "clearance_mm" if joint.unit == "m" else "clearance_deg"
+            raise SiteError(f"joints.{joint.name}: the clearance of {joint.name} is written {key}")
+        return 0.0 if own is None else own / 1e3 if joint.unit == "m" else math.radians(own)
+
 
 class OverrideEntry(Entry):
     """How fast an operator who holds on may creep where nobody sees: of the fastest point, and of full speed."""
@@ -203,23 +222,60 @@ class OverrideEntry(Entry):
         return Override(self.max_speed_mm_s / 1e3, self.share_of_full_speed, speeds)
 
 
-def motions_of(machine: Machine, joints: Mapping[str, JointEntry]) -> tuple[Motion, ...]:
+class StoppingEntry(Entry):
+    """How the machine stops: how long it goes on before it brakes, and whether it leaves its path then."""
+
+    reaction_time_ms: Annotated[NotNegative, up_to(10_000, "ms")] = 0.0
+    leaves_path: Flag = True
+
+
+def motions_of(
+    machine: Machine, joints: Mapping[str, JointEntry], reaction_time_s: float = 0.0
+) -> tuple[Motion, ...]:
     """Each joint that has a speed, in both directions, in the order of the machine.
 
     Args:
         machine: whose joints they are.
         joints: entries by name of the joint.
+        reaction_time_s: before it brakes, as far as braking times do not hold it [s].
 
     Raises:
         SiteError: a joint that the machine does not have, or a speed in the unit of another kind of joint.
     """
+    _require_known(machine, joints)
+    motions = []
+    for name in machine.joint_names:
+        if name in joints:
+            entry, joint = joints[name], machine.joint(name)
+            speed = entry.speed_of(joint)
+            brakes, goes_on = braking_distance(speed, entry.braking_time_s), speed * reaction_time_s
+            clearance = entry.clearance_of(joint)
+            motions += [Motion(name, way, brakes, None, goes_on, clearance) for way in (+1, -1)]
+    return tuple(motions)
+
+
+def braking_of(machine: Machine, joints: Mapping[str, JointEntry], stopping: StoppingEntry) -> Braking:
+    """How the joints that have a speed come to rest.
+
+    Args:
+        machine: whose joints they are.
+        joints: entries by name of the joint.
+        stopping: of the whole machine.
+
+    Raises:
+        SiteError: as `motions_of`.
+    """
+    _require_known(machine, joints)
+    return Braking(
+        {name: entry.speed_of(machine.joint(name)) for name, entry in joints.items()},
+        {name: entry.braking_time_s for name, entry in joints.items()},
+        stopping.reaction_time_ms / 1e3,
+        stopping.leaves_path,
+    )
+
+
+def _require_known(machine: Machine, joints: Mapping[str, JointEntry]) -> None:
     for name in joints:
         if name not in machine.joint_names:
             known = ", ".join(machine.joint_names) or "none"
             raise SiteError(f"joints.{name}: unknown joint; joints of {machine.name} are {known}")
-    distances = {
-        name: braking_distance(joints[name].speed_of(machine.joint(name)), joints[name].braking_time_s)
-        for name in machine.joint_names
-        if name in joints
-    }
-    return tuple(Motion(name, way, distance) for name, distance in distances.items() for way in (+1, -1))

@@ -14,7 +14,7 @@ from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text, Whole
 from elbowroom.site.gate_entry import GateEntry
 from elbowroom.site.health_entry import HealthEntry
-from elbowroom.site.machine_entry import JointEntry, MachineEntry, MemberEntry, OverrideEntry
+from elbowroom.site.machine_entry import JointEntry, MachineEntry, MemberEntry, OverrideEntry, StoppingEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.placement_entry import PlacementEntry
 from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, speed_of_people, up_to
@@ -127,6 +127,7 @@ class SiteEntry(Entry):
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
     zones: tuple[ZoneEntry, ...] = ()
     override: OverrideEntry = OverrideEntry()
+    stopping: StoppingEntry = StoppingEntry()
     rule: Rule = "three"
     detail: Detail = "pixel"
     witness_angle_deg: Annotated[Number, Field(ge=0, le=MOST_ANGLE_DEG)] = WITNESS_ANGLE_DEG

@@ -17,12 +17,12 @@ from elbowroom.files.yaml_file import read_yaml
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.machine.together import together
-from elbowroom.motion import Motion, Override
+from elbowroom.motion import Braking, Motion, Override
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.sensing import Margin
 from elbowroom.site import seven_scenes
 from elbowroom.site.camera_entry import CameraSettings, build_camera, mended_poses
-from elbowroom.site.machine_entry import motions_of
+from elbowroom.site.machine_entry import braking_of, motions_of
 from elbowroom.site.messages import one_line
 from elbowroom.site.paths import existing_bag, existing_folder
 from elbowroom.site.recording_entry import BagRecording, SevenScenes, StamplessFolder
@@ -316,7 +316,19 @@ class Site:
             SiteError: a joint that the machine does not have, or a speed in the unit of another kind of
                 joint.
         """
-        return self._blame(None, lambda: motions_of(machine, self.entry.joints))
+        reaction_s = self.entry.stopping.reaction_time_ms / 1e3
+        return self._blame(None, lambda: motions_of(machine, self.entry.joints, reaction_s))
+
+    def braking(self, machine: Machine) -> Braking:
+        """How the joints that have a speed come to rest.
+
+        Args:
+            machine: the machine of this site.
+
+        Raises:
+            SiteError: as `motions`.
+        """
+        return self._blame(None, lambda: braking_of(machine, self.entry.joints, self.entry.stopping))
 
     def override(self, machine: Machine) -> Override:
         """How fast an operator who holds on may creep where nobody sees.

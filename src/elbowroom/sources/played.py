@@ -104,24 +104,26 @@ class Played:
         found = [*frames.clock.findings(now_ns), *found]
         now_at: Mapping[str, float] | None = None
         at_frame: Mapping[str, Mapping[str, float]] = {}
+        speeds: Mapping[str, float] = {}
         try:
-            now_at, at_frame = _joints_of(joints, taken, now_ns)
+            now_at, at_frame, speeds = _joints_of(joints, taken, now_ns)
         except JointsError as error:
             found.append(Finding("joints", (), str(error), True))
         self.findings = tuple(found)
-        return Snapshot(taken, now_at, at_frame, now_ns, bounds, _said_ns(joints, now_ns))
+        said_ns = _said_ns(joints, now_ns)
+        return Snapshot(taken, now_at, at_frame, now_ns, bounds, said_ns, velocities=speeds)
 
 
 def _joints_of(
     joints: Joints | None, frames: Sequence[DepthFrame], now_ns: int
-) -> tuple[Mapping[str, float] | None, Mapping[str, Mapping[str, float]]]:
-    """Where the machine is by the last row before now, and where it was at each frame's time.
+) -> tuple[Mapping[str, float] | None, Mapping[str, Mapping[str, float]], Mapping[str, float]]:
+    """Where the machine is by the last row before now, where it was at each frame's time, and how fast it is.
 
     Raises:
         JointsError: the record does not know it, or nothing has come for longer than it may have gaps.
     """
     if not isinstance(joints, JointRecord):
-        return joints, {}
+        return joints, {}, {}
     heard = int(np.searchsorted(joints.stamps_ns, now_ns, side="right"))
     last_ns = int(joints.stamps_ns[heard - 1]) if heard else None
     if last_ns is None or (joints.max_gap_ns is not None and now_ns - last_ns > joints.max_gap_ns):
@@ -132,7 +134,7 @@ def _joints_of(
         )
         raise JointsError(f"joints: where the machine is, is not known: {since}")
     at_frame = {frame.camera: joints.at(min(frame.stamp_ns or 0, last_ns)) for frame in frames}
-    return joints.at(last_ns), at_frame
+    return joints.at(last_ns), at_frame, joints.velocities_at(last_ns)
 
 
 def _said_ns(joints: Joints | None, now_ns: int) -> int | None:

@@ -12,6 +12,7 @@ from elbowroom.cli.evaluate.lag import lag
 from elbowroom.cli.evaluate.latch import latch
 from elbowroom.cli.evaluate.looks import looks
 from elbowroom.cli.evaluate.own_links import own_links
+from elbowroom.cli.evaluate.paths import paths
 from elbowroom.cli.evaluate.placement import placement
 from elbowroom.cli.evaluate.robots import robots
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
@@ -59,6 +60,7 @@ evaluate_app.command(epilog=_example("robots packages --json robots.json"))(robo
 evaluate_app.command(epilog=_example("own-links packages --quick --json own_links.json"))(own_links)
 evaluate_app.command(epilog=_example("escape --quick --json escape.json"))(escape)
 evaluate_app.command(epilog=_example("hand --scenes 5 --json hand.json"))(hand)
+evaluate_app.command(epilog=_example("paths --quick --json paths.json"))(paths)
 evaluate_app.command(epilog=_example("skew --quick --json skew.json"))(skew)
 evaluate_app.command(epilog=_example("cell --quick --json cell.json"))(cell)
 evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

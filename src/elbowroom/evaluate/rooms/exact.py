@@ -8,7 +8,7 @@ before the link's fastest point has covered their distance, so each pair is look
 import heapq
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +48,22 @@ class Contact:
         return self.link is not None
 
 
+class Nearest(NamedTuple):
+    """What of a machine is nearest to anything that it must not touch.
+
+    Args:
+        distance_m: how near, 0 where they meet; at least what was enough where nothing is nearer.
+        link: of the machine; None: nothing was near enough.
+        solid: what it is near to: a solid, or another link.
+        point_in_link: the link's nearest point, in its frame [m].
+    """
+
+    distance_m: float
+    link: str | None = None
+    solid: str | None = None
+    point_in_link: NDArray[np.float64] | None = None
+
+
 class ExactTravel:
     """Distances between a machine's checked links and solids, at one moment of a room.
 
@@ -66,6 +82,9 @@ class ExactTravel:
         self._machine = machine
         self._links = {name: _Body(self._coal, mesh) for name, mesh in _meshes_of(machine).items()}
         self._solids = [_Obstacle(self._coal, solid) for solid in solids if not solid.is_machine]
+        moved = {link for joint in machine.joint_names for link in machine.moved_links(joint)}
+        self._bodies: dict[str, _Body] = {}
+        self._moved = [name for name in self._links if name in moved]
 
     def gap(self, joints: Mapping[str, float], enough_m: float = np.inf) -> float:
         """The least distance of any checked link to any solid [m], 0 where they meet.
@@ -81,6 +100,58 @@ class ExactTravel:
                 if obstacle.at_least(body, placed[name]) < least:
                     least = min(least, self._distance(body, placed[name], obstacle)[0])
         return least
+
+    def nearest(
+        self, joints: Mapping[str, float], pairs: Iterable[tuple[str, str]], enough_m: float = np.inf
+    ) -> Nearest:
+        """What is nearest at one place of the machine: a link that some joint moves and a solid, or two links.
+
+        Args:
+            joints: positions by name [m or rad].
+            pairs: names of links that must not touch.
+            enough_m: a greater distance is not worked out [m].
+        """
+        placed, found = self._machine.world_from_links(joints), Nearest(enough_m)
+        both = [(name, obstacle) for name in self._moved for obstacle in self._solids]
+        both += [(one, _Obstacle.of_link(self._coal, self._body(o), o, placed[o])) for one, o in pairs]
+        near = sorted(
+            ((obstacle.at_least(self._body(name), placed[name]), name, obstacle) for name, obstacle in both),
+            key=lambda each: each[0],
+        )
+        for at_least, name, obstacle in near:
+            if at_least >= found.distance_m:
+                break
+            distance, point = self._distance(self._body(name), placed[name], obstacle)
+            if distance < found.distance_m:
+                here = placed[name]
+                found = Nearest(distance, name, obstacle.name, here[:3, :3].T @ (point - here[:3, 3]))
+        return found
+
+    @property
+    def touchable(self) -> list[tuple[str, str]]:
+        """Links that some joint moves, each with every solid, by their names."""
+        return [(name, obstacle.name) for name in self._moved for obstacle in self._solids]
+
+    def apart(self, joints: Mapping[str, float], link: str, other: str, enough_m: float) -> Nearest:
+        """How far a link is from a solid, or from another link.
+
+        Args:
+            joints: positions by name [m or rad].
+            link, other: their names.
+            enough_m: where it is surely more, no more than a lower bound is worked out [m].
+        """
+        placed = self._machine.world_from_links(joints)
+        body = self._body(link)
+        if other in self._machine.link_names:
+            obstacle = _Obstacle.of_link(self._coal, self._body(other), other, placed[other])
+        else:
+            obstacle = next(solid for solid in self._solids if solid.name == other)
+        at_least = obstacle.at_least(body, placed[link])
+        if at_least >= enough_m:
+            return Nearest(at_least)
+        distance, point = self._distance(body, placed[link], obstacle)
+        here = placed[link]
+        return Nearest(distance, link, other, here[:3, :3].T @ (point - here[:3, 3]))
 
     def gaps(self, joints: Mapping[str, float], joint: str, below_m: float) -> dict[tuple[str, str], float]:
         """Distances of links that a joint moves from solids, by link and solid, those that are small alone [m].
@@ -135,6 +206,13 @@ class ExactTravel:
                 solid = Solid(still, self._links[still].mesh, placed[still])
                 both.append((mover, _Obstacle(self._coal, solid)))
         return self._first(joints, motion, both)
+
+    def _body(self, name: str) -> "_Body":
+        """A link's mesh, of one that is not checked as well: others must not touch it."""
+        if name not in self._bodies:
+            link = self._machine.links[self._machine.link_names.index(name)]
+            self._bodies[name] = self._links.get(name) or _Body(self._coal, Mesh(link.vertices, link.faces))
+        return self._bodies[name]
 
     def _moving(self, motion: Motion) -> list[str]:
         """Checked links that a joint moves."""
@@ -229,6 +307,16 @@ class _Obstacle:
         self.place = coal.Transform3s(pose[:3, :3], pose[:3, 3])
         vertices = solid.vertices_in_world
         self.lower, self.upper = vertices.min(axis=0), vertices.max(axis=0)
+
+    @classmethod
+    def of_link(cls, coal: Any, body: _Body, name: str, pose: NDArray[np.float64]) -> "_Obstacle":
+        """A link as what others must not touch, in the box about its ball."""
+        made = cls.__new__(cls)
+        made.name, made.body = name, body
+        made.place = coal.Transform3s(pose[:3, :3], pose[:3, 3])
+        centre = pose[:3, :3] @ body.centre + pose[:3, 3]
+        made.lower, made.upper = centre - body.radius, centre + body.radius
+        return made
 
     def at_least(self, body: _Body, world_from_link: NDArray[np.float64]) -> float:
         """A lower bound of the distance: from the link's ball to the solid's box [m]."""

@@ -107,6 +107,22 @@ def _own_links() -> None:
     Meeting.of(both, both.world_from_link_array(start[None])[0]).first(way, way.length)
 
 
+def _stops() -> None:
+    from elbowroom.geometry import VoxelGrid, bits
+    from elbowroom.machine import Part
+    from elbowroom.machine.probe import probe
+    from elbowroom.motion import Braking, MachineState, check_stop
+    from elbowroom.reconstruct import FreeSpace
+
+    grid = VoxelGrid((-0.5, -0.5, -0.5), (20, 20, 20), 0.05)
+    both = replace(probe().with_part("base", Part.box("part", (0.1, 0.1, 0.1))), allowed_contacts=())
+    state = MachineState({"slide": 0.0}, {"slide": 0.1})
+    nothing = bits.empty(grid)
+    for free in (nothing, ~nothing):
+        space = FreeSpace(grid, free, nothing, nothing, nothing)
+        check_stop(space, both, state, Braking({"slide": 0.1}, {"slide": 0.1}))
+
+
 def _watch() -> None:
     from elbowroom.monitor.start.warm_up import warm_up_watch
 
@@ -150,6 +166,13 @@ JOBS = (
         ("elbowroom.motion.kernels.meeting", "first_meeting"),
         "motion",
         "the machine's body",
+    ),
+    Job(
+        "stops beside a path",
+        _stops,
+        ("elbowroom.motion.kernels.beside", "pair_in_box"),
+        "motion",
+        "own links",
     ),
     Job(
         "the watch",

@@ -54,9 +54,16 @@ def _cycle(room: Room, separating: Separating | None) -> Cycle | SpaceCycle:
     if separating is None:
         return SpaceCycle(room.grid, room.cameras, room.machine, room.terms)
     machine, motions = room.machine_and_motions()
-    override = room.site.override(machine)
-    look_m = separating.figures.look_m
-    return Cycle(room.grid, room.cameras, machine, motions, room.terms, override=override, look_m=look_m)
+    return Cycle(
+        room.grid,
+        room.cameras,
+        machine,
+        motions,
+        room.terms,
+        override=room.site.override(machine),
+        braking=room.site.braking(machine),
+        look_m=separating.figures.look_m,
+    )
 
 
 def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:

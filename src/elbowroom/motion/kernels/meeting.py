@@ -69,7 +69,7 @@ class Steps(NamedTuple):
 
 
 @njit
-def _gap(pairs, member, other_from_one, fine_below, nearest):
+def gap_of(pairs, member, other_from_one, fine_below, nearest):
     """No more than the distance of a cluster's surface from the other link, and the sample that comes nearest.
 
     Args:
@@ -115,7 +115,7 @@ def gaps_now(pairs, placed, gaps, least):
         if pair != last:
             relate(placed, pairs.sampled[pair], pairs.other[pair], other_from_one)
             last = pair
-        gaps[member] = _gap(pairs, member, other_from_one, pairs.doubt[pair], nearest)
+        gaps[member] = gap_of(pairs, member, other_from_one, pairs.doubt[pair], nearest)
         least[pair] = min(least[pair], gaps[member])
 
 
@@ -178,7 +178,7 @@ def first_meeting(mover, parts, pairs, length, now, steps):
                 if pair != last:
                     relate(placed[0], pairs.sampled[pair], pairs.other[pair], other_from_one)
                     last = pair
-                away = _gap(pairs, member, other_from_one, floors[pair], nearest) - floors[pair]
+                away = gap_of(pairs, member, other_from_one, floors[pair], nearest) - floors[pair]
                 if away <= 0.0:
                     settled[pair], end = True, known
                     if apart[pair] > 0.0:

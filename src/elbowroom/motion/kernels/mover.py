@@ -98,7 +98,7 @@ def bound_speeds(tree, rates, lengths, world_from_link, skin):
                 elif turned:
                     speeds[cluster] += rates[row] * arm
                 else:
-                    distance = _distance_to_axis(world_from_link[row], tree.axis[row], x, y, z)
+                    distance = distance_to_axis(world_from_link[row], tree.axis[row], x, y, z)
                     speeds[cluster] += rates[row] * (distance + size)
                 turned = True
             arm += lengths[row]
@@ -107,7 +107,7 @@ def bound_speeds(tree, rates, lengths, world_from_link, skin):
 
 
 @njit
-def _distance_to_axis(world_from_joint, axis_in_joint, x, y, z):
+def distance_to_axis(world_from_joint, axis_in_joint, x, y, z):
     """Distance of a point from the axis through a joint's frame."""
     a, b, c = carried(world_from_joint, axis_in_joint)
     ox, oy, oz = world_from_joint[0, 3], world_from_joint[1, 3], world_from_joint[2, 3]

@@ -20,11 +20,13 @@ class Told(NamedTuple):
     Args:
         stamps_ns, positions: of each joint, by rising time [ns], [m or rad].
         notes: what was odd.
+        velocities: of each joint at the same times [m/s or rad/s]; NaN where nobody said.
     """
 
     stamps_ns: Mapping[str, NDArray[np.int64]]
     positions: Mapping[str, NDArray[np.float64]]
     notes: Sequence[str]
+    velocities: Mapping[str, NDArray[np.float64]]
 
 
 def told_of(bag: Bag, topics: Sequence[str]) -> Told:
@@ -39,6 +41,7 @@ def told_of(bag: Bag, topics: Sequence[str]) -> Told:
         JointsError: a topic of another type, or two positions of a joint at one time.
     """
     said: dict[str, dict[int, float]] = defaultdict(dict)
+    speeds: dict[str, dict[int, float]] = defaultdict(dict)
     notes: list[str] = []
     for topic in topics:
         if bag.require(topic).type != JOINT_STATE:
@@ -46,16 +49,24 @@ def told_of(bag: Bag, topics: Sequence[str]) -> Told:
         times = stamped(bag, topic)
         notes += times.notes
         for message in times.messages:
-            _take(said, bag, topic, message)
+            _take((said, speeds), bag, topic, message)
     found = {name: sorted(rows.items()) for name, rows in said.items() if rows}
     return Told(
         {name: np.array([at for at, _ in rows], dtype=np.int64) for name, rows in found.items()},
         {name: np.array([value for _, value in rows]) for name, rows in found.items()},
         notes,
+        {name: np.array([speeds[name].get(at, np.nan) for at, _ in rows]) for name, rows in found.items()},
     )
 
 
-def _take(said: Mapping[str, dict[int, float]], bag: Bag, topic: str, message: Stamped) -> None:
+def _take(
+    to: tuple[Mapping[str, dict[int, float]], Mapping[str, dict[int, float]]],
+    bag: Bag,
+    topic: str,
+    message: Stamped,
+) -> None:
+    """Adds the positions and velocities of a message to those that were said."""
+    said, speeds = to
     what = f"{bag.path}: {topic} at {message.stamp_ns} ns"
     state = joint_state_of(bag.read(message.stored), what)
     for name, value in zip(state.names, state.positions, strict=False):
@@ -66,6 +77,9 @@ def _take(said: Mapping[str, dict[int, float]], bag: Bag, topic: str, message: S
             raise JointsError(
                 f"{what}: joint {name} is at {before:g} and at {value:g}; do two publishers name one joint?"
             )
+    for name, value in zip(state.names, state.velocities, strict=False):
+        if np.isfinite(value):
+            speeds[name][message.stamp_ns] = float(value)
 
 
 def record_of(told: Told, names: Sequence[str], max_gap_ns: int) -> JointRecord:
@@ -96,7 +110,12 @@ def record_of(told: Told, names: Sequence[str], max_gap_ns: int) -> JointRecord:
     positions = {
         name: np.interp(times - start, told.stamps_ns[name] - start, told.positions[name]) for name in names
     }
-    return JointRecord(times, positions, max_gap_ns=max_gap_ns)
+    speeds = {
+        name: np.interp(times - start, told.stamps_ns[name] - start, told.velocities[name])
+        for name in names
+        if np.isfinite(told.velocities[name]).all()
+    }
+    return JointRecord(times, positions, max_gap_ns, speeds)
 
 
 def _known(own: NDArray[np.int64], asked: NDArray[np.int64], max_gap_ns: int) -> NDArray[np.bool_]:

@@ -65,11 +65,12 @@ class CameraInfo(NamedTuple):
 
 
 class JointState(NamedTuple):
-    """sensor_msgs/msg/JointState without speeds and efforts; `positions` may be empty."""
+    """sensor_msgs/msg/JointState without efforts; `positions` and `velocities` may be empty."""
 
     header: Header
     names: Sequence[str]
     positions: Array
+    velocities: Array
 
 
 class Transform(NamedTuple):
@@ -141,9 +142,10 @@ def joint_state_of(data: bytes | memoryview, what: str) -> JointState:
         what: names it in errors.
     """
     cdr = Cdr(data, what)
-    found = JointState(_header(cdr), cdr.texts(), cdr.reals())
-    if len(found.positions) not in (0, len(found.names)):
-        raise BagError(f"{what}: {len(found.names)} names of joints and {len(found.positions)} positions")
+    found = JointState(_header(cdr), cdr.texts(), cdr.reals(), cdr.reals())
+    for told, values in (("positions", found.positions), ("velocities", found.velocities)):
+        if len(values) not in (0, len(found.names)):
+            raise BagError(f"{what}: {len(found.names)} names of joints and {len(values)} {told}")
     return found
 
 

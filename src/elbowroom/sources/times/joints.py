@@ -1,7 +1,7 @@
 """Whether a record of joints is one of this machine, in its units, and of the images' time."""
 
 import difflib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -53,13 +53,12 @@ def of_machine(site: Site, machine: Machine, path: Path, record: JointRecord) ->
     if recording.angle_unit == "rad":
         _require_radians(site, path, [machine.joint(name) for name in turning], record)
     in_radians = np.radians if recording.angle_unit == "deg" else np.asarray
-    return replace(
-        record,
-        positions={
-            name: in_radians(record.positions[name]) if name in turning else record.positions[name]
-            for name in machine.joint_names
-        },
-    )
+
+    def own(told: Mapping[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
+        names = [name for name in machine.joint_names if name in told]
+        return {name: in_radians(told[name]) if name in turning else told[name] for name in names}
+
+    return replace(record, positions=own(record.positions), velocities=own(record.velocities))
 
 
 def _require_radians(site: Site, path: Path, joints: Sequence[Joint], record: JointRecord) -> None:

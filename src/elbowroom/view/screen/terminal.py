@@ -218,6 +218,8 @@ class TerminalView:
         text.append(f"{log.recent(log.cycle_ms):.0f} ms", "bold")
         text.append(f" = {stages}", "dim")
         judged = counts_text(levels) or "no motion is judged"
+        if levels:
+            judged += f", safe speed {100 * result.safe_speed:.0f} %"
         text.append(f"\n{result.stamp_ns / 1e9:.1f} s, cycle {result.sequence + 1}: {judged}")
         text.append(
             f"  ({self.watched.source} apart: {log.recent(log.source_ms):.0f} ms; Ctrl-C ends)", "dim"
@@ -273,6 +275,9 @@ def _stops(result: CycleResult) -> list[str]:
     lines = [f"Stop: {reason}. Stays until the monitor is started again." for reason in found]
     lines += [f"Stop: {finding.text}" for finding in result.findings if finding.stops]
     lines += [f"Stop: {text}" for text in (result.late, result.blind) if text is not None]
+    if result.stopping is not None and result.stopping.first is not None:
+        first = result.stopping.first
+        lines.append(f"Stop: as fast as it is, it does not rest before {first.cause.value} ({first.link})")
     return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
 
 
