@@ -49,7 +49,7 @@ class CycleResult:
         return replace(
             self,
             # free space that comes from a camera that is elsewhere is no free space
-            verdicts=tuple(v if cause is None else _stopped(v, cause) for v in self.verdicts),
+            verdicts=tuple(v if cause is None else stopped(v, cause) for v in self.verdicts),
             stage_ms={**known.stage_ms, **self.stage_ms},
             fault=self.fault or known.fault,
             health=known.health,
@@ -82,7 +82,7 @@ class CycleResult:
         )
 
 
-def _stopped(verdict: Verdict, cause: Cause) -> Verdict:
+def stopped(verdict: Verdict, cause: Cause) -> Verdict:
     """Stop for the same motion; a fault stays one, and so does what is too old."""
     if verdict.cause in (Cause.FAULT, Cause.STALE):
         return verdict

@@ -12,6 +12,7 @@ from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, PEOPLE_SPEED_M_S, WITNES
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text, Whole
+from elbowroom.site.black_box_entry import BlackBoxEntry
 from elbowroom.site.gate_entry import GateEntry
 from elbowroom.site.machine_entry import JointEntry, MachineEntry, MemberEntry, OverrideEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory
@@ -139,6 +140,7 @@ class SiteEntry(Entry):
     placement: PlacementEntry | None = None
     watch: WatchEntry | None = None
     gate: GateEntry | None = None
+    black_box: BlackBoxEntry | None = None
     calibration: CalibrationEntry | None = None
 
     @property
