@@ -147,6 +147,7 @@ def numbers(found: Why) -> list[str]:
 
 
 def sentence(words: str) -> str:
+    """The words as a sentence."""
     return f"{words[0].upper()}{words[1:]}."
 
 

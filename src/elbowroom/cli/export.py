@@ -13,7 +13,8 @@ def export(
     file: RecordingPath,
     out: Annotated[Path, typer.Argument(metavar="DIR", help="A folder for the images.")],
     unit: Annotated[
-        float, typer.Option("--unit", min=1e-6, max=0.01, help="Metres per unit of images that are not in units.")
+        float,
+        typer.Option("--unit", min=1e-6, max=0.01, help="Metres per unit of images that are not in units."),
     ] = 0.0002,
     json: JsonFile = None,
 ) -> None:

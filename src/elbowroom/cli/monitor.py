@@ -53,7 +53,8 @@ GateFolder = Annotated[
 RecordFile = Annotated[
     Path | None,
     typer.Option(
-        metavar="FILE", help="Keep all that comes in and all that is decided in this MCAP file (elbowroom replay)."
+        metavar="FILE",
+        help="Keep all that comes in and all that is decided in this MCAP file (elbowroom replay).",
     ),
 ]
 BlackBoxFolder = Annotated[

@@ -109,12 +109,15 @@ def _bar(size: int) -> Iterator[Any]:
     console = Console(stderr=True)
     with Steps(console, 1) as steps:
         steps.begin("comparing every byte with its sum")
-        yield lambda done: steps.counted(done // 1_000_000, size // 1_000_000) if console.is_terminal else None
+        yield (
+            lambda done: steps.counted(done // 1_000_000, size // 1_000_000) if console.is_terminal else None
+        )
 
 
 def _told(configuration: Configuration, recording: Recording) -> Iterator[str]:
     told = configuration.told
-    yield f"{told.get('site')}: {len(recording)} cycles, {len(configuration.cameras)} cameras, site file {str(told.get('site_sha256'))[:16]}"
+    cameras, text = len(configuration.cameras), str(told.get("site_sha256"))[:16]
+    yield f"{told.get('site')}: {len(recording)} cycles, {cameras} cameras, site file {text}"
     versions = told.get("versions") or {}
     yield f"recorded by elbowroom {versions.get('elbowroom')} ({told.get('commit')}) on {told.get('processor')}"
 
@@ -122,7 +125,10 @@ def _told(configuration: Configuration, recording: Recording) -> Iterator[str]:
 def _compile(configuration: Configuration) -> None:
     console = Console(stderr=True)
     compile_kernels(
-        console, machine=configuration.machine is not None, motion=bool(configuration.motions), simulator=False
+        console,
+        machine=configuration.machine is not None,
+        motion=bool(configuration.motions),
+        simulator=False,
     )
 
 

@@ -9,10 +9,10 @@ from elbowroom.choices import Detail, Rule
 from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, PEOPLE_SPEED_M_S, WITNESS_ANGLE_DEG, require_speed
+from elbowroom.site.black_box_entry import BlackBoxEntry
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text, Whole
-from elbowroom.site.black_box_entry import BlackBoxEntry
 from elbowroom.site.gate_entry import GateEntry
 from elbowroom.site.machine_entry import JointEntry, MachineEntry, MemberEntry, OverrideEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory

@@ -2,7 +2,7 @@
 
 from elbowroom.errors import BagError
 from elbowroom.wire.cdr_writer import HEAD
-from elbowroom.wire.ros_messages import DEPTH_FORMAT
+from elbowroom.wire.ros_messages import PLANAR, RADIAL
 
 LONGEST = 4096
 """No name has more letters [bytes]."""
@@ -21,10 +21,10 @@ def packed_image_of(message: bytes | memoryview, what: str) -> memoryview:
     view, at = memoryview(message), len(HEAD) + 8
     if bytes(view[: len(HEAD)]) != HEAD:
         raise BagError(f"{what}: no message of a depth image")
-    for name in (None, DEPTH_FORMAT.encode() + b"\x00"):
+    for is_format in (False, True):
         length = int.from_bytes(view[at : at + 4], "little")
         text = bytes(view[at + 4 : at + 4 + min(length, LONGEST)])
-        if name is not None and text != name:
+        if is_format and text not in (PLANAR.encode() + b"\x00", RADIAL.encode() + b"\x00"):
             raise BagError(f"{what}: no depth image of a recording")
         at += 4 + length
         at += -(at - len(HEAD)) % 4

@@ -4,8 +4,8 @@ A link is a metadata record of MCAP named `elbowroom.chain`, whose last 64 bytes
 
     sum = sha256(sum of the link before + all bytes from the end of that link to the beginning of this sum)
 
-in hexadecimal. So a link speaks of every byte before it, its own beginning too; the first one, of all from byte 0 on. It is
-no signature: who can write the file can write another one, with another last sum.
+in hexadecimal. So a link speaks of every byte before it, its own beginning too; the first one, of all from byte 0 on.
+It is no signature: who can write the file can write another one, with another last sum.
 """
 
 import hashlib

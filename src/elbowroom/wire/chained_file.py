@@ -1,7 +1,7 @@
 """A chained MCAP file, read record by record from its beginning, so that one that was cut off opens up to the cut.
 
-Nothing is believed that a link of the chain does not follow, and the summary at the end is not used: it is made again, and
-compared. What is held of a step is where it lies, so memory stays below what the file has.
+Nothing is believed that a link of the chain does not follow, and the summary at the end is not used: it is made again,
+and compared. What is held of a step is where it lies, so memory stays below what the file has.
 """
 
 import os
@@ -15,7 +15,7 @@ from typing import NamedTuple, Self
 from elbowroom.errors import BagError
 from elbowroom.wire import mcap_records as records
 from elbowroom.wire.chain import LENGTH, LINK, Chain
-from elbowroom.wire.mcap_records import ChunkPlace
+from elbowroom.wire.mcap_records import AttachmentPlace, ChunkPlace
 from elbowroom.wire.mcap_tail import Tail
 from elbowroom.wire.mcap_writer import LIBRARY
 
@@ -77,8 +77,9 @@ class ChainedFile:
         self.note: str | None = None
         self.linked = 0
         """Up to here links speak of it [bytes]."""
-        self._chunks, self._sizes, self._topics = array("Q"), array("Q"), dict[int, str]()
-        self._attached: list[tuple[int, int]] = []
+        self._chunks, self._sizes, self._ends = array("Q"), array("Q"), array("Q")
+        self._topics: dict[int, str] = {}
+        self._attached: list[Record] = []
         self._end: int | None = None
         self._looked = 0
         try:
@@ -139,15 +140,10 @@ class ChainedFile:
         Raises:
             BagError: it is damaged.
         """
-        for begin, size in self._attached:
-            found, at = self._text(begin + 16, begin + size)
-            if found != name:
-                continue
-            _, at = self._text(at, begin + size)
-            (length,) = struct.unpack("<Q", self._exactly(at, 8))
-            if at + 8 + length + 4 != begin + size:
-                raise self._damaged(begin)
-            return self._exactly(at + 8, length)
+        for record in self._attached:
+            place = self._attachment(record)
+            if place.name == name:
+                return self._exactly(record.end - 4 - place.size, place.size)
         return None
 
     def wrong(self, tell: Callable[[int], None] = lambda done: None) -> str | None:
@@ -164,6 +160,11 @@ class ChainedFile:
             return str(error)
 
     @property
+    def ends(self) -> tuple[int, ...]:
+        """Where each step ends with its link [bytes]."""
+        return tuple(self._ends)
+
+    @property
     def sum(self) -> str:
         """Of the last link; empty: there is none."""
         return self._at(self.linked - LENGTH, LENGTH).decode("ascii", "replace") if self.linked else ""
@@ -171,23 +172,26 @@ class ChainedFile:
     def _look_through(self) -> None:
         begin = self._at(0, len(HEAD))
         if begin != HEAD[: len(begin)]:
-            raise BagError(f"{self.path}: not a recording of `elbowroom monitor`, or damaged in its first bytes")
+            raise BagError(
+                f"{self.path}: not a recording of `elbowroom monitor`, or damaged in its first bytes"
+            )
         if len(begin) < len(HEAD):
             self.note = self._cut(0)
             return
         chunk: Record | None = None
-        attached: list[tuple[int, int]] = []
+        attached: list[Record] = []
         for record in self._records(len(HEAD)):
             if record.kind == records.CHUNK and chunk is None and self.linked:
                 chunk = record
             elif record.kind == records.ATTACHMENT and not self.linked:
-                attached.append((record.begin, record.size))
+                attached.append(record)
             elif self._is_link(record):
                 self.linked = record.end
                 self._attached, attached = self._attached + attached, []
                 if chunk is not None:
                     self._chunks.append(chunk.begin)
                     self._sizes.append(chunk.size)
+                    self._ends.append(record.end)
                 chunk = None
             elif record.kind == records.DATA_END and record.at == self.linked:
                 self._end = record.at
@@ -213,7 +217,7 @@ class ChainedFile:
             elif record.kind == records.MESSAGE_INDEX:
                 indexes.append(record)
             elif record.kind == records.ATTACHMENT:
-                tail.attachments += 1
+                tail.attachments.append(self._attachment(record))
             elif self._is_link(record):
                 self._take(chain, begin, record.end - LENGTH, tell)
                 if chain.close().encode() != self._at(record.end - LENGTH, LENGTH):
@@ -245,6 +249,15 @@ class ChainedFile:
         places = {int.from_bytes(self._exactly(one.begin, 2), "little"): one.at for one in indexes}
         length = sum(one.end - one.at for one in indexes)
         tail.add(ChunkPlace(first, last, chunk.at, chunk.end - chunk.at, places, length, size), counts)
+
+    def _attachment(self, record: Record) -> AttachmentPlace:
+        """What a file within the file says of itself."""
+        name, at = self._text(record.begin + 16, record.end)
+        media_type, at = self._text(at, record.end)
+        (size,) = struct.unpack("<Q", self._exactly(at, 8))
+        if at + 8 + size + 4 != record.end:
+            raise self._damaged(record.at)
+        return AttachmentPlace(record.at, record.end - record.at, size, name, media_type)
 
     def _wrong_tail(self, tail: Tail) -> str | None:
         """What is wrong with the end of the file, of which no link speaks."""
@@ -336,4 +349,4 @@ class ChainedFile:
 
     def _at(self, at: int, size: int) -> bytes:
         self._file.seek(at)
-        return self._file.read(size)
+        return self._file.read(min(size, max(self.length - at, 0)))

@@ -167,7 +167,11 @@ def warm_up() -> None:
     Raises:
         PackageError: zstandard is not installed.
     """
-    for image in (np.zeros((1, 1), np.float32), np.full((1, 1), 0.0301, np.float32), np.full((8, 8), 30, np.float32)):
+    for image in (
+        np.zeros((1, 1), np.float32),
+        np.full((1, 1), 0.0301, np.float32),
+        np.full((8, 8), 30, np.float32),
+    ):
         image.setflags(write=False)
         for units in (Units(0.001), None):
             pack_depth(image, units)

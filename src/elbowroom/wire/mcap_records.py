@@ -7,7 +7,7 @@ from typing import NamedTuple
 MAGIC = b"\x89MCAP0\r\n"
 RECORD = struct.Struct("<BQ")
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)
-ATTACHMENT, STATISTICS, METADATA, SUMMARY_OFFSET, DATA_END = 9, 11, 12, 14, 15
+ATTACHMENT, ATTACHMENT_INDEX, STATISTICS, METADATA, SUMMARY_OFFSET, DATA_END = 9, 10, 11, 12, 14, 15
 MESSAGE_HEAD = struct.Struct("<HIQQ")
 CHUNK_HEAD = struct.Struct("<QQQIIQ")
 """Of a chunk that is not compressed: first and last time, size, check sum (0: none), an empty name, size again."""
@@ -47,6 +47,22 @@ class ChunkPlace(NamedTuple):
     indexes: Mapping[int, int]
     indexes_length: int
     size: int
+
+
+class AttachmentPlace(NamedTuple):
+    """Where a file within the file lies, for the index at the end.
+
+    Args:
+        begin, length: of its record in the file [bytes].
+        size: of its content [bytes].
+        name, media_type: of it.
+    """
+
+    begin: int
+    length: int
+    size: int
+    name: str
+    media_type: str
 
 
 def record(kind: int, *pieces: bytes) -> bytes:
@@ -97,9 +113,7 @@ def channel(number: int, schema_number: int, topic: str) -> bytes:
         schema_number: of its type.
         topic: its name.
     """
-    return record(
-        CHANNEL, struct.pack("<HH", number, schema_number), text(topic), text("cdr"), text_map({})
-    )
+    return record(CHANNEL, struct.pack("<HH", number, schema_number), text(topic), text("cdr"), text_map({}))
 
 
 def message(told: Message) -> bytes:
@@ -159,6 +173,16 @@ def attachment(name: str, media_type: str, data: bytes) -> bytes:
         struct.pack("<Q", len(data)),
         data,
         struct.pack("<I", 0),
+    )
+
+
+def attachment_index(place: AttachmentPlace) -> bytes:
+    """Where a file within the file lies."""
+    return record(
+        ATTACHMENT_INDEX,
+        struct.pack("<QQQQQ", place.begin, place.length, 0, 0, place.size),
+        text(place.name),
+        text(place.media_type),
     )
 
 

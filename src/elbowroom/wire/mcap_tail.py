@@ -1,11 +1,11 @@
-"""The end of an MCAP file: a summary by which others find messages. It follows from what goes before it, byte for byte."""
+"""The end of an MCAP file: a summary by which others find messages. All of it follows from what goes before it."""
 
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from elbowroom.wire import mcap_records as records
-from elbowroom.wire.mcap_records import ChunkPlace
+from elbowroom.wire.mcap_records import AttachmentPlace, ChunkPlace
 
 FOOTER_SIZE = 9 + 20
 
@@ -17,11 +17,13 @@ class Tail:
     Args:
         schemas: records of schemas, in their order.
         channels: records of channels, in their order.
+        attachments: where files within the file lie.
+        metadata: how many records of words there are.
     """
 
     schemas: list[bytes] = field(default_factory=list)
     channels: list[bytes] = field(default_factory=list)
-    attachments: int = 0
+    attachments: list[AttachmentPlace] = field(default_factory=list)
     metadata: int = 0
     _chunks: bytearray = field(default_factory=bytearray)
     _many: int = 0
@@ -55,12 +57,15 @@ class Tail:
             (records.CHANNEL, b"".join(self.channels)),
             (records.STATISTICS, self._statistics()),
             (records.CHUNK_INDEX, bytes(self._chunks)),
+            (records.ATTACHMENT_INDEX, b"".join(map(records.attachment_index, self.attachments))),
         )
         start = at = begin + len(end_of_data)
         offsets = []
         for kind, content in groups:
             if content:
-                offsets.append(records.record(records.SUMMARY_OFFSET, struct.pack("<BQQ", kind, at, len(content))))
+                offsets.append(
+                    records.record(records.SUMMARY_OFFSET, struct.pack("<BQQ", kind, at, len(content)))
+                )
             at += len(content)
         footer = records.record(records.FOOTER, struct.pack("<QQI", start, at, 0))
         summary = b"".join(content for _, content in groups)
@@ -75,7 +80,7 @@ class Tail:
                 sum(self._messages.values()),
                 len(self.schemas),
                 len(self.channels),
-                self.attachments,
+                len(self.attachments),
                 self.metadata,
                 self._many,
                 self._first_ns or 0,

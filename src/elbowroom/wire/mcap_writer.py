@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from elbowroom.wire import mcap_records as records
 from elbowroom.wire.chain import Chain
-from elbowroom.wire.mcap_records import ChunkPlace, Message
+from elbowroom.wire.mcap_records import AttachmentPlace, ChunkPlace, Message
 from elbowroom.wire.mcap_tail import Tail
 from elbowroom.wire.ros_schemas import SCHEMAS
 
@@ -64,8 +64,12 @@ class McapWriter:
         self._file = path.open("xb", buffering=0)
         try:
             head = [records.MAGIC, records.header(LIBRARY)]
-            head += [records.attachment(*file) for file in attached]
-            self._tail.attachments = len(attached)
+            at = sum(map(len, head))
+            for file in attached:
+                head.append(records.attachment(*file))
+                place = AttachmentPlace(at, len(head[-1]), len(file.data), file.name, file.media_type)
+                self._tail.attachments.append(place)
+                at += len(head[-1])
             self._write(head)
         except BaseException:
             self._file.close()
@@ -126,9 +130,7 @@ class McapWriter:
         for told in messages:
             if told.topic not in self._channels:
                 new += self._added(told)
-            numbered.append(
-                Message(self._channels[told.topic], told.number % (1 << 32), time_ns, told.data)
-            )
+            numbered.append(Message(self._channels[told.topic], told.number % (1 << 32), time_ns, told.data))
         return new, numbered
 
     def _added(self, told: Told) -> list[bytes]:

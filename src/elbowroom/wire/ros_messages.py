@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 from elbowroom.wire.cdr_writer import CdrWriter
 
-DEPTH_FORMAT = "32FC1; elbowroom"
-"""Of a compressed image whose data is a depth image packed by `depth_codec`: metres when it is unpacked."""
+PLANAR, RADIAL = "32FC1; elbowroom", "32FC1; elbowroom radial"
+"""Formats of a compressed image whose data is a depth image packed by `depth_codec`: metres when it is unpacked, along
+the optical axis, or from the camera's centre."""
 OK, WARN, ERROR = 0, 1, 2
 """Levels of a status."""
 LOG_WARN, LOG_ERROR = 30, 40
@@ -56,15 +57,22 @@ class Status(NamedTuple):
     values: Mapping[str, str]
 
 
-def depth_message(stamp_ns: int | None, camera: str, packed: bytes) -> bytes:
+def optical_frame(camera: str) -> str:
+    """Name of the frame in whose axes a camera's images are: x right, y down, z forward."""
+    return f"{camera}_optical"
+
+
+def depth_message(stamp_ns: int | None, camera: str, packed: bytes, is_radial: bool = False) -> bytes:
     """sensor_msgs/msg/CompressedImage of a packed depth image.
 
     Args:
         stamp_ns: of its exposure [ns]; None: unknown.
-        camera: its frame.
+        camera: its name.
         packed: as `pack_depth` gave it.
+        is_radial: whether depth is the distance from the camera's centre.
     """
-    return CdrWriter().header(stamp_ns, camera).text(DEPTH_FORMAT).octets(packed).done()
+    told = CdrWriter().header(stamp_ns, optical_frame(camera)).text(RADIAL if is_radial else PLANAR)
+    return told.octets(packed).done()
 
 
 def camera_info_message(stamp_ns: int | None, camera: str, lens: Lens) -> bytes:
@@ -72,12 +80,18 @@ def camera_info_message(stamp_ns: int | None, camera: str, lens: Lens) -> bytes:
 
     Args:
         stamp_ns: [ns].
-        camera: its frame.
+        camera: its name.
         lens: of the camera.
     """
     fx, fy, cx, cy = lens.pinhole
     model = "rational_polynomial" if len(lens.distortion) == 8 else "plumb_bob"
-    told = CdrWriter().header(stamp_ns, camera).whole(lens.size[1]).whole(lens.size[0]).text(model)
+    told = (
+        CdrWriter()
+        .header(stamp_ns, optical_frame(camera))
+        .whole(lens.size[1])
+        .whole(lens.size[0])
+        .text(model)
+    )
     told.reals(lens.distortion or (0.0,) * 5)
     told.reals((fx, 0, cx, 0, fy, cy, 0, 0, 1), counted=False)
     told.reals((1, 0, 0, 0, 1, 0, 0, 0, 1), counted=False)

@@ -10,10 +10,10 @@ from elbowroom.cli.options import JsonFile
 
 def bench(
     what: Annotated[
-        Literal["cycle", "start", "machine", "calibration"],
+        Literal["cycle", "start", "machine", "record", "calibration"],
         typer.Argument(
             help="cycle: carve and whole cycles; start: a new process to its first answer; "
-            "machine: what triangles cost; calibration: how well cameras are found."
+            "machine: what triangles cost; record: whether recording keeps up; calibration: how well cameras are found."
         ),
     ] = "cycle",
     quick: Annotated[bool, typer.Option(help="Few rounds: a first impression in under a minute.")] = False,
@@ -27,6 +27,9 @@ def bench(
             metavar="DIR", help="start: src of another checkout, measured in turns with this package."
         ),
     ] = None,
+    seconds: Annotated[
+        float, typer.Option(min=1, help="record: how long each run is; some 50 MB of disk a second.")
+    ] = 60.0,
     captures: Annotated[
         Path | None,
         typer.Option(
@@ -48,7 +51,7 @@ def bench(
     ] = None,
     json: JsonFile = None,
 ) -> None:
-    """Measure carve and whole cycles in the simulated room, each in its own process; or start, machine, calibration."""
+    """Measure carve and whole cycles in the simulated room, each in its own process; or what else is named."""
     if what == "calibration":
         from elbowroom.cli.evaluate.bench_calibration_run import run_bench_calibration
 
@@ -57,6 +60,10 @@ def bench(
         from elbowroom.cli.evaluate.bench_run import run_bench_start
 
         run_bench_start(quick, against, json)
+    elif what == "record":
+        from elbowroom.cli.evaluate.bench_run import run_bench_record
+
+        run_bench_record(quick, cameras, size, seconds, json)
     elif what == "machine":
         from elbowroom.cli.evaluate.bench_run import run_bench_machine
 

@@ -96,9 +96,11 @@ class Keeping:
 
     Args:
         units: by camera, what its whole numbers stand for.
+        radial: names of cameras whose depth is the distance from their centre.
     """
 
     units: Mapping[str, Units]
+    radial: frozenset[str] = frozenset()
     _frames: dict[str, tuple[DepthFrame, KeptFrame]] = field(default_factory=dict, init=False)
 
     def of(self, moment: Moment, stops: Sequence[str]) -> KeptPass:
@@ -129,7 +131,13 @@ class Keeping:
             log = ros_messages.log_message(time_ns, ros_messages.LOG_ERROR, stop)
             messages.append(Told(STOPS, ros_schemas.LOG, log, number))
         return KeptPass(
-            number, moment.heard_ns, moment.wall_ns, time_ns, frames, messages=tuple(messages), stops=tuple(stops)
+            number,
+            moment.heard_ns,
+            moment.wall_ns,
+            time_ns,
+            frames,
+            messages=tuple(messages),
+            stops=tuple(stops),
         )
 
     def _frame(self, frame: DepthFrame) -> KeptFrame:
@@ -139,7 +147,8 @@ class Keeping:
             return made
         packed = pack_depth(frame.depth_m, self.units.get(frame.camera))
         number = 1 if made is None else made.number + 1
-        data = ros_messages.depth_message(frame.stamp_ns, frame.camera, packed)
+        is_radial = frame.camera in self.radial
+        data = ros_messages.depth_message(frame.stamp_ns, frame.camera, packed, is_radial)
         told = Told(depth_topic(frame.camera), ros_schemas.COMPRESSED_IMAGE, data, number)
         self._frames[frame.camera] = frame, KeptFrame(frame.camera, number, told)
         return self._frames[frame.camera][1]
@@ -217,7 +226,8 @@ def placed_in_world(camera: DepthCamera) -> Placed:
     from scipy.spatial.transform import Rotation
 
     rotation = Rotation.from_matrix(camera.world_from_camera[:3, :3]).as_quat()
-    return Placed(WORLD, camera.name, camera.world_from_camera[:3, 3].tolist(), rotation.tolist())
+    place = camera.world_from_camera[:3, 3]
+    return Placed(WORLD, ros_messages.optical_frame(camera.name), place.tolist(), rotation.tolist())
 
 
 def still_messages(cameras: Sequence[DepthCamera]) -> list[Told]:

@@ -54,7 +54,9 @@ KINDS = {
     )
 }
 """What is read back."""
-ARRAYS = {name: np.dtype(name) for name in ("<f8", "<f4", "<i8", "<i4", "|i1", "|u1", "|b1", "<u2", "<u4", "<u8")}
+ARRAYS = {
+    name: np.dtype(name) for name in ("<f8", "<f4", "<i8", "<i4", "|i1", "|u1", "|b1", "<u2", "<u4", "<u8")
+}
 """Types of numbers that arrays may have."""
 
 
@@ -101,7 +103,15 @@ def read(text: str | bytes, what: str) -> Any:
     """
     try:
         return made(json.loads(text))
-    except (ElbowroomError, ValueError, TypeError, KeyError, AttributeError, RecursionError, OverflowError) as error:
+    except (
+        ElbowroomError,
+        ValueError,
+        TypeError,
+        KeyError,
+        AttributeError,
+        RecursionError,
+        OverflowError,
+    ) as error:
         raise BagError(f"{what}: malformed ({type(error).__name__}: {error})") from None
 
 

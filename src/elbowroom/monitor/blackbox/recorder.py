@@ -5,6 +5,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from elbowroom.errors import InputError
@@ -67,7 +68,9 @@ class Recorder:
             InputError: a file cannot be written.
         """
         site, names = room.site, [camera.name for camera in room.cameras]
-        self._keeping = Keeping({n: Units(site.depth_scale_m(n), site.depth_bias_m(n)) for n in names})
+        units = {name: Units(site.depth_scale_m(name), site.depth_bias_m(name)) for name in names}
+        radial = frozenset(camera.name for camera in room.cameras if camera.depth_kind == "radial")
+        self._keeping = Keeping(units, radial)
         head = Head(Configuration.of(room).attached(), still_messages(room.cameras))
         for sink in self.sinks:
             try:
@@ -133,13 +136,13 @@ class Recorder:
             is_idle = moment is None and not is_done
             self.busy_ns = time.thread_time_ns()
         for sink in self.sinks:
-            self._guarded(lambda _, sink=sink: sink.end(), None)
+            self._guarded(partial(_end, sink), None)
         self.busy_ns = time.thread_time_ns()
 
     def _take(self, moment: Moment | None) -> bool:
         """Keeps a pass; without one, does a little of what is left to do. Whether something was done."""
         if moment is None:
-            return any([sink.work() for sink in self.sinks])
+            return sum(sink.work() for sink in self.sinks) > 0  # each of them
         kept = self._keeping.of(moment, self._stops.hear(moment.done))
         for sink in self.sinks:
             sink.take(kept)
@@ -167,6 +170,10 @@ class Recorder:
             moment, size = self._queue.popleft()
             self._bytes -= size
             return moment
+
+
+def _end(sink: Sink, _: Moment | None) -> None:
+    sink.end()
 
 
 def require_new(path: Path) -> Path:

@@ -80,6 +80,11 @@ class Recording:
         return self._file.note
 
     @property
+    def ends(self) -> tuple[int, ...]:
+        """Where each pass ends in the file [bytes]."""
+        return self._file.ends
+
+    @property
     def sum(self) -> str:
         """Of all of it."""
         return self._file.sum

@@ -29,7 +29,9 @@ def _faults(done: Pass) -> frozenset[str]:
     """Why all is stop, whatever the space is."""
     if done.decision is not None:
         return frozenset(fault.sentence for fault in (*done.decision.latched, *done.decision.active))
-    return frozenset() if done.result.stopped_by is None else frozenset((done.result.stopped_by.split(":")[0],))
+    return (
+        frozenset() if done.result.stopped_by is None else frozenset((done.result.stopped_by.split(":")[0],))
+    )
 
 
 def _stopped(done: Pass) -> frozenset[str]:

@@ -1,7 +1,8 @@
 """Depth images as small numbers and back, bit for bit: units, differences along the row, most of them in half a byte.
 
-A difference is written as its zigzag (0, -1, 1, -2, ... as 0, 1, 2, 3, ...). Those below the greatest number of a *code*
-(15 in half a byte, 255 in a byte) are the code; of others the code is that greatest number, and they follow apart, in order.
+A difference is written as its zigzag (0, -1, 1, -2, ... as 0, 1, 2, 3, ...). Those below the greatest number of a
+*code* (15 in half a byte, 255 in a byte) are the code; of others the code is that greatest number, and they follow
+apart, in their order.
 """
 
 import numpy as np
