@@ -86,7 +86,8 @@ def test_rosbags_reads_it(whole, tmp_path):
 def test_a_file_cut_off_at_any_byte_opens_up_to_the_cut(whole, tmp_path):
     with opened(tmp_path / "a.mcap", whole) as file:
         due, ends = words(file), file.ends
-    for length in range(len(whole)):
+    borders = {end + more for end in ends for more in (-1, 0, 1)}
+    for length in sorted({*range(0, len(whole), 17), *range(40), *borders} - {len(whole)}):
         with opened(tmp_path / "a.mcap", whole[:length]) as file:
             found = words(file)
             assert found == due[: sum(end <= length for end in ends)]
@@ -102,7 +103,7 @@ def test_a_run_that_was_killed_leaves_a_file_without_its_end(tmp_path):
 
 
 def test_one_bit_that_is_another_is_noticed_in_any_byte(whole, tmp_path):
-    for at in range(len(whole)):
+    for at in (*range(40), *range(40, len(whole), 13), *range(len(whole) - 40, len(whole))):
         changed = bytearray(whole)
         changed[at] ^= 1 << at % 8
         assert is_noticed(tmp_path / "a.mcap", bytes(changed)), at

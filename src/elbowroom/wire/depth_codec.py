@@ -84,18 +84,12 @@ def pack_depth(depth_m: NDArray[np.float32], units: Units | None) -> bytes:
     """
     height, width = depth_m.shape
     flat = depth_m.reshape(-1)
-    numbers = None if units is None else _in_units(flat, units)
-    if numbers is None or units is None:
+    found = None if units is None else _in_units(flat, units)
+    if found is None or units is None:
         head = HEAD.pack(MAGIC, FLOATS, width, height, 0, 0.0, 0.0)
         return head + _compressed(_float_bytes(flat))
-    zigzag = np.empty_like(numbers)
-    kernels.differences(numbers, zigzag)
-    apart = numbers  # not needed any more
-    is_half = kernels.many_above(zigzag, kernels.HALF) < HALVES_BELOW * zigzag.size / 8
-    codes = np.empty((zigzag.size + 1) // 2 if is_half else zigzag.size, np.uint8)
-    many = kernels.to_halves(zigzag, codes, apart) if is_half else kernels.to_bytes(zigzag, codes, apart)
-    head = HEAD.pack(MAGIC, HALVES if is_half else BYTES, width, height, many, units.scale_m, units.bias_m)
-    return head + _compressed(np.concatenate([codes, _planes(apart[:many])]))
+    kind, many, content = found
+    return HEAD.pack(MAGIC, kind, width, height, many, units.scale_m, units.bias_m) + _compressed(content)
 
 
 def head_of(data: bytes | memoryview, what: str) -> Packed:
@@ -177,13 +171,28 @@ def warm_up() -> None:
             pack_depth(image, units)
 
 
-def _in_units(flat: NDArray[np.float32], units: Units) -> NDArray[np.uint16] | None:
-    """The image in whole units; None: it is not made of them."""
+def _in_units(flat: NDArray[np.float32], units: Units) -> tuple[int, int, NDArray[np.uint8]] | None:
+    """Kind, how many numbers follow apart, and what is compressed; None: the image is not made of units."""
     scale, bias = np.float32(units.scale_m), np.float32(units.bias_m)
     if not (np.isfinite(scale) and scale > 0 and np.isfinite(bias)):
         return None
-    numbers = np.empty(flat.size, np.uint16)
-    return numbers if kernels.to_units(flat, flat.view(np.int32), scale, bias, numbers) else None
+    is_half = bool(kernels.steps_above(flat, scale, kernels.HALF) < HALVES_BELOW * flat.size / kernels.SAMPLED)
+    content, apart = _scratch(flat.size)
+    length = (flat.size + 1) // 2 if is_half else flat.size
+    many = kernels.pack_units(flat, flat.view(np.int32), scale, bias, is_half, content[:length], apart)
+    if many < 0:
+        return None
+    content[length : length + many] = apart[:many] & 255
+    content[length + many : length + 2 * many] = apart[:many] >> 8
+    return HALVES if is_half else BYTES, many, content[: length + 2 * many]
+
+
+def _scratch(pixels: int) -> tuple[NDArray[np.uint8], NDArray[np.uint16]]:
+    """Memory of this thread's own for what is compressed, and for numbers that follow apart."""
+    kept: tuple[NDArray[np.uint8], NDArray[np.uint16]] | None = getattr(_own, "scratch", None)
+    if kept is None or len(kept[1]) != pixels:
+        kept = _own.scratch = np.empty(3 * pixels, np.uint8), np.empty(pixels, np.uint16)
+    return kept
 
 
 def _float_bytes(flat: NDArray[np.float32]) -> NDArray[np.uint8]:

@@ -116,10 +116,10 @@ def channel(number: int, schema_number: int, topic: str) -> bytes:
     return record(CHANNEL, struct.pack("<HH", number, schema_number), text(topic), text("cdr"), text_map({}))
 
 
-def message(told: Message) -> bytes:
-    """A message."""
+def message_head(told: Message) -> bytes:
+    """The beginning of a message; its data follows."""
     head = MESSAGE_HEAD.pack(told.channel, told.sequence, told.time_ns, told.time_ns)
-    return RECORD.pack(MESSAGE, len(head) + len(told.data)) + head + told.data
+    return RECORD.pack(MESSAGE, len(head) + len(told.data)) + head
 
 
 def chunk_head(size: int, first_ns: int, last_ns: int) -> bytes:

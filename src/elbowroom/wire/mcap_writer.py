@@ -90,10 +90,10 @@ class McapWriter:
         new, numbered = self._numbered(messages, max(time_ns, 0))
         pieces, index, size = list(new), dict[int, list[tuple[int, int]]](), sum(map(len, new))
         for one in numbered:
-            written = records.message(one)
+            head_of_one = records.message_head(one)
             index.setdefault(one.channel, []).append((one.time_ns, size))
-            pieces.append(written)
-            size += len(written)
+            pieces += (head_of_one, one.data)
+            size += len(head_of_one) + len(one.data)
         begin, indexes = self.length, [records.message_index(*entry) for entry in index.items()]
         head = records.chunk_head(size, max(time_ns, 0), max(time_ns, 0))
         at, places = begin + len(head) + size, dict[int, int]()

@@ -72,7 +72,7 @@ def depth_message(stamp_ns: int | None, camera: str, packed: bytes, is_radial: b
         is_radial: whether depth is the distance from the camera's centre.
     """
     told = CdrWriter().header(stamp_ns, optical_frame(camera)).text(RADIAL if is_radial else PLANAR)
-    return told.octets(packed).done()
+    return told.done_with(packed)
 
 
 def camera_info_message(stamp_ns: int | None, camera: str, lens: Lens) -> bytes:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from elbowroom.cli.evaluate.measured import measured
 from elbowroom.cli.evaluate.shown import as_table, text, voxel, yes_or_no
-from elbowroom.evaluate.due import Row
+from elbowroom.evaluate.due import Row, sentence
 from elbowroom.evaluate.speed.bench import CASES, bench_rows
 from elbowroom.evaluate.speed.start import DUE, start_rows
 

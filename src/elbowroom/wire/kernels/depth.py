@@ -12,37 +12,103 @@ HALF, BYTE = 15, 255
 """The greatest number of a code; it says that the difference follows apart."""
 ROUNDS = np.float32(12582912.0)
 """1.5 * 2**23: added to a float32 below 2**22 it leaves the nearest whole number in the lowest bits."""
+SAMPLED = 32
+"""Of so many pieces one is looked at to choose the code."""
 PIECE = 2048
 """Pixels that are worked on while they are in the nearest cache."""
 
 
 @njit(cache=True, nogil=True)
-def to_units(depth, bits, scale, bias, units):
-    """Depth as whole units; whether `from_units` gives back the same bits.
+def steps_above(depth, scale, most):
+    """How often, in one of `SAMPLED` pieces of 64 pixels, the next pixel is so many units away that its zigzag is `most` or above.
+
+    Args:
+        depth: float32, shape (n,) [m].
+        scale: float32: metres per unit.
+        most: the greatest number of a code.
+    """
+    far = np.float32(most // 2) * scale
+    many = 0
+    for begin in range(0, depth.size - 64, SAMPLED * 64):
+        some, after = depth[begin : begin + 64], depth[begin + 1 : begin + 65]
+        for x in range(some.size):
+            many += np.int64(not abs(after[x] - some[x]) <= far)
+    return many
+
+
+@njit(cache=True, nogil=True)
+def pack_units(depth, bits, scale, bias, is_half, codes, apart):
+    """Depth as codes of whole units; how many numbers follow apart, or -1: `from_units` would not give back its bits.
 
     Args:
         depth: float32, shape (n,) [m].
         bits: the same memory as int32.
         scale, bias: float32: metres per unit, and what was added after that [m].
-        units: uint16, shape (n,); written.
+        is_half: whether two codes share a byte.
+        codes: uint8, shape (n,), or ((n + 1) // 2,) of halves; written.
+        apart: uint16, shape (n,); its begin is written.
     """
     inverse = np.float32(1.0) / scale
     some = np.empty(PIECE, np.float32)
     some_bits = some.view(np.int32)
-    wrong = np.int32(0)
+    units = np.zeros(PIECE + 1, np.uint16)
+    zigzag = np.zeros(PIECE, np.uint16)
+    wrong, many = np.int32(0), 0
     for begin in range(0, depth.size, PIECE):
         end = min(depth.size, begin + PIECE)
-        given, given_bits, out = depth[begin:end], bits[begin:end], units[begin:end]
+        given, given_bits = depth[begin:end], bits[begin:end]
+        here, small = units[1 : 1 + given.size], zigzag[: given.size]
         # loops of one step each: the compiler turns each into vectors
         for x in range(given.size):
             some[x] = (given[x] - bias) * inverse + ROUNDS
         for x in range(given.size):
-            out[x] = np.uint16(0) if given_bits[x] == 0 else np.uint16(some_bits[x])
-        for x in range(given.size):
-            some[x] = _metres(out[x], scale, bias)
+            here[x] = np.uint16(0) if given_bits[x] == 0 else np.uint16(some_bits[x])
+        if bias == np.float32(0):
+            for x in range(given.size):
+                some[x] = np.float32(here[x]) * scale
+        else:
+            for x in range(given.size):
+                some[x] = _metres(here[x], scale, bias)
         for x in range(given.size):
             wrong |= some_bits[x] ^ given_bits[x]
-    return wrong == 0
+        for x in range(given.size):
+            more = np.int16(here[x] - units[x])
+            small[x] = np.uint16((more << 1) ^ (more >> 15))
+        units[0] = here[given.size - 1]
+        if is_half:
+            _halves(small, codes[begin // 2 : (end + 1) // 2])
+            many = _set_apart(small, HALF, apart, many)
+        else:
+            out = codes[begin:end]
+            for x in range(out.size):
+                out[x] = np.uint8(min(small[x], np.uint16(BYTE)))
+            many = _set_apart(small, BYTE, apart, many)
+    return many if wrong == 0 else -1
+
+
+@njit(inline="always")
+def _halves(zigzag, codes):
+    """Two codes a byte, the first in its lower half."""
+    for x in range(zigzag.size // 2):
+        low, high = min(zigzag[2 * x], np.uint16(HALF)), min(zigzag[2 * x + 1], np.uint16(HALF))
+        codes[x] = np.uint8(low | (high << 4))
+    if zigzag.size % 2:
+        codes[zigzag.size // 2] = np.uint8(min(zigzag[zigzag.size - 1], np.uint16(HALF)))
+
+
+@njit(inline="always")
+def _set_apart(zigzag, most, apart, many):
+    """Adds those that are `most` or above; most pieces of 32 have none."""
+    for begin in range(0, zigzag.size, 32):
+        given = zigzag[begin : min(zigzag.size, begin + 32)]
+        greatest = np.uint16(0)
+        for x in range(given.size):
+            greatest = max(greatest, given[x])
+        if greatest >= most:
+            for x in range(given.size):
+                apart[many] = given[x]  # there is room: no more follow apart than have gone by
+                many += np.int64(given[x] >= most)
+    return many
 
 
 @njit(cache=True, nogil=True)
@@ -68,25 +134,8 @@ def _metres(unit, scale, bias):
 
 
 @njit(cache=True, nogil=True)
-def differences(numbers, zigzag):
-    """What each number is more than the one before it, as zigzag, and modulo the type's size.
-
-    Args:
-        numbers: uint16, shape (n,).
-        zigzag: uint16, shape (n,); written.
-    """
-    before = np.uint16(0)
-    if numbers.size:
-        first = np.int16(numbers[0] - before)
-        zigzag[0] = np.uint16((first << 1) ^ (first >> 15))
-    for x in range(1, numbers.size):
-        more = np.int16(numbers[x] - numbers[x - 1])
-        zigzag[x] = np.uint16((more << 1) ^ (more >> 15))
-
-
-@njit(cache=True, nogil=True)
 def differences_32(numbers, zigzag):
-    """As `differences`, of 32 bits.
+    """What each number is more than the one before it, as zigzag, modulo 2**32.
 
     Args:
         numbers: uint32, shape (n,).
@@ -100,85 +149,11 @@ def differences_32(numbers, zigzag):
 
 
 @njit(cache=True, nogil=True)
-def many_above(zigzag, most):
-    """How many are `most` or above, counted in every eighth piece of 64.
-
-    Args:
-        zigzag: uint16, shape (n,).
-        most: the greatest number of a code.
-    """
-    many = 0
-    for begin in range(0, zigzag.size, 512):
-        some = zigzag[begin : min(zigzag.size, begin + 64)]
-        for x in range(some.size):
-            many += np.int64(some[x] >= most)
-    return many
-
-
-@njit(cache=True, nogil=True)
-def to_bytes(zigzag, codes, apart):
-    """One code a byte; how many numbers follow apart.
-
-    Args:
-        zigzag: uint16, shape (n,).
-        codes: uint8, shape (n,); written.
-        apart: uint16, shape (n,); its begin is written.
-    """
-    many = 0
-    for begin in range(0, zigzag.size, 64):
-        end = min(zigzag.size, begin + 64)
-        given, out = zigzag[begin:end], codes[begin:end]
-        greatest = np.uint16(0)
-        for x in range(given.size):
-            out[x] = np.uint8(min(given[x], np.uint16(BYTE)))
-            greatest = max(greatest, given[x])
-        if greatest >= BYTE:
-            many = _set_apart(given, BYTE, apart, many)
-    return many
-
-
-@njit(cache=True, nogil=True)
-def to_halves(zigzag, codes, apart):
-    """Two codes a byte, the first in its lower half; how many numbers follow apart.
-
-    Args:
-        zigzag: uint16, shape (n,).
-        codes: uint8, shape ((n + 1) // 2,); written.
-        apart: uint16, shape (n,); its begin is written.
-    """
-    small = np.zeros(64, np.uint8)
-    many = 0
-    for begin in range(0, zigzag.size, 64):
-        end = min(zigzag.size, begin + 64)
-        given, out = zigzag[begin:end], codes[begin // 2 : (end + 1) // 2]
-        greatest = np.uint16(0)
-        for x in range(given.size):
-            small[x] = np.uint8(min(given[x], np.uint16(HALF)))
-            greatest = max(greatest, given[x])
-        if given.size % 2:
-            small[given.size] = np.uint8(0)
-        for x in range(out.size):
-            out[x] = small[2 * x] | (small[2 * x + 1] << 4)
-        if greatest >= HALF:
-            many = _set_apart(given, HALF, apart, many)
-    return many
-
-
-@njit(inline="always")
-def _set_apart(given, most, apart, many):
-    for x in range(given.size):
-        if given[x] >= most:
-            apart[many] = given[x]
-            many += 1
-    return many
-
-
-@njit(cache=True, nogil=True)
 def from_codes(codes, is_half, apart, units):
     """The numbers again; whether the codes use all that follows apart, and no more.
 
     Args:
-        codes: uint8, as `to_bytes` or `to_halves` writes them.
+        codes: uint8, as `pack_units` writes them.
         is_half: whether two codes share a byte.
         apart: uint16, shape (m,).
         units: uint16, shape (n,); written.
