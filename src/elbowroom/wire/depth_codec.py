@@ -176,7 +176,9 @@ def _in_units(flat: NDArray[np.float32], units: Units) -> tuple[int, int, NDArra
     scale, bias = np.float32(units.scale_m), np.float32(units.bias_m)
     if not (np.isfinite(scale) and scale > 0 and np.isfinite(bias)):
         return None
-    is_half = bool(kernels.steps_above(flat, scale, kernels.HALF) < HALVES_BELOW * flat.size / kernels.SAMPLED)
+    is_half = bool(
+        kernels.steps_above(flat, scale, kernels.HALF) < HALVES_BELOW * flat.size / kernels.SAMPLED
+    )
     content, apart = _scratch(flat.size)
     length = (flat.size + 1) // 2 if is_half else flat.size
     many = kernels.pack_units(flat, flat.view(np.int32), scale, bias, is_half, content[:length], apart)

@@ -20,7 +20,7 @@ PIECE = 2048
 
 @njit(cache=True, nogil=True)
 def steps_above(depth, scale, most):
-    """How often, in one of `SAMPLED` pieces of 64 pixels, the next pixel is so many units away that its zigzag is `most` or above.
+    """How often, in one of `SAMPLED` pieces of 64, the next one is so far away that its zigzag is at least `most`.
 
     Args:
         depth: float32, shape (n,) [m].
