@@ -3,9 +3,11 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from PIL import Image
 
 from elbowroom.errors import BagError, ElbowroomError
 from elbowroom.monitor.blackbox import replay
@@ -140,7 +142,7 @@ def test_a_configuration_that_is_malformed_is_an_error(file, change):
     with Recording(file) as recording:
         said = json.loads(recording.configuration().attached()[1].data)
     change(said)
-    with pytest.raises(BagError, match="it: configuration.json"):
+    with pytest.raises(BagError, match=r"it: configuration\.json"):
         Configuration.read(json.dumps(said).encode(), b"", "it")
 
 
@@ -155,16 +157,12 @@ def test_a_damaged_recording_is_an_error_or_is_read(tmp_path, data):
         with Recording(tmp_path / "run.mcap") as recording:
             assert recording.wrong() is not None or recording.note is not None or content == sample_run()
             recording.configuration()
-            for one in recording.passes():
-                assert one.snapshot.frames or True
+            assert len(list(recording.passes())) == len(recording)
     except ElbowroomError as error:
         assert str(error)
 
 
 def test_images_come_out_as_they_were_or_never_farther(file, tmp_path):
-    import numpy as np
-    from PIL import Image
-
     with Recording(file) as recording, Export(recording, tmp_path / "out", 0.0002) as export:
         for one in recording.passes():
             export.add(one)
