@@ -6,6 +6,7 @@ from result_tables.drift import drift_tables
 from result_tables.latch import latch_tables
 from result_tables.looks import contradiction_tables, looks_tables
 from result_tables.placement import placement_tables, sweep_tables
+from result_tables.recording import cut_tables, record_tables, replay_tables
 from result_tables.robots import robot_tables
 from result_tables.skew import skew_tables
 from result_tables.space import room_tables, sevenscenes_tables
@@ -28,6 +29,7 @@ __all__ = [
     "calibration_tables",
     "cell_tables",
     "contradiction_tables",
+    "cut_tables",
     "drift_tables",
     "escape_tables",
     "hand_tables",
@@ -37,6 +39,8 @@ __all__ = [
     "own_links_tables",
     "placement_tables",
     "poses_tables",
+    "record_tables",
+    "replay_tables",
     "robot_tables",
     "room_tables",
     "sevenscenes_tables",

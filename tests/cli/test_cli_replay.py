@@ -62,7 +62,7 @@ def test_why_says_link_place_cause_and_what_would_change_it(kept, tmp_path, caps
     for row in rows:
         assert f"{row['joint']} {row['direction']}: " in text
         assert row["level"] == "clear" or row["cause"] == "none" or row["advice"] or row["link"]
-    assert run(["replay", str(kept / "run.mcap"), "--why", "99999"]) == 1
+    assert run(["replay", str(kept / "run.mcap"), "--why", "99999"]) == 2
     assert "cycle 99999 is not there" in capsys.readouterr().err
 
 
@@ -71,7 +71,7 @@ def test_export_writes_images_that_are_a_recording(kept, tmp_path, capsys):
     text = capsys.readouterr().out
     assert "cam00: " in text and "0.0002 m a unit" in text
     assert (tmp_path / "out" / "site_as_recorded.yaml").read_text() == SMALL_ROOM
-    assert run(["export", str(kept / "run.mcap"), str(tmp_path / "out")]) == 1
+    assert run(["export", str(kept / "run.mcap"), str(tmp_path / "out")]) == 2
     assert "holds files already" in capsys.readouterr().err
 
 
@@ -90,21 +90,21 @@ def test_another_file_is_refused_in_a_line(tmp_path, capsys):
         ["replay", str(tmp_path / "other.mcap")],
         ["export", str(tmp_path / "other.mcap"), str(tmp_path / "x")],
     ):
-        assert run(words) == 1
+        assert run(words) == 2
         assert "not a recording of `elbowroom monitor`" in " ".join(capsys.readouterr().err.split())
 
 
 def test_a_file_that_is_there_is_not_written_over(kept, capsys):
     words = ["monitor", str(kept / "room.yaml"), "--seconds", "0", "--record", str(kept / "run.mcap")]
-    assert run(words) == 1
+    assert run(words) == 2
     assert "is there already" in " ".join(capsys.readouterr().err.split())
 
 
 def test_a_site_may_name_the_black_box_but_has_to_say_where(kept, tmp_path, capsys):
     site = tmp_path / "room.yaml"
     site.write_text(SMALL_ROOM + "black_box: {before_s: 5}\n")
-    assert run(["monitor", str(site), "--seconds", "0"]) == 1
+    assert run(["monitor", str(site), "--seconds", "0"]) == 2
     assert "write black_box.folder" in " ".join(capsys.readouterr().err.split())
     site.write_text(SMALL_ROOM + "black_box: {folder: stops, after_s: 0}\n")
-    assert run(["site", "check", str(site)]) == 1
+    assert run(["site", "check", str(site)]) == 2
     assert "black_box.after_s" in capsys.readouterr().err

@@ -52,7 +52,7 @@ def test_small_cameras_are_kept_up_with(tmp_path):
     assert [row["case"] for row in rows] == ["whole run", "black box, a stop on the way"]
     for row in rows:
         assert row["lost"] == row["not_as_given"] == 0 and row["troubles"] == []
-        assert 0 < row["core_share"] < 1 and row["times_smaller"] > 1
+        assert 0 < row["core_share"] < 1
     assert rows[0]["passes_in_file"] == rows[0]["passes"] == 18
     assert 6 <= rows[1]["passes_in_file"] < 18
     assert {due.key for due in RATE_DUE} <= rows[0].keys()

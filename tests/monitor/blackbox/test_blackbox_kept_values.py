@@ -15,7 +15,7 @@ from elbowroom.machine import Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor.blackbox import kept_values
 from elbowroom.monitor.blackbox.kept_values import kept, read, text_of
-from elbowroom.motion import Override, joint_motions
+from elbowroom.motion import Motion, Override
 from elbowroom.reconstruct import Terms
 from elbowroom.site import Site
 
@@ -86,7 +86,7 @@ def test_cameras_terms_and_motions_come_back():
         camera,
         terms,
         Override(0.2, 0.1, {"slide": 0.5}),
-        tuple(joint_motions(ceiling_c_arm(), {"long": 0.1}, 0.5)),
+        (Motion("long", 1, 0.1), Motion("larm", -1, 0.2, 0.7)),
     )
     again = read(text_of(values), "it")
     assert text_of(again) == text_of(values)

@@ -63,10 +63,9 @@ def run(sinks, room: Room, passes) -> Recorder:
 class HeldUp(WholeRun):
     """A file on a disk that does not answer until it is let go."""
 
-    def __post_init__(self):
+    def __init__(self, path):
+        super().__init__(path)
         self.gate = threading.Event()
-
-    __slots__ = ("gate",)
 
     def take(self, one):
         self.gate.wait(30)

@@ -32,7 +32,7 @@ def test_a_run_is_judged_again_to_the_last_bit(file):
         found = list(replayed(recording))
     assert [one.sequence for one in found] == list(range(PASSES))
     assert not any(one.differences for one in found)
-    assert all(one.verdicts == 4 and one.by_word is None for one in found)
+    assert all(one.verdicts == 8 and one.by_word is None for one in found)
 
 
 def test_a_verdict_that_was_another_is_shown(file, monkeypatch):
