@@ -360,8 +360,8 @@ thread, a second. *not as given*: of every seventh pass, images that do not come
         "Cut files",
         """
 A [recording](recording.md) of a few passes is cut off at each of many bytes, evenly over the whole file, and opened.
-*lost*: of the passes that had begun, those that are not there. *one bit changed*: one at random; a file of which nothing
-is said is *unnoticed*.
+*lost*: of the passes that had begun, those that are not there. *one bit changed*: one at random; a file of which
+nothing is said is *unnoticed*.
 """,
         "elbowroom evaluate cut",
         tables.cut_tables,
