@@ -233,6 +233,7 @@ def _watch(
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]
         if recorder is not None:
+            recorder.cycle = loop.cycle
             faces.append(recorder)
             loop = replace(loop, checks=replace(loop.checks, looks=(*loop.checks.looks, recorder)))
         with asked_to_end() as is_over:

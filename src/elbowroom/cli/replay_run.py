@@ -3,6 +3,7 @@
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -71,12 +72,17 @@ def explain_cycle(file: Path, sequence: int, json_file: Path | None) -> None:
         configuration = recording.configuration()
         _compile(configuration)
         cycle = configuration.cycle(keeps_images=True)
-        result = cycle.run(one.snapshot)
-        print(f"cycle {sequence}, {_day(one.wall_ns)}, {len(one.snapshot.frames)} images")
-        for reason in filter(None, (one.judged["late"], one.judged["fault"], one.judged["watch"])):
-            print(f"Every motion was stop: {reason}")
+        given = one.judged["given"] or ()
+        frames = tuple(frame for frame in one.snapshot.frames if frame.camera in given)
+        result = cycle.run(replace(one.snapshot, frames=frames))
+        print(
+            f"cycle {sequence}, {_day(one.wall_ns)}, {len(frames)} of {len(one.snapshot.frames)} images were judged"
+        )
+        if one.judged["stopped_by"] is not None:
+            print(f"Every motion was stop: {one.judged['stopped_by']}")
         for finding in one.judged["findings"]:
-            print(f"{'Every motion was stop' if finding['stops'] else 'Warning'}: {finding['text']}")
+            if not finding["stops"]:
+                print(f"Warning: {finding['text']}")
         if not isinstance(cycle, Cycle) or result.space is None:
             print("No motion was judged." if result.fault is None else f"The cycle fails: {result.fault}")
             return

@@ -29,6 +29,7 @@ class CycleResult:
         late: that frames were past their age when the verdicts were out, so that every one is stop, one sentence; None:
             they were in time, or there is no limit.
         skew_ms: between the stamps of the oldest and the newest frame that was used [ms]; None: there are no two.
+        given: names of the cameras whose frames were judged; None: nothing was.
     """
 
     sequence: int
@@ -42,6 +43,7 @@ class CycleResult:
     findings: tuple[Finding, ...] = ()
     late: str | None = None
     skew_ms: float | None = None
+    given: tuple[str, ...] | None = None
 
     def knowing(self, known: Known) -> Self:
         """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""
@@ -49,7 +51,7 @@ class CycleResult:
         return replace(
             self,
             # free space that comes from a camera that is elsewhere is no free space
-            verdicts=tuple(v if cause is None else stopped(v, cause) for v in self.verdicts),
+            verdicts=tuple(v if cause is None else _stopped(v, cause) for v in self.verdicts),
             stage_ms={**known.stage_ms, **self.stage_ms},
             fault=self.fault or known.fault,
             health=known.health,
@@ -82,7 +84,7 @@ class CycleResult:
         )
 
 
-def stopped(verdict: Verdict, cause: Cause) -> Verdict:
+def _stopped(verdict: Verdict, cause: Cause) -> Verdict:
     """Stop for the same motion; a fault stays one, and so does what is too old."""
     if verdict.cause in (Cause.FAULT, Cause.STALE):
         return verdict

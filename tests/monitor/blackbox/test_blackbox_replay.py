@@ -59,7 +59,7 @@ def test_another_image_is_noticed_by_the_space_that_it_makes(file):
     "word",
     [
         {"late": "the oldest image is 300 ms old"},
-        {"watch": "cam03 moved by 20 mm"},
+        {"watch": True},
         {"findings": [{"kind": "unit", "about": [], "text": "millimetres", "stops": True}]},
         {"fault": "KeyError: 'the watch'"},
     ],
@@ -86,6 +86,7 @@ def test_what_was_known_beside_the_images_is_taken_as_it_was_kept(file, word):
                 "creep": None,
             }
         one.judged.update(word)
+        one.judged["stopped_by"] = "why"
         found = compared(one, cycle)
     assert found.differences == ()
     assert found.by_word is not None
@@ -126,16 +127,27 @@ def test_the_configuration_comes_back_as_it_was(file):
     assert (site.name, said.name) == (SITE, CONFIGURATION)
 
 
+def value_of(said, name, value):
+    """Gives a field of the cycle another value."""
+    for pair in said["values"]["map"]:
+        if pair[0] == name:
+            pair[1] = value
+
+
 @pytest.mark.parametrize(
     "change",
     [
         lambda said: said.pop("values"),
         lambda said: said.update(format=2),
         lambda said: said.update(values=[]),
-        lambda said: said["values"].__setitem__(0, None),
-        lambda said: said["values"].__setitem__(1, [1]),
-        lambda said: said["values"].__setitem__(2, "a machine"),
-        lambda said: said["values"].__setitem__(4, {"of": "VoxelGrid", "fields": {}}),
+        lambda said: said.update(told=[]),
+        lambda said: said.update(values={"map": 3}),
+        lambda said: value_of(said, "grid", None),
+        lambda said: value_of(said, "cameras", [1]),
+        lambda said: value_of(said, "machine", "a machine"),
+        lambda said: value_of(said, "terms", {"of": "VoxelGrid", "fields": {}}),
+        lambda said: value_of(said, "motions", [["larm", 1]]),
+        lambda said: said["values"]["map"].append(["clock_ns", 3]),
     ],
 )
 def test_a_configuration_that_is_malformed_is_an_error(file, change):
@@ -175,3 +187,27 @@ def test_images_come_out_as_they_were_or_never_farther(file, tmp_path):
     cameras = json.loads((tmp_path / "out" / "cameras.json").read_text())
     assert [camera["name"] for camera in cameras] == [f"cam{n:02d}" for n in range(5)]
     assert (tmp_path / "out" / "joints.csv").read_text().startswith("stamp_ns,long,larm")
+
+
+def test_cameras_that_were_left_out_are_left_out_again(file):
+    with Recording(file) as recording:
+        cycle = recording.configuration().cycle()
+        one = recording.at(4)
+        assert compared(one, cycle).differences == ()
+        one.judged["given"] = one.judged["given"][1:]
+        assert any(text.startswith("space: was ") for text in compared(one, cycle).differences)
+
+
+def test_a_pass_in_which_nothing_was_judged_is_stop_by_word(file):
+    stop = {"level": "stop", "band": "S", "free_travel": 0.0, "cause": "input", "overridable": False}
+    empty = dict.fromkeys(("link", "place_m", "other_link", "zone", "creep")) | {"escapes": False}
+    with Recording(file) as recording:
+        cycle = recording.configuration().cycle()
+        one = recording.at(4)
+        one.judged.update(given=None, space=None, skew_ms=None, stopped_by="joints: not where they may be")
+        for verdict in one.judged["verdicts"]:
+            verdict.update(stop | empty)
+        found = compared(one, cycle)
+        assert found.differences == () and found.by_word == "joints: not where they may be"
+        one.judged["verdicts"][0]["level"] = "clear"
+        assert compared(one, cycle).differences

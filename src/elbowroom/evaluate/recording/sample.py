@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from elbowroom.monitor import Checks, Cycle, Loop
-from elbowroom.monitor.blackbox.configuration import Configuration
+from elbowroom.monitor import Checks, Loop
+from elbowroom.monitor.blackbox.configuration import plain_cycle
 from elbowroom.monitor.blackbox.recorder import Recorder
 from elbowroom.monitor.blackbox.sinks import WholeRun
 from elbowroom.sensing import Snapshot
@@ -80,7 +80,7 @@ def record_sample(path: Path, passes: int, seed: int = 1, exact: bool = False) -
 
 
 def loop_of(room: Room) -> Loop:
-    """The loop of a room, without a watch."""
-    cycle = Configuration.of(room).cycle()
-    assert isinstance(cycle, Cycle)
+    """The loop of a room, without a watch, and without a clock: how fast a computer is changes no verdict."""
+    cycle = plain_cycle(room)
+    cycle.clock_ns = lambda: 0
     return Loop(room, Checks(), cycle)

@@ -1,5 +1,6 @@
 """All that decides what a snapshot comes to, as one value that a recording holds."""
 
+import dataclasses
 import hashlib
 import json
 from collections.abc import Mapping
@@ -15,7 +16,7 @@ from elbowroom.machine import Machine
 from elbowroom.monitor.blackbox import kept_values
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.space_cycle import SpaceCycle
-from elbowroom.motion import Motion, Override
+from elbowroom.motion import Motion
 from elbowroom.reconstruct import Terms
 from elbowroom.sources import Room
 from elbowroom.wire.mcap_writer import Attached
@@ -24,6 +25,8 @@ CONFIGURATION, SITE = "configuration.json", "site.yaml"
 """Names of the files within a recording."""
 FORMAT = 1
 """Of recordings; a later one is refused."""
+OF_THE_RUN = ("clock_ns", "keeps_images")
+"""What of a cycle does not change what a snapshot comes to."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,29 +34,23 @@ class Configuration:
     """What stays the same throughout a run.
 
     Args:
-        grid, cameras, machine, terms: of the room, as the run had them.
-        motions: that are asked; none: what is free is seen, and no motion judged.
-        override: as of `Cycle`.
+        fields: of the cycle, by name; those of `Cycle`, or of `SpaceCycle` where no motion is asked.
         told: what is said of the run beside that: site, version, processor, threads.
         site_text: the site file, as it was.
     """
 
-    grid: VoxelGrid
-    cameras: tuple[DepthCamera, ...]
-    machine: Machine | None
-    motions: tuple[Motion, ...]
-    terms: Terms
-    override: Override | None
+    fields: Mapping[str, Any]
     told: Mapping[str, Any] = field(default_factory=dict)
     site_text: bytes = b""
 
     @classmethod
-    def of(cls, room: Room) -> Self:
-        """Of a room that is watched."""
-        machine, motions, override = room.machine, tuple[Motion, ...](), None
-        if room.unasked is None:
-            machine, motions = room.machine_and_motions()
-            override = room.site.override(machine)
+    def of(cls, room: Room, cycle: Cycle | SpaceCycle) -> Self:
+        """Of a run.
+
+        Args:
+            room: that is watched.
+            cycle: that judges.
+        """
         text = _site_text(room.site.path)
         told = {
             "site": room.site.name,
@@ -62,7 +59,23 @@ class Configuration:
             "allowances": list(room.allowances),
             **meta(),
         }
-        return cls(room.grid, room.cameras, machine, motions, room.terms, override, told, text)
+        return cls({name: getattr(cycle, name) for name in _names(type(cycle))}, told, text)
+
+    @property
+    def cameras(self) -> tuple[DepthCamera, ...]:
+        """Of the room."""
+        return tuple(self.fields["cameras"])
+
+    @property
+    def machine(self) -> Machine | None:
+        """What moves."""
+        machine: Machine | None = self.fields["machine"]
+        return machine
+
+    @property
+    def motions(self) -> tuple[Motion, ...]:
+        """That are asked; none: what is free is seen, and no motion judged."""
+        return tuple(self.fields.get("motions", ()))
 
     def cycle(self, keeps_images: bool = False) -> Cycle | SpaceCycle:
         """The pass that judges by it; no time goes by in it, since when it was judged is not judged again.
@@ -70,23 +83,13 @@ class Configuration:
         Args:
             keeps_images: as of `Cycle`.
         """
-        if not self.motions or self.machine is None:
-            return SpaceCycle(self.grid, self.cameras, self.machine, self.terms, clock_ns=_no_time)
-        return Cycle(
-            self.grid,
-            self.cameras,
-            self.machine,
-            self.motions,
-            self.terms,
-            keeps_images=keeps_images,
-            clock_ns=_no_time,
-            override=self.override,
-        )
+        if not self.motions:
+            return SpaceCycle(**self.fields, clock_ns=_no_time)
+        return Cycle(**self.fields, keeps_images=keeps_images, clock_ns=_no_time)
 
     def attached(self) -> list[Attached]:
         """As files within a recording."""
-        values = (self.grid, self.cameras, self.machine, self.motions, self.terms, self.override)
-        said = {"format": FORMAT, "told": self.told, "values": kept_values.kept(values)}
+        said = {"format": FORMAT, "told": self.told, "values": kept_values.kept(self.fields)}
         text = json.dumps(said, separators=(",", ":"), allow_nan=False, ensure_ascii=False)
         return [
             Attached(SITE, "application/yaml", self.site_text),
@@ -103,36 +106,53 @@ class Configuration:
             what: names the recording in errors.
 
         Raises:
-            BagError: malformed, or of a later version.
+            BagError: malformed, or of another version.
         """
         what = f"{what}: {CONFIGURATION}"
-        try:
-            said = json.loads(content)
-            number, told, given = said["format"], said["told"], said["values"]
-        except (ValueError, KeyError, TypeError, RecursionError) as error:
-            raise BagError(f"{what}: malformed ({error})") from None
-        if number != FORMAT:
-            raise BagError(f"{what}: of format {number}, this version reads format {FORMAT}")
-        values = kept_values.read(json.dumps(given), what)
-        if not (isinstance(values, tuple) and len(values) == 6 and isinstance(told, dict)):
+        said = kept_values.parsed(content, what)
+        if not isinstance(said, dict) or not isinstance(said.get("told"), dict):
             raise BagError(f"{what}: malformed")
-        found = cls(*values, told, site_text)
-        found._require_kinds(what)
-        return found
+        if said.get("format") != FORMAT:
+            raise BagError(f"{what}: of format {said.get('format')}, this version reads format {FORMAT}")
+        fields = kept_values.made_of(said.get("values"), what)
+        _require_sound(fields, what)
+        return cls(fields, said["told"], site_text)
 
-    def _require_kinds(self, what: str) -> None:
-        sound = (
-            isinstance(self.grid, VoxelGrid)
-            and isinstance(self.cameras, tuple)
-            and all(isinstance(camera, DepthCamera) for camera in self.cameras)
-            and isinstance(self.machine, Machine | None)
-            and isinstance(self.motions, tuple)
-            and all(isinstance(motion, Motion) for motion in self.motions)
-            and isinstance(self.terms, Terms)
-            and isinstance(self.override, Override | None)
-        )
-        if not sound:
-            raise BagError(f"{what}: malformed: not the values that it should hold")
+
+def plain_cycle(room: Room) -> Cycle | SpaceCycle:
+    """The cycle of a room, nothing asked that its site does not say."""
+    if room.unasked is not None:
+        return SpaceCycle(room.grid, room.cameras, room.machine, room.terms)
+    machine, motions = room.machine_and_motions()
+    return Cycle(room.grid, room.cameras, machine, motions, room.terms, override=room.site.override(machine))
+
+
+def _require_sound(fields: Any, what: str) -> None:
+    """Refuses what is not that of a cycle of this version.
+
+    Raises:
+        BagError: it is not.
+    """
+    if not isinstance(fields, dict):
+        raise BagError(f"{what}: malformed: no values")
+    kind = Cycle if fields.get("motions") else SpaceCycle
+    unknown = [name for name in fields if name not in _names(kind)]
+    kinds = {"grid": VoxelGrid, "cameras": tuple, "terms": Terms, "motions": tuple}
+    wrong = [
+        name for name, due in kinds.items() if name in _names(kind) and not isinstance(fields.get(name), due)
+    ]
+    wrong += (
+        [] if all(isinstance(camera, DepthCamera) for camera in fields.get("cameras") or ()) else ["cameras"]
+    )
+    wrong += [] if all(isinstance(motion, Motion) for motion in fields.get("motions") or ()) else ["motions"]
+    machine = fields.get("machine")
+    if unknown or wrong or not isinstance(machine, Machine if kind is Cycle else Machine | None):
+        raise BagError(f"{what}: malformed: {', '.join([*unknown, *wrong]) or 'machine'}")
+
+
+def _names(kind: type[Cycle] | type[SpaceCycle]) -> tuple[str, ...]:
+    """Fields of a cycle that are kept."""
+    return tuple(each.name for each in dataclasses.fields(kind) if each.init and each.name not in OF_THE_RUN)
 
 
 def _no_time() -> int:

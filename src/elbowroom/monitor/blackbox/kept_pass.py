@@ -182,13 +182,13 @@ def pass_record(moment: Moment, frames: Sequence[tuple[str, int]]) -> dict[str, 
 
 def judged(result: CycleResult) -> dict[str, Any]:
     """What a pass came to, in what JSON knows, numbers to the last bit."""
-    health = None if result.health is None else result.health.reason
     return {
         "verdicts": [plain(verdict.row()) for verdict in result.verdicts],
         "space": None if result.space is None else space_sum(result.space),
         "fault": result.fault,
         "late": result.late,
-        "watch": health,
+        "stopped_by": result.stopped_by,
+        "given": None if result.given is None else list(result.given),
         "findings": [asdict(finding) for finding in result.findings],
         "stage_ms": plain(dict(result.stage_ms)),
         "oldest_age_ms": plain(result.oldest_age_ms),

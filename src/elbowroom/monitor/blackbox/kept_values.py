@@ -5,12 +5,13 @@ import binascii
 import dataclasses
 import json
 import math
+import warnings
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from elbowroom.errors import BagError, ElbowroomError
+from elbowroom.errors import BagError, ElbowroomError, PoseWarning
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.intrinsics import Intrinsics
@@ -101,8 +102,40 @@ def read(text: str | bytes, what: str) -> Any:
     Raises:
         BagError: malformed, or of a kind that is not on the list.
     """
+    return made_of(parsed(text, what), what)
+
+
+def parsed(text: str | bytes, what: str) -> Any:
+    """What JSON holds.
+
+    Args:
+        text: that is read.
+        what: names it in errors.
+
+    Raises:
+        BagError: it is none.
+    """
     try:
-        return made(json.loads(text))
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise BagError(f"{what}: malformed ({type(error).__name__}: {error})") from None
+
+
+def made_of(given: Any, what: str) -> Any:
+    """The value that `kept` gave.
+
+    Args:
+        given: what JSON holds.
+        what: names it in errors.
+
+    Raises:
+        BagError: it is none.
+    """
+    try:
+        with warnings.catch_warnings():
+            # it was said when the value was made first
+            warnings.simplefilter("ignore", PoseWarning)
+            return made(given)
     except (
         ElbowroomError,
         ValueError,

@@ -10,11 +10,13 @@ from pathlib import Path
 
 from elbowroom.errors import InputError
 from elbowroom.finding import Finding
-from elbowroom.monitor.blackbox.configuration import Configuration
+from elbowroom.monitor.blackbox.configuration import Configuration, plain_cycle
 from elbowroom.monitor.blackbox.kept_pass import Keeping, Moment, still_messages
 from elbowroom.monitor.blackbox.sinks import Head, Sink
 from elbowroom.monitor.blackbox.stops import Stops
+from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.face import Pass
+from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.sensing import DepthFrame, Snapshot
 from elbowroom.sources import Room
 from elbowroom.wire.depth_codec import Units, warm_up
@@ -36,6 +38,7 @@ class Recorder:
     Args:
         sinks: where passes go.
         most_bytes: of images that wait.
+        cycle: that judges; None: as its room says.
 
     Raises:
         PackageError: zstandard is not installed.
@@ -43,6 +46,7 @@ class Recorder:
 
     sinks: Sequence[Sink]
     most_bytes: int = MOST_BYTES
+    cycle: Cycle | SpaceCycle | None = None
     name: str = field(default="recording", init=False)
     lost: int = field(default=0, init=False)
     busy_ns: int = field(default=0, init=False)
@@ -71,7 +75,8 @@ class Recorder:
         units = {name: Units(site.depth_scale_m(name), site.depth_bias_m(name)) for name in names}
         radial = frozenset(camera.name for camera in room.cameras if camera.depth_kind == "radial")
         self._keeping = Keeping(units, radial)
-        head = Head(Configuration.of(room).attached(), still_messages(room.cameras))
+        configuration = Configuration.of(room, self.cycle or plain_cycle(room))
+        head = Head(configuration.attached(), still_messages(room.cameras))
         for sink in self.sinks:
             try:
                 sink.begin(head)

@@ -8,7 +8,7 @@ from typing import Any
 from elbowroom.monitor.blackbox.kept_pass import judged
 from elbowroom.monitor.blackbox.recording import RecordedPass, Recording
 from elbowroom.monitor.cycle import Cycle
-from elbowroom.monitor.result import CycleResult, stopped
+from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.motion import Cause, Verdict
 
@@ -60,40 +60,61 @@ def compared(one: RecordedPass, cycle: Cycle | SpaceCycle) -> Compared:
         one: the pass.
         cycle: of its configuration.
     """
-    found, word = _again(one, cycle.run(one.snapshot))
+    found, word = _again(one, cycle)
     now = _plain(judged(found))
     return Compared(
         one.number, one.sequence, len(found.verdicts), one.lost, word, tuple(_differences(one.judged, now))
     )
 
 
-def _again(one: RecordedPass, result: CycleResult) -> tuple[CycleResult, str | None]:
-    """A pass with what was known of it beside what was seen: that is taken as it was kept."""
+def _again(one: RecordedPass, cycle: Cycle | SpaceCycle) -> tuple[CycleResult, str | None]:
+    """A pass judged again; what was known of it beside what was seen is taken as it was kept."""
     kept = one.judged
-    checks_failed = kept["fault"] is not None and result.fault is None and kept["space"] is not None
-    word, cause = _word(kept, checks_failed)
-    if cause is None:
-        return result, None
-    verdicts = tuple(_stopped(verdict, cause) for verdict in result.verdicts)
-    return replace(result, verdicts=verdicts, fault=kept["fault"] if checks_failed else result.fault), word
+    if kept["given"] is None:
+        result = cycle.failed(_NotJudged(), one.snapshot)
+        is_fault = kept["fault"] is not None
+        word = kept["fault"] if is_fault else kept["stopped_by"]
+        cause = Cause.FAULT if is_fault else _cause_of(kept) or Cause.FAULT
+    else:
+        frames = tuple(frame for frame in one.snapshot.frames if frame.camera in kept["given"])
+        result = cycle.run(replace(one.snapshot, frames=frames))
+        word, found = _word(kept, result)
+        if found is None:
+            return result, None
+        cause = found
+    # a fault that does not come again was none of the images'
+    is_elsewhere = cause is Cause.FAULT or kept["given"] is None
+    verdicts = tuple(_stopped(verdict, cause, is_elsewhere) for verdict in result.verdicts)
+    result = replace(result, verdicts=verdicts, fault=kept["fault"] if is_elsewhere else result.fault)
+    return (replace(result, space=None) if kept["space"] is None else result), word
 
 
-def _word(kept: Mapping[str, Any], checks_failed: bool) -> tuple[str | None, Cause | None]:
-    """Why all is stop though the pass judged, and the cause that was given."""
+def _word(kept: Mapping[str, Any], result: CycleResult) -> tuple[str | None, Cause | None]:
+    """Why all is stop though the images do not say so, and the cause that was given; None: they decide."""
     if kept["late"] is not None:
         return kept["late"], Cause.STALE
-    if checks_failed:
-        return kept["fault"], Cause.FAULT
-    wrong = "; ".join(finding["text"] for finding in kept["findings"] if finding["stops"])
-    if wrong:
-        return wrong, Cause.INPUT
-    return (kept["watch"], Cause.WATCH) if kept["watch"] is not None else (None, None)
+    if kept["fault"] is not None:
+        return (kept["fault"], Cause.FAULT) if result.fault is None else (None, None)
+    cause = None if kept["stopped_by"] is None else _cause_of(kept)
+    return (None, None) if cause is None else (kept["stopped_by"], cause)
 
 
-def _stopped(verdict: Verdict, cause: Cause) -> Verdict:
-    if cause is Cause.STALE and verdict.cause is not Cause.FAULT:
-        return Verdict.stop(verdict.motion, verdict.free_travel_unit, cause)
-    return stopped(verdict, cause)
+def _cause_of(kept: Mapping[str, Any]) -> Cause | None:
+    """The one cause by which all motions were stop; None: there are several, or none."""
+    causes = {verdict["cause"] for verdict in kept["verdicts"] if verdict["level"] == "stop"}
+    alike = len(causes) == 1 and all(verdict["level"] == "stop" for verdict in kept["verdicts"])
+    return Cause[causes.pop().upper()] if alike else None
+
+
+def _stopped(verdict: Verdict, cause: Cause, is_elsewhere: bool) -> Verdict:
+    """Stop for the same motion; of a fault of the images themselves it stays one."""
+    if verdict.cause is Cause.FAULT and not is_elsewhere:
+        return verdict
+    return Verdict.stop(verdict.motion, verdict.free_travel_unit, cause)
+
+
+class _NotJudged(Exception):
+    """Nothing was judged in that pass."""
 
 
 def _differences(kept: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]:
