@@ -9,12 +9,15 @@ from elbowroom.site.ranges import MILLISECONDS, between
 
 
 class BlackBoxEntry(Entry):
-    """The last minute of a run in memory; each stop leaves a file."""
+    """The last minute of a run in memory; each stop leaves a file.
+
+    Without `memory_mb` it takes 4000 MB at most, and no more than a quarter of this computer's memory.
+    """
 
     folder: Text | None = None
     before_s: Annotated[Number, between(1, 600, "s", MILLISECONDS)] = 60.0
     after_s: Annotated[Number, between(1, 600, "s", MILLISECONDS)] = 10.0
-    memory_mb: Annotated[Number, between(16, 1_000_000, "MB")] = 4000.0
+    memory_mb: Annotated[Number, between(16, 1_000_000, "MB")] | None = None
 
     def folder_path(self, beside: Path) -> Path | None:
         """Where the files lie; None: the file does not say.

@@ -184,7 +184,7 @@ def _in_units(flat: NDArray[np.float32], units: Units) -> tuple[int, int, NDArra
     many = kernels.pack_units(flat, flat.view(np.int32), scale, bias, is_half, content[:length], apart)
     if many < 0:
         return None
-    content[length : length + many] = apart[:many] & 255
+    content[length : length + many] = apart[:many]  # the low bytes of them
     content[length + many : length + 2 * many] = apart[:many] >> 8
     return HALVES if is_half else BYTES, many, content[: length + 2 * many]
 

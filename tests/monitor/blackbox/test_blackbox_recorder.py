@@ -249,7 +249,9 @@ def test_memory_is_bounded_by_what_is_allowed(room, tmp_path, monkeypatch):
         image = noise.random((36, 48), np.float32) + 1
         return a_pass(number, frames=[DepthFrame("cam00", number, image)])
 
-    run_steps(box, room, [noisy(number) for number in range(50)], clock)
+    recorder = run_steps(box, room, [noisy(number) for number in range(50)], clock)
+    (trouble,) = recorder.troubles
+    assert "0.06 MB of memory hold 0." in trouble and "not 1 (" in trouble
     assert 2 < len(box._kept) < 12
     held = sum(one.own_size for one in box._kept) + sum(
         len(frame.told.data) for frame in {id(f): f for one in box._kept for f in one.frames}.values()

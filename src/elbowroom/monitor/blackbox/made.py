@@ -7,9 +7,20 @@ from elbowroom.files.atomic import folder as made_folder
 from elbowroom.monitor.blackbox.recorder import Recorder, require_new
 from elbowroom.monitor.blackbox.sinks import BlackBox, Sink, WholeRun
 from elbowroom.site.black_box_entry import BlackBoxEntry
+from elbowroom.site.memory import physical_memory_bytes
 from elbowroom.sources import Room
 
 SECOND_NS = 1_000_000_000
+MOST_BYTES = 4_000_000_000
+"""Of memory for the black box, where the site does not say [bytes]."""
+
+
+def most_bytes(entry: BlackBoxEntry) -> int:
+    """How much memory a black box may take [bytes]."""
+    if entry.memory_mb is not None:
+        return round(entry.memory_mb * 1e6)
+    there = physical_memory_bytes()
+    return MOST_BYTES if there is None else min(MOST_BYTES, there // 4)
 
 
 def recorder_of(room: Room, file: Path | None = None, folder: Path | None = None) -> Recorder | None:
@@ -39,7 +50,7 @@ def recorder_of(room: Room, file: Path | None = None, folder: Path | None = None
                 made_folder(folder),
                 round(entry.before_s * SECOND_NS),
                 round(entry.after_s * SECOND_NS),
-                round(entry.memory_mb * 1e6),
+                most_bytes(entry),
             )
         )
     return Recorder(sinks) if sinks else None

@@ -27,8 +27,9 @@ class Head(NamedTuple):
 class Sink(Protocol):
     """Takes passes, in a thread of its own. It may raise `OSError`: that is told, and not the end of it."""
 
-    trouble: str | None
-    """What is not kept, and why; None: all is."""
+    @property
+    def trouble(self) -> str | None:
+        """What is not kept, and why; None: all is."""
 
     def begin(self, head: Head) -> None:
         """A run begins."""
@@ -144,7 +145,8 @@ class BlackBox:
     after_ns: int = 10_000_000_000
     most_bytes: int = 4_000_000_000
     clock_ns: Callable[[], int] = time.monotonic_ns
-    trouble: str | None = field(default=None, init=False)
+    _trouble: str | None = field(default=None, init=False)
+    _short_ns: int | None = field(default=None, init=False)
     said: list[str] = field(default_factory=list, init=False)
     _head: Head | None = field(default=None, init=False)
     _kept: deque[KeptPass] = field(default_factory=deque, init=False)
@@ -154,6 +156,16 @@ class BlackBox:
     _waiting: deque[KeptPass] = field(default_factory=deque, init=False)
     _until_ns: int = field(default=0, init=False)
     _is_over: bool = field(default=False, init=False)
+
+    @property
+    def trouble(self) -> str | None:
+        """That a stop is not kept, or that memory does not hold as much as it should; None: neither."""
+        if self._trouble is not None or self._short_ns is None:
+            return self._trouble
+        return (
+            f"{self.folder}: {self.most_bytes / 1e6:g} MB of memory hold {self._short_ns / 1e9:.1f} s before a stop, "
+            f"not {self.before_ns / 1e9:g} (black_box.memory_mb)"
+        )
 
     def begin(self, head: Head) -> None:
         """Nothing is written before a stop."""
@@ -199,6 +211,9 @@ class BlackBox:
             self._size > self.most_bytes or one.heard_ns - self._kept[0].heard_ns > self.before_ns
         ):
             old = self._kept.popleft()
+            held_ns = one.heard_ns - self._kept[0].heard_ns
+            if self._size > self.most_bytes and held_ns < self.before_ns:
+                self._short_ns = held_ns
             self._size -= old.own_size + sum(self._used(frame, -1) for frame in old.frames)
 
     def _used(self, frame: KeptFrame, more: int) -> int:
@@ -224,11 +239,11 @@ class BlackBox:
     def _end_file(self) -> None:
         assert self._file is not None
         said = self._file.end()
-        self._file, self.trouble = None, None
+        self._file, self._trouble = None, None
         self.said.append(said)
 
     def _give_up(self, path: Path, error: OSError) -> None:
-        self.trouble = f"{path}: {why(error)}; this stop is not kept, or not all of it"
+        self._trouble = f"{path}: {why(error)}; this stop is not kept, or not all of it"
         self._file = None
         self._waiting.clear()
 
