@@ -1,20 +1,20 @@
-"""What stops a motion because no one camera sees all of it is looked at again in parts."""
+"""What stops a motion is looked at again in parts."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from elbowroom.geometry import bits
-from elbowroom.motion import check_motions, joint_motions
+from elbowroom.geometry import VoxelGrid, bits
+from elbowroom.motion import Cause, check_motions, joint_motions
 from elbowroom.motion.check import MOST_LOOKS
-from elbowroom.reconstruct import reconstruct
+from elbowroom.reconstruct import FreeSpace, reconstruct
 from reference import motion_machines as machines
 from reference import reconstruct_scenes as scenes
 from reference.motion_machines import HOME, room
 
 GRID = room(0.1)
-SEEDS = range(30)
+SEEDS = range(5)
 
 
 @pytest.fixture(scope="module")
@@ -37,42 +37,48 @@ def space_among_balls(arm, seed):
     return reconstruct(GRID, cameras, frames, looks=False).without(arm, HOME)
 
 
-def with_free_parts(space):
-    """The space with every voxel made free that is free in parts, and without its frames."""
-    said = space.surface_words | space.blind_words | space.disputed_words
-    free = space.free
-    for index in np.argwhere(bits.unpack(space.blocked_words & ~said, space.grid)):
-        free[tuple(index)] = space.is_free_in_parts(tuple(index))
-    return replace(space, free_words=space.free_words | bits.pack(free, space.grid), source=None)
+def in_parts(space):
+    """The space in voxels of a quarter of the edge, each free if its voxel is, or it as a part of it."""
+    fine = VoxelGrid(
+        tuple(space.grid.lower_m), tuple(4 * n for n in space.grid.shape), space.grid.voxel_size_m / 4
+    )
+    free = space.free.repeat(4, 0).repeat(4, 1).repeat(4, 2)
+    near = np.zeros(space.grid.shape, dtype=bool)
+    near[4:-4, 4:-4, 4:-4] = True
+    for i, j, k in np.argwhere(~space.free & near):
+        word = np.array([space.free_parts((i, j, k))]).view(np.uint8)
+        parts = np.unpackbits(word, bitorder="little").view(bool).reshape(4, 4, 4)
+        free[4 * i : 4 * i + 4, 4 * j : 4 * j + 4, 4 * k : 4 * k + 4] = parts
+    return FreeSpace.from_occupied(fine, ~free)
 
 
-def test_a_motion_goes_on_through_voxels_that_are_free_in_parts_and_no_farther(arm):
+def test_a_motion_goes_on_through_free_parts_and_no_farther(arm):
     motions = joint_motions(arm, {"slide": 0.4, "turn": 1.0, "nod": 1.0}, 0.5)
-    farther = 0
+    farther = as_far = 0
     for seed in SEEDS:
         space = space_among_balls(arm, seed)
         looked = check_motions(space, arm, HOME, motions)
         before = check_motions(space.released(), arm, HOME, motions)
-        at_most = check_motions(with_free_parts(space), arm, HOME, motions)
+        at_most = check_motions(in_parts(space), arm, HOME, motions)
         for one, less, most in zip(looked, before, at_most, strict=True):
-            assert less.free_travel <= one.free_travel <= most.free_travel
+            assert less.free_travel <= one.free_travel
+            if not one.escapes and not less.escapes:
+                # the finer sweep ends later, by no more than an interval
+                assert one.free_travel <= most.free_travel
+                as_far += most.free_travel - one.free_travel < 0.01
             farther += one.free_travel > less.free_travel
-            if one.free_travel < most.free_travel:
-                # only where it met more of such voxels than it asks for
-                index = tuple(GRID.index_of(one.place_in_world))
-                assert with_free_parts(space).free[index]
-    assert farther >= 3
+    assert farther > len(SEEDS) and as_far > 2 * len(SEEDS)
 
 
 class AnotherComputer:
-    """What a space was made of, elsewhere: it says that every voxel is free in parts."""
+    """What a space was made of, elsewhere: it says that all parts of every voxel are free."""
 
     def __init__(self):
         self.asked = []
 
-    def is_free_in_parts(self, space, index):
+    def free_parts(self, space, index):
         self.asked.append(index)
-        return True
+        return ~np.uint64(0)
 
 
 def test_only_so_many_voxels_are_asked_for_each_motion(arm):
@@ -90,4 +96,4 @@ def test_only_so_many_voxels_are_asked_for_each_motion(arm):
         nothing, arm, HOME, joint_motions(arm, {"slide": 0.4, "turn": 1.0, "nod": 1.0}, 0.5)[:1]
     )
     assert len(source.asked) == MOST_LOOKS
-    assert verdict.free_travel < verdict.motion.braking_distance
+    assert verdict.cause is Cause.UNSEEN

@@ -71,8 +71,8 @@ class AnotherComputer:
     def report(self, space, index):
         return self.there.source.report(space, index)
 
-    def is_free_in_parts(self, space, index):
-        return self.there.source.is_free_in_parts(space, index)
+    def free_parts(self, space, index):
+        return self.there.source.free_parts(space, index)
 
 
 def test_another_computer_may_answer_for_the_images():

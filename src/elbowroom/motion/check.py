@@ -1,14 +1,14 @@
 """How far may the machine go? Free space and motions in, verdicts out."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import MachineError
-from elbowroom.geometry import bits, parallel
+from elbowroom.geometry import parallel
 from elbowroom.machine import Machine
 from elbowroom.motion.braking import braking_distance
 from elbowroom.motion.course import Way, way_of
@@ -17,16 +17,16 @@ from elbowroom.motion.inside import blocks_inside
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.meeting import Meeting
 from elbowroom.motion.motion import JointPath, Motion
-from elbowroom.motion.shared import Start
+from elbowroom.motion.shared import NOT_LOOKED, Start
 from elbowroom.motion.skin import skin_of
 from elbowroom.motion.sweep import Block, cluster_speeds
 from elbowroom.motion.verdict import Cause, Level, Verdict
-from elbowroom.reconstruct.free_space import FreeSpace
+from elbowroom.reconstruct.free_space import FreeSpace, Index
 
 CAUSES = (Cause.SURFACE, Cause.OUTSIDE_GRID, Cause.BLIND, Cause.UNSEEN)
 """Of a block, by the numbers that the kernel gives them."""
-MOST_LOOKS = 8
-"""Of so many voxels in the way of one motion it is asked whether they are free in parts."""
+MOST_LOOKS = 32
+"""Of so many voxels in the way of one motion it is asked which parts are free."""
 
 
 def check_motion(
@@ -127,7 +127,7 @@ class _Scene:
     meeting: Meeting
     inside: Mapping[int, Block]
     world_from_link: NDArray[np.float64]
-    looked_at: dict[tuple[int, int, int], bool] = field(default_factory=dict)
+    looked_at: dict[Index, np.uint64] = field(default_factory=dict)
 
     @classmethod
     def of(cls, space: FreeSpace, machine: Machine, start: NDArray[np.float64]) -> Self:
@@ -189,34 +189,30 @@ class _Scene:
         return min(blocks, key=lambda block: (block.travel, block.kind), default=None), reaches
 
     def _block_on(self, start: Start, speeds: NDArray[np.float64], way: Way) -> tuple[Block | None, bool]:
-        """The first block of a ground's links that is not free in parts, or the last of those that are looked at; and
-        whether these links reach into blocked space at the start."""
-        for looks in range(MOST_LOOKS + 1):
-            block = start.first_block(self.machine, self.skin, speeds, way)
-            space = start.ground.space
-            if block is None or looks == MOST_LOOKS or not self._is_free_in_parts(space, block):
+        """The first block of a ground's links in parts of voxels, or the last of those that are looked at; and whether
+        these links reach into blocked space at the start."""
+        ends, left = NOT_LOOKED, MOST_LOOKS
+        while True:
+            ends = start.ends(self.machine, self.skin, speeds, way, ends)
+            block = ends.first
+            if block is None or left == 0 or CAUSES[block.kind] is Cause.OUTSIDE_GRID:
                 break
-            start = start.with_space(_with_free(space, block))
+            index = _index_of(block, self.space)
+            if start.is_known(index) or not self._free_parts(start.ground.space, index):
+                break
+            more = [other for other in start.unknown_of(block) if other != index][: left - 1]
+            left -= 1 + len(more)
+            free = {one: self._free_parts(start.ground.space, one) for one in (index, *more)}
+            start = start.with_parts(free)
         return block, start.holds(self.skin, np.where(start.ground.links[self.skin.link], speeds, 0.0))
 
-    def _is_free_in_parts(self, space: FreeSpace, block: Block) -> bool:
-        """Whether a block is a voxel that nobody disputes and that is free part by part."""
-        if CAUSES[block.kind] is not Cause.UNSEEN:
-            return False
-        index = _index_of(block, space)
+    def _free_parts(self, space: FreeSpace, index: Index) -> np.uint64:
+        """Which parts of a voxel are free."""
         if index not in self.looked_at:
-            self.looked_at[index] = space.is_free_in_parts(index)
+            self.looked_at[index] = space.free_parts(index)
         return self.looked_at[index]
 
 
-def _with_free(space: FreeSpace, block: Block) -> FreeSpace:
-    """The space with the voxel of a block made free."""
-    word, bit = bits.place_of(_index_of(block, space), space.grid)
-    free = space.free_words.copy()
-    free[word] |= bit
-    return replace(space, free_words=free)
-
-
-def _index_of(block: Block, space: FreeSpace) -> tuple[int, int, int]:
+def _index_of(block: Block, space: FreeSpace) -> Index:
     i, j, k = (int(n) for n in space.grid.index_of(block.place_in_world))
     return i, j, k

@@ -13,7 +13,7 @@ from elbowroom.machine.stand import ROUNDING_IN_VOXELS, Stand
 from elbowroom.machine.zone_words import zone_words
 from elbowroom.motion.kernels.volume import Volume
 from elbowroom.motion.sweep import Block, volume_of
-from elbowroom.reconstruct.free_space import FreeSpace, Index
+from elbowroom.reconstruct.free_space import NO_PARTS, FreeSpace, Index
 from elbowroom.reconstruct.point_report import PointReport
 
 
@@ -111,22 +111,24 @@ def _with(space: FreeSpace, free: Words, kept_out: Words | None) -> FreeSpace:
         space,
         free_words=free & ~kept_out,
         surface_words=space.surface_words | kept_out,
-        source=None if space.source is None else _AskedOf(space),
+        source=None if space.source is None else _AskedOf(space, kept_out),
     )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _AskedOf:
-    """Answers of a space for one that is blocked in more places: those are surfaces, and never asked of."""
+    """Answers of a space for one that is blocked in more places, of which no part is free."""
 
     space: FreeSpace
+    kept_out: Words
 
     def report(self, space: FreeSpace, index: Index) -> PointReport:
         assert self.space.source is not None
         return self.space.source.report(self.space, index)
 
-    def is_free_in_parts(self, space: FreeSpace, index: Index) -> bool:
-        return self.space.is_free_in_parts(index)
+    def free_parts(self, space: FreeSpace, index: Index) -> np.uint64:
+        word, bit = bits.place_of(index, self.space.grid)
+        return NO_PARTS if self.kept_out[word] & bit else self.space.free_parts(index)
 
 
 def _stood_on(machine: Machine, space: FreeSpace, stands: tuple[int, ...]) -> Words:

@@ -13,13 +13,15 @@ eps at most; so a motion that ends at a voxel within eps of the link that meets 
 the slowest part that may come there needs for 2 eps. Less evidence leaves more of B, so more of B'.
 """
 
-from dataclasses import dataclass, replace
-from typing import Self
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import bits
+from elbowroom.geometry.bits import Words
 from elbowroom.geometry.kept import kept
 from elbowroom.geometry.kernels.bits import Lattice
 from elbowroom.machine import Machine, body_samples
@@ -29,10 +31,12 @@ from elbowroom.motion.ground import Ground
 from elbowroom.motion.kernels.covered import COVERED, Pieces, cover, reached
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.shared import CELLS, WORDS, Shared
+from elbowroom.motion.kernels.sweep import Asked
+from elbowroom.motion.kernels.touched import NOTHING
 from elbowroom.motion.kernels.volume import Volume
 from elbowroom.motion.skin import skin_of
-from elbowroom.motion.sweep import Block, find_block, marked, volume_of
-from elbowroom.reconstruct.free_space import FreeSpace
+from elbowroom.motion.sweep import Block, find_block, marked
+from elbowroom.reconstruct.free_space import Index
 
 GROWTH_M = 0.0015
 """g0, at least: the facets of round links slide along in it, which stand out by a millimetre on a large arc [m]."""
@@ -43,6 +47,26 @@ MOST_SHARED = 512
 ROOM_FOR = 1 << 16
 """So many finds of such voxels are written, one after another from sample to sample."""
 HALF_DIAGONAL = np.sqrt(0.75)
+ALL_CELLS = ~np.uint64(0)
+"""Of one part of a voxel; a part is a block of 4 cells along each axis."""
+
+
+class Ends(NamedTuple):
+    """The first blocks on a way: of what links do not reach into where they stand, and of what they do."""
+
+    about: Block | None
+    within: Block | None
+
+    @property
+    def first(self) -> Block | None:
+        """The first of both."""
+        blocks = [block for block in self if block is not None]
+        return min(blocks, key=lambda block: (block.travel, block.kind), default=None)
+
+
+_AT_ONCE = Block(0.0, NOTHING, -1, np.zeros(3))
+NOT_LOOKED = Ends(_AT_ONCE, _AT_ONCE)
+"""Before the first look: blocks may be anywhere."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,12 +78,16 @@ class Start:
         within: what blocks links there; None: they reach into nothing.
         near_m: eps [m].
         placed: where links are at the start, shape (n_links, 4, 4).
+        reached: the voxels that links reach into, and their cells that the body does not cover.
+        parts: of voxels that cameras were asked of again, by number, the cells that are blocked, shape (64,).
     """
 
     ground: Ground
     within: Volume | None
     near_m: float
     placed: NDArray[np.float64]
+    reached: Shared
+    parts: Mapping[int, Words] = field(default_factory=dict)
 
     @classmethod
     def of(cls, machine: Machine, ground: Ground, placed: NDArray[np.float64]) -> Self:
@@ -74,42 +102,63 @@ class Start:
         skin, half = skin_of(machine, edge), HALF_DIAGONAL * edge / CELLS
         growth = max(GROWTH_M, GROWTH_IN_VOXELS * edge) + skin.off
         near_m = growth + skin.off + 2 * half
-        shared = _shared(machine, ground.volume, placed, (growth + half, near_m + half))
-        return cls(ground, None, near_m, placed)._with(shared)
+        reached = _shared(machine, ground.volume, placed, (growth + half, near_m + half))
+        within = None
+        if reached.numbers.size:
+            plane = np.zeros_like(ground.volume.words)
+            i, j, k = np.array(_indices(reached, ground.volume.lattice)).T
+            np.bitwise_or.at(plane, *bits.places_of(i, j, k, ground.space.grid))
+            within = marked(ground.volume._replace(words=plane, shared=reached))
+        return cls(ground, within, near_m, placed, reached)._known_in_cells()
 
-    def _with(self, shared: Shared) -> Self:
-        """The same with the shared voxels that its space still blocks."""
-        volume, words = self.ground.volume, self.ground.volume.words
-        grid = self.ground.space.grid
-        places = [bits.place_of(index, grid) for index in _indices(shared, volume.lattice)]
-        blocked = np.array([bool(words[word] & bit) for word, bit in places], dtype=np.bool_)
-        if not blocked.any():
-            return replace(self, within=None)
-        plane = np.zeros_like(words)
-        for (word, bit), still in zip(places, blocked, strict=True):
-            plane[word] |= bit if still else np.uint64(0)
-        own = Shared(
-            shared.numbers[blocked],
-            np.ascontiguousarray(shared.links[blocked]),
-            np.ascontiguousarray(shared.cells[blocked]),
-            False,
-        )
-        # where nothing is asked but what others meet, none of the cells blocks
-        others = own._replace(cells=np.zeros_like(own.cells), others=True)
+    def _known_in_cells(self) -> Self:
+        """The same with what is known of voxels cell by cell put into its volumes."""
+        reached, parts = self.reached, self.parts
+        numbers = np.union1d(reached.numbers, np.fromiter(parts, dtype=np.int64))
+        cells = np.full((len(numbers), WORDS), ALL_CELLS)
+        links = np.zeros((len(numbers), self.ground.links.size), dtype=np.bool_)
+        for row, number in enumerate(numbers.tolist()):
+            cells[row] = parts.get(number, ALL_CELLS)
+        at = np.searchsorted(numbers, reached.numbers)
+        if at.size:
+            links[at] = reached.links
+        own = reached._replace(cells=reached.cells & cells[at])
+        ground = self.ground.volume._replace(shared=Shared(numbers, links, cells, True))
         return replace(
             self,
-            ground=replace(self.ground, volume=volume._replace(shared=others)),
-            within=marked(volume._replace(words=plane, shared=own)),
+            ground=replace(self.ground, volume=ground),
+            within=None if self.within is None else self.within._replace(shared=own),
         )
 
-    def with_space(self, space: FreeSpace) -> Self:
-        """The same in a space of which more is free.
+    def with_parts(self, free: Mapping[Index, np.uint64]) -> Self:
+        """The same with what is known of more voxels.
 
         Args:
-            space: with more free voxels.
+            free: by voxel its free parts, as of `FreeSpace.free_parts`.
         """
-        bare = replace(self, ground=replace(self.ground, space=space, volume=volume_of(space)), within=None)
-        return bare if self.within is None else bare._with(self.within.shared)
+        more = {self._number(index): _blocked_cells(parts) for index, parts in free.items()}
+        return replace(self, parts={**self.parts, **more})._known_in_cells()
+
+    def is_known(self, index: Index) -> bool:
+        """Whether it has been said which parts of a voxel are free.
+
+        Args:
+            index: of the voxel.
+        """
+        return self._number(index) in self.parts
+
+    def unknown_of(self, block: Block) -> list[Index]:
+        """Of the voxels that are met where a block is, those of whose parts nothing is known.
+
+        Args:
+            block: in one of its volumes.
+        """
+        lattice = self.ground.volume.lattice
+        return [_index(n, lattice) for n in sorted(block.met.tolist()) if n not in self.parts]
+
+    def _number(self, index: Index) -> int:
+        lattice = self.ground.volume.lattice
+        return (index[0] * lattice.ny + index[1]) * lattice.nz + index[2]
 
     def holds(self, skin: Skin, speeds: NDArray[np.float64]) -> bool:
         """Whether any of the links that move reaches into blocked space at the start.
@@ -120,32 +169,41 @@ class Start:
         """
         if self.within is None:
             return False
-        return bool(self.within.shared.links[:, np.unique(skin.link[speeds > 0])].any())
+        some = self.within.shared.cells.any(axis=1)
+        return bool(self.within.shared.links[some][:, np.unique(skin.link[speeds > 0])].any())
 
-    def first_block(
-        self, machine: Machine, skin: Skin, speeds: NDArray[np.float64], way: Way
-    ) -> Block | None:
-        """The first block on a way of the ground's links.
+    def ends(self, machine: Machine, skin: Skin, speeds: NDArray[np.float64], way: Way, before: Ends) -> Ends:
+        """The first blocks on a way of the ground's links.
 
         Args:
             machine, skin: what moves.
             speeds: of its clusters along the way.
             way: where the motion leads.
+            before: those before more parts of voxels became free, or `NOT_LOOKED`.
         """
         own = np.where(self.ground.links[skin.link], speeds, 0.0)
-        found = [find_block(machine, skin, own, way, self.ground.volume)]
-        if self.within is not None and self.holds(skin, own):
-            block = find_block(machine, skin, own, way, self.within)
-            if block is not None:
-                back = self._back(skin, own, way, self.within)
-                found.append(block._replace(travel=max(0.0, block.travel - back)))
-        blocks = [block for block in found if block is not None]
-        return min(blocks, key=lambda block: (block.travel, block.kind), default=None)
+        about, within = before
+        if about is not None:
+            about = find_block(machine, skin, own, way, self.ground.volume, about.asked)
+        if within is not None:
+            holds = self.within is not None and self.holds(skin, own)
+            within = self._end_within(machine, skin, own, way, within.asked) if holds else None
+        return Ends(about, within)
+
+    def _end_within(
+        self, machine: Machine, skin: Skin, speeds: NDArray[np.float64], way: Way, asked: Asked | None
+    ) -> Block | None:
+        """The first block of what links reach into, less what may stand within eps of them."""
+        assert self.within is not None
+        block = find_block(machine, skin, speeds, way, self.within, asked)
+        if block is None:
+            return None
+        return block._replace(travel=max(0.0, block.travel - self._back(skin, speeds, way, self.within)))
 
     def _back(self, skin: Skin, speeds: NDArray[np.float64], way: Way, within: Volume) -> float:
         """How much travel the slowest part that may come to the shared voxels needs for 2 eps."""
-        lattice = within.lattice
-        centres = _corners(within.shared, lattice) + lattice.edge / 2
+        lattice, some = within.lattice, within.shared.cells.any(axis=1)
+        centres = _corners(within.shared, lattice)[some] + lattice.edge / 2
         rows = np.flatnonzero(speeds * way.length >= self.near_m / 2)
         pose = self.placed[skin.link[rows]]
         middles = np.einsum("nij,nj->ni", pose[:, :3, :3], skin.centre[rows]) + pose[:, :3, 3]
@@ -155,12 +213,20 @@ class Start:
         return float(2 * self.near_m / speeds[may].min()) if len(may) else 0.0
 
 
-def _indices(shared: Shared, lattice: Lattice) -> list[tuple[int, int, int]]:
-    """Of the shared voxels."""
-    return [
-        (n // lattice.nz // lattice.ny, n // lattice.nz % lattice.ny, n % lattice.nz)
-        for n in shared.numbers.tolist()
-    ]
+def _blocked_cells(free: np.uint64) -> Words:
+    """The cells of a voxel that lie in no free part of it."""
+    is_free = np.unpackbits(np.array([free]).view(np.uint8), bitorder="little").view(np.bool_)
+    return np.where(is_free, np.uint64(0), ALL_CELLS)
+
+
+def _index(number: int, lattice: Lattice) -> Index:
+    """Of a voxel's number."""
+    return number // lattice.nz // lattice.ny, number // lattice.nz % lattice.ny, number % lattice.nz
+
+
+def _indices(shared: Shared, lattice: Lattice) -> list[Index]:
+    """Of the voxels that are known cell by cell."""
+    return [_index(number, lattice) for number in shared.numbers.tolist()]
 
 
 def _corners(shared: Shared, lattice: Lattice) -> NDArray[np.float64]:

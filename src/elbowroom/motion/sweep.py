@@ -11,7 +11,7 @@ from elbowroom.machine.kernels.body import FIXED, SLIDES
 from elbowroom.motion.course import Way
 from elbowroom.motion.kernels.mover import Skin, bound_speeds
 from elbowroom.motion.kernels.shared import WORDS, Shared
-from elbowroom.motion.kernels.sweep import Halvings, first_block
+from elbowroom.motion.kernels.sweep import Asked, first_block, to_ask
 from elbowroom.motion.kernels.volume import Volume, block, gather_corners
 from elbowroom.reconstruct.free_space import FreeSpace
 
@@ -25,12 +25,15 @@ MOST_HALVINGS = 40
 
 
 class Block(NamedTuple):
-    """The first block on a way: its travel, its kind (as kernels number it), the cluster that meets it."""
+    """The first block on a way: its travel, its kind (as kernels number it), the cluster that meets it, where; the
+    numbers of all voxels that are met there, and from where the sweep can go on."""
 
     travel: float
     kind: int
     cluster: int
     place_in_world: NDArray[np.float64]
+    met: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+    asked: Asked | None = None
 
 
 def volume_of(space: FreeSpace) -> Volume:
@@ -98,6 +101,7 @@ def find_block(
     speeds: NDArray[np.float64],
     way: Way,
     volume: Volume,
+    asked: Asked | None = None,
 ) -> Block | None:
     """The first block that the swept body meets, or None on the whole way.
 
@@ -105,12 +109,15 @@ def find_block(
         machine, skin, way: what moves, and where to.
         speeds: of `cluster_speeds`; 0 for those that are not asked.
         volume: of `volume_of`.
+        asked: of the block in a volume of which this one is a part: the sweep goes on from there.
     """
     if way.length == 0 or not (speeds > 0).any():
         return None
     finest = volume.lattice.edge * FINEST_STEP_IN_VOXELS
     halvings = int(np.clip(np.ceil(np.log2(way.length * speeds.max() / finest)), 0, MOST_HALVINGS))
-    index, kind, cluster, place = first_block(
+    if asked is None:
+        asked = to_ask(skin, speeds, max(0, halvings - SAMPLE_HALVINGS), halvings)
+    index, kind, cluster, place, met = first_block(
         machine.tree,
         machine.world_from_base,
         skin,
@@ -118,11 +125,11 @@ def find_block(
         way.length,
         speeds,
         volume,
-        Halvings(of_clusters=max(0, halvings - SAMPLE_HALVINGS), most=halvings),
+        asked,
     )
     if index < 0:
         return None
-    return Block(index * way.length / 2.0**halvings, kind, cluster, place)
+    return Block(index * way.length / 2.0**halvings, kind, cluster, place, met, asked)
 
 
 def _link_lengths(machine: Machine, way: Way) -> NDArray[np.float64]:

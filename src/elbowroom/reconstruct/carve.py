@@ -1,6 +1,8 @@
 """Frames of any group of cameras -> evidence."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from weakref import finalize
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +19,7 @@ from elbowroom.reconstruct.kernels.carve import carve_cubes
 from elbowroom.reconstruct.kernels.planes import PLANES, Answers
 from elbowroom.reconstruct.kernels.points import carve_points
 from elbowroom.reconstruct.layout import layout_of
+from elbowroom.reconstruct.parts import KeptViews
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.reconstruct.views import fill
 from elbowroom.reconstruct.witnesses import as_one, witnesses
@@ -95,6 +98,7 @@ def carve_images(
     *,
     complete: bool = False,
     focus: NDArray[np.bool_] | None = None,
+    kept: list[KeptViews] | None = None,
 ) -> Evidence:
     """As `carve`, from images that are pinhole already.
 
@@ -106,6 +110,7 @@ def carve_images(
         complete: as of `carve`.
         focus: blocks of 4 voxels, in the planes' order, that are asked of the cameras; of the others nothing is known
             afterwards. None: all.
+        kept: takes the images as kernels have them, to be asked again; None: they are let go.
 
     Raises:
         CameraError: more than 255 cameras.
@@ -114,43 +119,55 @@ def carve_images(
     names = [camera.name for camera in images.cameras]
     near = [[names[number] for number in group] for group in groups]
     alone = [name for name in names if not any(name in group for group in near)]
-    own = _carve_all(grid, images.of(*alone) if near else images, explained, terms, complete, focus)
+    own = _Carve(grid, terms, complete, focus)(images.of(*alone) if near else images, explained, kept)
     rest = Explained(explained.model_depth, None)
     # of one witness every camera is asked, also where several see through: who disputes counts
-    shared = (_carve_all(grid, images.of(*group), rest, terms, True, focus) for group in near)
+    as_one_witness = _Carve(grid, terms, True, focus, as_one=True)
+    shared = (as_one_witness(images.of(*group), rest, kept) for group in near)
     return merge([own, *(as_one([one], complete) for one in shared)])
 
 
-def _carve_all(
-    grid: VoxelGrid,
-    images: RoomImages,
-    explained: Explained,
-    terms: Terms,
-    complete: bool,
-    focus: NDArray[np.bool_] | None,
-) -> Evidence:
-    """As `carve_images`, each camera a witness of its own."""
-    layout = layout_of(grid, images.cameras, terms.margin)
-    asked = layout.inside.copy() if focus is None else np.where(focus, layout.inside, np.uint64(0))
-    answers = _no_answers(asked, terms.detail, complete)
-    lattice, worth = bits.lattice(grid), np.flatnonzero(asked.reshape(-1, 64).any(axis=1))
-    kernel = carve_points if terms.detail == "point" else carve_cubes
-    views, buffers = fill(layout, images, explained.model_depth)
-    try:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Carve:
+    """As `carve_images`, for some cameras.
+
+    Args:
+        grid, terms, complete, focus: as of `carve_images`.
+        as_one: whether these cameras are one witness.
+    """
+
+    grid: VoxelGrid
+    terms: Terms
+    complete: bool
+    focus: NDArray[np.bool_] | None
+    as_one: bool = False
+
+    def __call__(self, images: RoomImages, explained: Explained, kept: list[KeptViews] | None) -> Evidence:
+        layout = layout_of(self.grid, images.cameras, self.terms.margin)
+        asked = (
+            layout.inside.copy() if self.focus is None else np.where(self.focus, layout.inside, np.uint64(0))
+        )
+        answers = _no_answers(asked, self.terms.detail, self.complete)
+        lattice, worth = bits.lattice(self.grid), np.flatnonzero(asked.reshape(-1, 64).any(axis=1))
+        kernel = carve_points if self.terms.detail == "point" else carve_cubes
+        views, buffers = fill(layout, images, explained.model_depth)
+        carved = KeptViews(views, self.as_one)
+        # its memory is used again when nobody has it any more
+        finalize(carved, layout.give_back, buffers)
         spread(
             lambda share: kernel(np.ascontiguousarray(worth[share::SHARES]), lattice, views, answers),
             range(min(SHARES, len(worth))),
         )
-    finally:
-        layout.give_back(buffers)
-    return Evidence(
-        grid,
-        tuple(camera.name for camera in images.cameras),
-        answers.planes,
-        bits.empty(grid) if explained.unexplained_words is None else explained.unexplained_words,
-        Counts(answers.through_count, answers.dispute_count) if complete else None,
-        witness_angle_deg=terms.witness_angle_deg,
-    )
+        if kept is not None:
+            kept.append(carved)
+        return Evidence(
+            self.grid,
+            tuple(camera.name for camera in images.cameras),
+            answers.planes,
+            bits.empty(self.grid) if explained.unexplained_words is None else explained.unexplained_words,
+            Counts(answers.through_count, answers.dispute_count) if self.complete else None,
+            witness_angle_deg=self.terms.witness_angle_deg,
+        )
 
 
 def _no_answers(asked: Words, detail: Detail, complete: bool) -> Answers:

@@ -15,6 +15,7 @@ from elbowroom.reconstruct.point_report import PointReport
 
 Index = tuple[int, int, int]
 """Of a voxel, (i, j, k)."""
+NO_PARTS = np.uint64(0)
 
 
 class Source(Protocol):
@@ -23,8 +24,8 @@ class Source(Protocol):
     def report(self, space: "FreeSpace", index: Index) -> PointReport:
         """What each camera saw at a voxel of the space made of it."""
 
-    def is_free_in_parts(self, space: "FreeSpace", index: Index) -> bool:
-        """Whether a voxel of the space is free part by part, though no one camera sees all of it."""
+    def free_parts(self, space: "FreeSpace", index: Index) -> np.uint64:
+        """Which of 64 parts of a voxel of the space are free, though all of it is not: a word."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -127,13 +128,16 @@ class FreeSpace:
         """The same space without what it was made of: it keeps no images; nothing is explained or looked at again."""
         return replace(self, source=None)
 
-    def is_free_in_parts(self, index: Index) -> bool:
-        """Whether a voxel that no one camera sees all of is free part by part, by what the space was made of.
+    def free_parts(self, index: Index) -> np.uint64:
+        """Which of 64 parts of a blocked voxel are free, by what the space was made of.
 
         Args:
             index: of the voxel.
+
+        Returns:
+            A word: bit (16 i + 4 j + k) is of the part i, j, k steps from the voxel's least corner.
         """
-        return self.source is not None and self.source.is_free_in_parts(self, index)
+        return NO_PARTS if self.source is None else self.source.free_parts(self, index)
 
     def explain(self, point_in_world: ArrayLike) -> PointReport:
         """What each camera saw at one point's voxel, and which camera could settle it.

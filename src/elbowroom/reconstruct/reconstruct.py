@@ -20,6 +20,7 @@ from elbowroom.reconstruct.explained import explain
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.images import frames_by_camera, room_images
 from elbowroom.reconstruct.looking import found_in_space, require_plausible
+from elbowroom.reconstruct.parts import KeptViews
 from elbowroom.reconstruct.resolve import decide
 from elbowroom.reconstruct.source import ImageSource
 from elbowroom.reconstruct.terms import PEOPLE_SPEED_M_S, WITNESS_ANGLE_DEG, Terms
@@ -67,8 +68,8 @@ def reconstruct(
         now_ns: the time now [ns, the clock of the frames]; needed for an age limit.
         max_age_ns: frames older than this are not used [ns]; None: no limit.
         explain_tolerance_m: how near to the machine's model a return counts as the machine, besides its noise [m].
-        body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: half a
-            voxel.
+        body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: by
+            what a pixel covers (`growth.growth_of`).
         focus: blocks of 4 voxels that are looked at, of `motion.blocks_in_reach`; all others stay unseen. None: all.
         witness_angle_deg: by rule `three`, cameras nearer to each other than this, as seen from the grid, are one
             witness [deg]; 0: each is one.
@@ -145,10 +146,13 @@ def free_space_of(
     with stage("explain"):
         explained = explain(grid, machine, images, fresh, terms)
     with stage("carve"):
-        evidence = carve_images(grid, images, explained, terms, complete=terms.needs_counts, focus=focus)
+        kept: list[KeptViews] = []
+        evidence = carve_images(
+            grid, images, explained, terms, complete=terms.needs_counts, focus=focus, kept=kept
+        )
     with stage("resolve"):
         space = decide(evidence, cameras, machine, fresh.joints_at_newest, terms)
-    source = ImageSource(images, explained.model_depth, terms, space.free_words, focus)
+    source = ImageSource(images, explained.model_depth, terms, space.free_words, focus, tuple(kept))
     space = replace(space, source=source, looked_at=focus)
     if machine is None or not machine.contacts:
         return space

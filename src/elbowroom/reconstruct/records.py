@@ -69,24 +69,6 @@ def aged(records: Records) -> Records:
     return grown
 
 
-def cut_out(record: np.record, rows: slice, columns: slice) -> np.record:
-    """The record of a part of a camera's image, whose texels and tiles stand alone; it has no windows.
-
-    Args:
-        record: of the camera.
-        rows, columns: of the part.
-    """
-    part = record.copy()
-    part["cx"] -= columns.start
-    part["cy"] -= rows.start
-    part["width"], part["height"] = columns.stop - columns.start, rows.stop - rows.start
-    ray = part["ray"]
-    ray[0] += ray[1] * columns.start + ray[2] * rows.start
-    part["first_texel"], part["first_tile"] = 0, 0
-    part["levels"], part["lowest"] = 0, 0
-    return part
-
-
 def _put_pose_and_lens(record: np.record, camera: DepthCamera) -> None:
     record["camera_from_world"] = camera.camera_from_world[:3]
     record["centre_in_world"] = camera.centre_in_world

@@ -14,6 +14,7 @@ from elbowroom.reconstruct.carve import carve_images
 from elbowroom.reconstruct.evidence import Evidence, merge
 from elbowroom.reconstruct.explained import NOTHING
 from elbowroom.reconstruct.free_space import FreeSpace
+from elbowroom.reconstruct.growth import growth_of
 from elbowroom.reconstruct.images import room_images
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.reconstruct.witnesses import witnesses
@@ -73,8 +74,9 @@ def resolve(
         rule: how cameras that disagree are decided between. Only `three` and `majority` are lawful.
         detail, margin: as the evidence was carved with; used for cameras that gave none.
         machine, joints: whose body to take out, and where it is; both None: the bare room.
-        body_growth_m: by how much the body is grown, at least a quarter voxel [m]; None: half a voxel. Evidence of
-            returns that the machine does not explain must have been looked for with the same growth.
+        body_growth_m: by how much the body is grown, at least a quarter voxel [m]; None: by what a pixel covers
+            (`growth.growth_of`). Evidence of returns that the machine does not explain must have been looked for
+            with the same growth.
 
     Raises:
         InputError: an unknown rule, or a machine without joints.
@@ -109,7 +111,7 @@ def decide(
         _require_one_witness(evidence, cameras)
     evidence = _with_silent(evidence, cameras, terms)
     free = _DECIDE[terms.rule](evidence) & bits.inside(grid)
-    body = _body(evidence, machine, joints, terms)
+    body = _body(evidence, machine, joints, growth_of(grid, cameras, terms))
     free = free | body
     blocked = ~free & bits.inside(grid)
     surface: Words = (evidence.surface | evidence.unexplained) & blocked
@@ -144,7 +146,7 @@ def _with_silent(evidence: Evidence, cameras: Sequence[DepthCamera], terms: Term
 
 
 def _body(
-    evidence: Evidence, machine: Machine | None, joints: Mapping[str, float] | None, terms: Terms
+    evidence: Evidence, machine: Machine | None, joints: Mapping[str, float] | None, growth_m: float
 ) -> Words:
     """Plane of the voxels that the machine's body covers, but for those in which something else was seen.
 
@@ -154,8 +156,8 @@ def _body(
         return bits.empty(evidence.grid)
     if joints is None:
         raise InputError("resolve: a machine without joints; give its joint positions by name")
-    body: Words = body_words(machine, joints, evidence.grid, terms.body_growth_m) & ~evidence.unexplained
+    body: Words = body_words(machine, joints, evidence.grid, growth_m) & ~evidence.unexplained
     if machine.as_seen is not machine:
-        seen = body_words(machine.as_seen, joints, evidence.grid, terms.body_growth_m)
+        seen = body_words(machine.as_seen, joints, evidence.grid, growth_m)
         body &= seen | ~evidence.disputed
     return body

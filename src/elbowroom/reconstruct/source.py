@@ -1,7 +1,7 @@
 """The images that a free space was made of, kept so that they can be asked again. Nothing is stored per voxel."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.reconstruct.free_space import FreeSpace, Index
 from elbowroom.reconstruct.images import Image, RoomImages
-from elbowroom.reconstruct.parts import is_seen_in_parts
+from elbowroom.reconstruct.parts import NONE, KeptViews, free_parts
 from elbowroom.reconstruct.point_report import PointReport, Sight
 from elbowroom.reconstruct.sight import sight_of, surface_about
 from elbowroom.reconstruct.terms import Terms
@@ -30,6 +30,7 @@ class ImageSource:
         free_words: what was declared free by them: where less is free than that, somebody blocked more, and nothing is
             looked at again.
         focus: blocks of 4 voxels that cameras were asked of, in the planes' order; None: all.
+        kept: the images as they were carved; none: no voxel can be looked at again.
     """
 
     images: RoomImages
@@ -37,6 +38,8 @@ class ImageSource:
     terms: Terms
     free_words: Words
     focus: NDArray[np.bool_] | None = None
+    kept: tuple[KeptViews, ...] = ()
+    _compared: list[tuple[Words, bool]] = field(default_factory=list)
 
     def report(self, space: FreeSpace, index: Index) -> PointReport:
         """What each camera saw at a voxel, and which camera could settle it."""
@@ -69,34 +72,35 @@ class ImageSource:
             for camera in self.images.cameras
         }
 
-    def is_free_in_parts(self, space: FreeSpace, index: Index) -> bool:
-        """Whether each of 64 parts of a voxel is seen through by some camera, where nobody disputes the voxel.
+    def free_parts(self, space: FreeSpace, index: Index) -> np.uint64:
+        """Which of 64 parts of a voxel are free, each judged as a voxel of a quarter of its edge is.
 
-        Who disputes a part disputes the voxel: so each part is free by the rule `three`. An object that touches the
-        voxel touches a part of it, so this frees nothing that smaller voxels would not. Less evidence leaves fewer
-        parts free, never more.
+        An object that touches the voxel touches a part of it, so this frees nothing that smaller voxels would not. Less
+        evidence leaves fewer parts free, never more.
 
         Args:
-            space: judged by detail `pixel` and rule `three`, and no less free than the images say; else the answer is
-                no. It is no as well where the terms say that nothing is looked at again.
-            index: of the voxel; one that cameras were not asked of, or that anybody disputes, is not free.
+            space: judged by detail `pixel` and rule `three`, and no less free than the images say; else none are. None
+                are as well where the terms say that nothing is looked at again.
+            index: of the voxel; of one that cameras were not asked of none are.
+
+        Returns:
+            A word, as of `parts.free_parts`.
         """
         terms = self.terms
-        if not terms.look_again or terms.detail != "pixel" or terms.rule != "three":
-            return False
-        if not self._is_undisputed(space, index) or self._more_is_blocked(space):
-            return False
-        return is_seen_in_parts(space.grid, index, self.images, self.model_depth, terms.margin)
-
-    def _is_undisputed(self, space: FreeSpace, index: Index) -> bool:
-        """Whether cameras were asked of a voxel, and nobody disputes it."""
-        word, bit = bits.place_of(index, space.grid)
-        asked = self.focus is None or self.focus[word]
-        return bool(asked and not space.disputed_words[word] & bit)
+        if not self.kept or not terms.look_again or terms.detail != "pixel" or terms.rule != "three":
+            return NONE
+        word, _ = bits.place_of(index, space.grid)
+        if self._more_is_blocked(space) or not (self.focus is None or self.focus[word]):
+            return NONE
+        return free_parts(space.grid, index, self.kept)
 
     def _more_is_blocked(self, space: FreeSpace) -> bool:
-        """Whether somebody blocked what the images say is free, such as a zone to keep out of."""
-        return bool((self.free_words & ~space.free_words).any())
+        """Whether somebody blocked what the images say is free, such as a zone to keep out of; asked again and again of
+        one space."""
+        if not self._compared or self._compared[0][0] is not space.free_words:
+            more = bool((self.free_words & ~space.free_words).any())
+            self._compared[:] = [(space.free_words, more)]
+        return self._compared[0][1]
 
 
 def _alone(grid: VoxelGrid, index: Index) -> tuple[VoxelGrid, NDArray[np.float64]]:

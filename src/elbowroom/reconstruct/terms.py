@@ -25,8 +25,8 @@ class Terms:
         margin: of cameras without one of their own.
         max_age_ns: frames older than this are not used [ns]; None: no limit.
         explain_tolerance_m: how near to the machine's model a return counts as the machine, besides its noise [m].
-        body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: half a
-            voxel.
+        body_growth_m: by how much the body is grown where it is taken out, at least a quarter voxel [m]; None: by
+            what a pixel covers (`growth.growth_of`).
         witness_angle_deg: by rule `three`, cameras nearer to each other than this, as seen from the grid, are one
             witness (`witnesses`) [deg]; 0: each is one.
         look_again: voxels in the way that no one camera sees all of are looked at again in parts. False: what the

@@ -1,4 +1,4 @@
-"""Voxels that links reach into where they stand, cell by cell.
+"""Voxels that are known cell by cell: links reach into them where they stand, or cameras were asked of their parts.
 
 A cell is a part of a voxel, `CELLS` along each axis; a voxel's cells are one cube of 64 words
 (`geometry.kernels.bits`).
@@ -18,13 +18,14 @@ WORDS = 64
 
 
 class Shared(NamedTuple):
-    """Blocked voxels that links reach into where they stand, n of them.
+    """Blocked voxels that are known cell by cell, n of them.
 
     Fields:
         numbers: of the voxels, (i ny + j) nz + k, rising, (n,) int64.
-        links: whether each link reaches into each, (n, links) bool.
-        cells: of each voxel those that are blocked for its links, (n, 64) uint64.
-        others: whether what is not shared blocks as well.
+        links: whether each link reaches into each where it stands, (n, links) bool.
+        cells: of each voxel those that are blocked, (n, 64) uint64.
+        others: whom they block: links that do not reach into them, and what is not here blocks all; or, if not, links
+            that do, and nothing else blocks.
     """
 
     numbers: np.ndarray
@@ -35,7 +36,7 @@ class Shared(NamedTuple):
 
 @uncounted()
 def row_of(shared, number):
-    """The row of a voxel, -1 if it is not shared."""
+    """The row of a voxel, -1 if it is not known cell by cell."""
     low, high = 0, shared.numbers.size
     while low < high:
         middle = (low + high) >> 1
@@ -71,6 +72,8 @@ def triangle_meets_cells(triangle, cells, x, y, z, edge, grown):
             block / 2 + grown,
         ):
             continue
+        if ~left == 0:
+            return True
         for bit in range(64):
             if not left & (np.uint64(1) << np.uint64(bit)):
                 continue

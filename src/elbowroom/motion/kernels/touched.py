@@ -53,7 +53,7 @@ def _meets_patch(patch, x, y, z, half_edge, triangle):
 
 @uncounted()
 def _meets_shared(patch, row, volume, x, y, z, triangle):
-    """Whether a patch, as it is grown, meets what is blocked for its link of a shared voxel about (x, y, z)."""
+    """Whether a patch, as it is grown, meets the blocked cells of a voxel about (x, y, z)."""
     skin, edge = patch.skin, volume.lattice.edge
     for n in range(skin.patch_start[patch.sample], skin.patch_start[patch.sample + 1]):
         for corner in range(3):
@@ -130,19 +130,73 @@ def _touched_by(patch, ball, volume, found, place, triangle):
                 kind = kind_of(volume, word, bit)
                 if kind >= found:
                     continue
-                x, y, z = (
-                    lattice.x0 + (i + 0.5) * lattice.edge,
-                    lattice.y0 + (j + 0.5) * lattice.edge,
-                    lattice.z0 + (k + 0.5) * lattice.edge,
-                )
-                row = row_of(volume.shared, (i * lattice.ny + j) * lattice.nz + k)
-                if row >= 0 and volume.shared.links[row, patch.link]:
-                    meets = _meets_shared(patch, row, volume, x, y, z, triangle)
-                else:
-                    meets = volume.shared.others and _meets_patch(
-                        patch, x, y, z, lattice.edge / 2 + patch.grown, triangle
-                    )
-                if meets:
+                if _meets_voxel(patch, i, j, k, volume, triangle):
                     found = kind
-                    place[0], place[1], place[2] = x, y, z
+                    place[0] = lattice.x0 + (i + 0.5) * lattice.edge
+                    place[1] = lattice.y0 + (j + 0.5) * lattice.edge
+                    place[2] = lattice.z0 + (k + 0.5) * lattice.edge
+    return found
+
+
+@uncounted()
+def _meets_voxel(patch, i, j, k, volume, triangle):
+    """Whether a patch, as it is grown, meets what is blocked of a blocked voxel."""
+    lattice, shared = volume.lattice, volume.shared
+    x, y, z = (
+        lattice.x0 + (i + 0.5) * lattice.edge,
+        lattice.y0 + (j + 0.5) * lattice.edge,
+        lattice.z0 + (k + 0.5) * lattice.edge,
+    )
+    row = row_of(shared, (i * lattice.ny + j) * lattice.nz + k)
+    if row < 0:
+        return shared.others and _meets_patch(patch, x, y, z, lattice.edge / 2 + patch.grown, triangle)
+    if shared.links[row, patch.link] == shared.others:
+        return False
+    return _meets_shared(patch, row, volume, x, y, z, triangle)
+
+
+@uncounted()
+def list_touched(placed, mover, half, volume, samples, triangle, numbers):
+    """The blocked voxels that samples' patches meet, as of `touched_block`; how many are written.
+
+    Args:
+        placed, mover, half, volume, samples, triangle: as of `touched_block`.
+        numbers: takes their numbers, (i ny + j) nz + k, as many as there is room for, each once.
+    """
+    skin, lattice = mover.skin, volume.lattice
+    count = 0
+    for sample in samples:
+        cluster = skin.cluster_of[sample]
+        world_from_link = placed[skin.link[cluster]]
+        x, y, z = carried(world_from_link, skin.points[sample])
+        grown = mover.speeds[cluster] * half + (ROUNDING_M + skin.off)
+        patch = Patch(world_from_link, skin.link[cluster], grown, skin, sample)
+        u, v, w, s = counted(x, y, z, skin.cover + grown, lattice)
+        for i in range(cell_of(u - s, lattice.nx), cell_of(u + s, lattice.nx) + 1):
+            du = gap(u, i * 1.0, i + 1.0)
+            for j in range(cell_of(v - s, lattice.ny), cell_of(v + s, lattice.ny) + 1):
+                dv = gap(v, j * 1.0, j + 1.0)
+                for k in range(cell_of(w - s, lattice.nz), cell_of(w + s, lattice.nz) + 1):
+                    dw = gap(w, k * 1.0, k + 1.0)
+                    word, bit = word_of(i, j, k, lattice.cubes_y, lattice.cubes_z), bit_of(i, j, k)
+                    if not volume.words[word] & bit or du * du + dv * dv + dw * dw > s * s:
+                        continue
+                    number = (i * lattice.ny + j) * lattice.nz + k
+                    if _is_among(number, numbers, count) or not _meets_voxel(
+                        patch, i, j, k, volume, triangle
+                    ):
+                        continue
+                    if count == numbers.size:
+                        return count
+                    numbers[count] = number
+                    count += 1
+    return count
+
+
+@njit(inline="always")
+def _is_among(number, numbers, count):
+    """Whether a number is one of the first few."""
+    found = False
+    for n in range(count):
+        found |= numbers[n] == number
     return found
