@@ -128,15 +128,16 @@ def unpack_depth(data: bytes | memoryview, what: str) -> NDArray[np.float32]:
         PackageError: zstandard is not installed.
     """
     head = head_of(data, what)
-    width, height = head.size
-    image = np.empty((height, width), np.float32)
-    depth = image.reshape(-1)
+    # what there is of it is unpacked first: a head alone makes nothing large
     if head.units is None:
         zigzag = _unpacked(data, head, what).reshape(4, -1).T.copy().view("<u4").reshape(-1)
-        kernels.from_differences_32(zigzag, depth.view(np.uint32))
+        image = np.empty(head.size[::-1], np.float32)
+        kernels.from_differences_32(zigzag, image.reshape(-1).view(np.uint32))
     else:
+        numbers = _numbers(data, head, what)
+        image = np.empty(head.size[::-1], np.float32)
         scale, bias = np.float32(head.units.scale_m), np.float32(head.units.bias_m)
-        kernels.from_units(_numbers(data, head, what), scale, bias, depth)
+        kernels.from_units(numbers, scale, bias, image.reshape(-1))
     image.setflags(write=False)
     return image
 
