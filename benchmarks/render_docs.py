@@ -402,7 +402,18 @@ def render(results: Path = RESULTS) -> str:
         "",
         "*due* is what the project set out to reach; what misses it stands in bold.",
     ]
-    for section in SECTIONS:
+    return "\n".join([*lines, *rendered(SECTIONS, results)]) + "\n"
+
+
+def rendered(sections: Sequence[Section], results: Path) -> list[str]:
+    """Sections as lines of Markdown.
+
+    Args:
+        sections: in their order.
+        results: folder of their files.
+    """
+    lines: list[str] = []
+    for section in sections:
         lines += ["", f"## {section.title}", section.text]
         path = results / section.file
         if not path.is_file():
@@ -411,7 +422,7 @@ def render(results: Path = RESULTS) -> str:
             continue
         content = json.loads(path.read_text(encoding="utf-8"))
         lines += [*section.tables(content["rows"]), "", _origin(content.get("meta", {}))]
-    return "\n".join(lines) + "\n"
+    return lines
 
 
 def _origin(meta: Mapping[str, Any]) -> str:

@@ -113,16 +113,21 @@ def test_noise_table_has_every_preset_with_its_coefficients() -> None:
 
 
 def _forget_tables(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [name for name in sys.modules if name.partition(".")[0] in ("ages", "result_tables")]:
+    for name in [
+        name for name in sys.modules if name.partition(".")[0] in ("ages", "render_docs", "result_tables")
+    ]:
         monkeypatch.delitem(sys.modules, name)
 
 
-def test_page_of_benchmarks_is_what_the_results_say(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("page, script", [("benchmarks", "docs"), ("reliability", "reliability")])
+def test_page_of_benchmarks_is_what_the_results_say(
+    page: str, script: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.syspath_prepend(str(PROJECT / "benchmarks"))
-    rendered = runpy.run_path(str(PROJECT / "benchmarks" / "render_docs.py"))["render"]()
+    rendered = runpy.run_path(str(PROJECT / "benchmarks" / f"render_{script}.py"))["render"]()
     _forget_tables(monkeypatch)
-    page = (PROJECT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
-    assert page.replace(_since(), "") == rendered, "run: python benchmarks/render_docs.py"
+    text = (PROJECT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    assert text.replace(_since(), "") == rendered, f"run: python benchmarks/render_{script}.py"
 
 
 def test_page_of_benchmarks_shows_what_misses_its_due_figure(
@@ -181,15 +186,14 @@ def _since() -> str:
     return str(_ages()["SINCE"])
 
 
-@pytest.mark.parametrize("page", ("benchmarks.md", "evaluation.md"))
+@pytest.mark.parametrize("page", ("benchmarks.md", "evaluation.md", "reliability.md"))
 def test_a_figure_that_is_older_than_the_core_says_so(page: str) -> None:
     ages = _ages()
     if not ages["has_history"]():
         pytest.skip("no checkout with all its commits")
     unsaid = ages["unsaid"]((PROJECT / "docs" / page).read_text(encoding="utf-8"))
-    assert not unsaid, (
-        f"{unsaid}; run: python benchmarks/render_{'docs' if 'bench' in page else 'evaluation'}.py"
-    )
+    script = {"benchmarks.md": "docs"}.get(page, page.removesuffix(".md"))
+    assert not unsaid, f"{unsaid}; run: python benchmarks/render_{script}.py"
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from result_tables.calibration import calibration_tables
 from result_tables.cells import Row, any_tables
 from result_tables.drift import drift_tables
+from result_tables.faults import fault_tables
 from result_tables.latch import latch_tables
 from result_tables.looks import contradiction_tables, looks_tables
 from result_tables.placement import placement_tables, sweep_tables
@@ -32,6 +33,7 @@ __all__ = [
     "cut_tables",
     "drift_tables",
     "escape_tables",
+    "fault_tables",
     "hand_tables",
     "latch_tables",
     "looks_tables",

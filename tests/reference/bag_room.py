@@ -61,7 +61,7 @@ class BagRoom:
         """A site file of it with a recording."""
         content = {
             "grid": {"origin_m": [-2, -2, 0], "upper_m": [2, 2, 2.4], "voxel_size_m": 0.1},
-            "camera_defaults": {"noise": "tof", "depth_scale_m": 0.001},
+            "camera_defaults": {"noise": "tof", "depth_scale_m": 0.001, "repeats": True},
             "cameras": [
                 {
                     "name": c.name,

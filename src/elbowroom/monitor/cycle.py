@@ -104,6 +104,11 @@ class Cycle:
         verdicts = tuple(self._stop(motion) for motion in self.motions)
         return failure(self._number(), error, snapshot, stage_ms, verdicts)
 
+    def unplaced(self, snapshot: Snapshot) -> CycleResult:
+        """A pass in which nobody knows where the machine is: stop for every motion, by what came in."""
+        verdicts = tuple(self._stop(motion, Cause.INPUT) for motion in self.motions)
+        return CycleResult(self._number(), snapshot.now_ns or 0, None, verdicts, {}, snapshot.oldest_age_ms)
+
     def _late(self, snapshot: Snapshot, begun_ns: int) -> str | None:
         """What is said where a frame that was used has come of age since its pass began."""
         return lateness(snapshot, self.terms, (self.clock_ns() - begun_ns) / 1e6)

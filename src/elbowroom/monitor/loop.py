@@ -10,6 +10,7 @@ from elbowroom.monitor.face import Face, Pass
 from elbowroom.monitor.gate.gate import Gate
 from elbowroom.monitor.gate.state import Decision
 from elbowroom.monitor.health.checks import Checks
+from elbowroom.monitor.health.streams.streams import without_sick
 from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.sensing import Snapshot
@@ -86,7 +87,9 @@ class Loop:
         """What one snapshot comes to; it does not raise."""
         begun_ns = self.cycle.clock_ns()
         known = self.checks.hear(snapshot)
-        return self.cycle.run(snapshot, begun_ns).knowing(known)
+        if not known.is_placed:
+            return self.cycle.unplaced(snapshot).knowing(known)
+        return self.cycle.run(without_sick(snapshot, known.sick), begun_ns).knowing(known)
 
     def _decision(self, result: CycleResult) -> Decision | None:
         """What the gate makes of a pass."""

@@ -7,6 +7,7 @@ from typing import Self
 from elbowroom.finding import Finding
 from elbowroom.monitor.health.health import Health
 from elbowroom.monitor.health.known import Known
+from elbowroom.monitor.health.streams.cause import Sick
 from elbowroom.motion import Cause, Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
 
@@ -29,6 +30,8 @@ class CycleResult:
         late: that frames were past their age when the verdicts were out, so that every one is stop, one sentence; None:
             they were in time, or there is no limit.
         skew_ms: between the stamps of the oldest and the newest frame that was used [ms]; None: there are no two.
+        sick: what is wrong with which source. A camera of it was left out; while joints are, every verdict is stop.
+        blind: that no camera gave anything that counts, so that every verdict is stop, one sentence; None: one did.
         given: names of the cameras whose frames were judged; None: nothing was.
     """
 
@@ -43,6 +46,8 @@ class CycleResult:
     findings: tuple[Finding, ...] = ()
     late: str | None = None
     skew_ms: float | None = None
+    sick: tuple[Sick, ...] = ()
+    blind: str | None = None
     given: tuple[str, ...] | None = None
 
     def knowing(self, known: Known) -> Self:
@@ -56,6 +61,8 @@ class CycleResult:
             fault=self.fault or known.fault,
             health=known.health,
             findings=known.findings,
+            sick=known.sick,
+            blind=known.blind,
         )
 
     @property
@@ -63,8 +70,10 @@ class CycleResult:
         """Why every verdict is stop, whatever the space is: the fault, else frames that are too old by now, else input
         that cannot be right, else what the watch found; None: none of them.
         """
-        wrong = "; ".join(finding.text for finding in self.findings if finding.stops)
-        return self.fault or self.late or wrong or (self.health.reason if self.health is not None else None)
+        found = [each.text for each in self.sick if each.stops]
+        wrong = "; ".join([*found, *(finding.text for finding in self.findings if finding.stops)])
+        watched = self.health.reason if self.health is not None else None
+        return self.fault or self.late or wrong or self.blind or watched
 
     @property
     def age_ms(self) -> float | None:

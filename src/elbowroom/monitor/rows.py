@@ -12,6 +12,7 @@ from elbowroom.monitor.face import Pass
 from elbowroom.monitor.gate.told import GateRows
 from elbowroom.monitor.health.drift.watch import BODY
 from elbowroom.monitor.health.health import CameraHealth, LinkHealth
+from elbowroom.monitor.health.streams.told import SickRows, sick_row
 from elbowroom.monitor.result import CycleResult
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.sources import Played, Room, Source
@@ -33,7 +34,7 @@ class Rows:
         self._told: dict[str, str] = {}
         self._source: Source | None = None
         self._clocks_ns: int | None = None
-        self._gate = GateRows()
+        self._gate, self._sick = GateRows(), SickRows()
 
     def begin(self, room: Room) -> None:
         """Adds the row of the room."""
@@ -46,6 +47,8 @@ class Rows:
             self._add(row)
         for row in (*health_rows(done.result, self._told), *self._gate.rows(done.result, done.decision)):
             self._add(row)
+        for row in self._sick.rows(done.result.sick):
+            self._add({**row, "sequence": done.result.sequence, "time_s": done.result.stamp_ns / 1e9})
         if isinstance(self._source, Played) and self._is_time(done.result.stamp_ns):
             for row in clock_rows(done.result, self._source.clocks):
                 self._add(row)
@@ -97,6 +100,7 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
         "fault": result.fault,
         "stopped_by": result.stopped_by,
         "findings": [asdict(finding) for finding in result.findings],
+        "sick": [sick_row(each) for each in result.sick],
     }
     if not result.verdicts and result.space is not None:
         cycle |= shares_pct(result.space)

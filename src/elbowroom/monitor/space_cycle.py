@@ -72,6 +72,10 @@ class SpaceCycle:
         """
         return failure(self._number(), error, snapshot, stage_ms)
 
+    def unplaced(self, snapshot: Snapshot) -> CycleResult:
+        """A pass in which nobody knows where the machine is: nothing is free."""
+        return CycleResult(self._number(), snapshot.now_ns or 0, None, (), {}, snapshot.oldest_age_ms)
+
     def _number(self) -> int:
         self.sequence += 1
         return self.sequence - 1

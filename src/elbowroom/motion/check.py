@@ -39,8 +39,8 @@ def check_motion(
     into where it stands, what the body does not cover there blocks it (`motion.shared`), so what leads away goes; about
     a blocked voxel that lies in it a link has a free travel of 0. What lies outside the grid is blocked. Where a link
     would meet another one that must not (`Machine.allowed_contacts`), that ends the travel as well. Joint limits cap
-    the free travel, not the level. A voxel in the way that is unseen, because no one camera sees all of it, is looked
-    at again in parts if the space still has what it was made of (`FreeSpace.is_free_in_parts`).
+    the free travel, not the level. A voxel in the way is looked at again in parts if the space still has what it was
+    made of (`FreeSpace.free_parts`): what is free of it does not end the travel.
 
     Args:
         space: the free space.

@@ -29,8 +29,8 @@ class Terms:
             what a pixel covers (`growth.growth_of`).
         witness_angle_deg: by rule `three`, cameras nearer to each other than this, as seen from the grid, are one
             witness (`witnesses`) [deg]; 0: each is one.
-        look_again: voxels in the way that no one camera sees all of are looked at again in parts. False: what the
-            volume says holds, so that who has images and who has only the volume say the same.
+        look_again: voxels in the way are looked at again in parts. False: what the volume says holds, so that who has
+            images and who has only the volume say the same.
         people_speed_m_s: the most that anything but the machine moves: what a camera saw to be free holds for what
             such a thing cannot have reached since [m/s].
         nothing_moves: somebody vouches that nothing but the machine moves here: only then that speed is 0.

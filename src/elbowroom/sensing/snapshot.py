@@ -24,6 +24,8 @@ class Snapshot:
         now_ns: the time now [ns, the clock of the frames]; None: nothing has a time.
         clock_bounds_ns: by camera, how much older its frame may be than its stamp says, since its clock is known no
             better [ns]; a camera that is missing: not at all. It is part of every age.
+        joints_ns: when `joints` were so [ns, the clock of the frames]; None: nobody says.
+        commanded: at which speeds the machine is commanded to move, by joint [m/s or rad/s]; None: nobody says.
     """
 
     frames: tuple[DepthFrame, ...]
@@ -31,6 +33,8 @@ class Snapshot:
     joints_of: Mapping[str, Positions] = field(default_factory=dict)
     now_ns: int | None = None
     clock_bounds_ns: Mapping[str, int] = field(default_factory=dict)
+    joints_ns: int | None = None
+    commanded: Positions | None = None
 
     @classmethod
     def taken(

@@ -98,6 +98,7 @@ class CameraSettings(Entry):
     flying_pixels: Flag | None = None
     mask: Text | None = None
     clock_bound_ms: Annotated[NotNegative, up_to(1e4, "ms", (1e-6, "nanoseconds"))] = 0.0
+    repeats: Flag = False
 
     @model_validator(mode="after")
     def _one_source_of_intrinsics(self) -> "CameraSettings":

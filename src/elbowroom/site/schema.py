@@ -14,6 +14,7 @@ from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text, Whole
 from elbowroom.site.gate_entry import GateEntry
+from elbowroom.site.health_entry import HealthEntry
 from elbowroom.site.machine_entry import JointEntry, MachineEntry, MemberEntry, OverrideEntry
 from elbowroom.site.memory import physical_memory_bytes, require_memory
 from elbowroom.site.placement_entry import PlacementEntry
@@ -110,7 +111,7 @@ class SimulatedEntry(Entry):
 
 EVEN_SETTINGS = ("cameras", "camera_height_m", "resolution", "field_of_view_deg")
 """What `simulated` says of the cameras that it makes, unless the site lists its own."""
-SIMULATED_SETTINGS = ("depth_kind", "noise", "min_depth_m", "max_depth_m")
+SIMULATED_SETTINGS = ("depth_kind", "noise", "min_depth_m", "max_depth_m", "repeats")
 """What `camera_defaults` may say of simulated cameras."""
 
 
@@ -141,6 +142,7 @@ class SiteEntry(Entry):
     watch: WatchEntry | None = None
     gate: GateEntry | None = None
     black_box: BlackBoxEntry | None = None
+    health: HealthEntry = HealthEntry()
     calibration: CalibrationEntry | None = None
 
     @property

@@ -109,7 +109,7 @@ class Played:
         except JointsError as error:
             found.append(Finding("joints", (), str(error), True))
         self.findings = tuple(found)
-        return Snapshot(taken, now_at, at_frame, now_ns, bounds)
+        return Snapshot(taken, now_at, at_frame, now_ns, bounds, _said_ns(joints, now_ns))
 
 
 def _joints_of(
@@ -133,6 +133,14 @@ def _joints_of(
         raise JointsError(f"joints: where the machine is, is not known: {since}")
     at_frame = {frame.camera: joints.at(min(frame.stamp_ns or 0, last_ns)) for frame in frames}
     return joints.at(last_ns), at_frame
+
+
+def _said_ns(joints: Joints | None, now_ns: int) -> int | None:
+    """When the last row before now was so [ns]; None: there is no record, or none was."""
+    if not isinstance(joints, JointRecord):
+        return None
+    heard = int(np.searchsorted(joints.stamps_ns, now_ns, side="right"))
+    return int(joints.stamps_ns[heard - 1]) if heard else None
 
 
 def _begin_ns(arrivals: Sequence[Arrival]) -> int:

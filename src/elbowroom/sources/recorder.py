@@ -104,6 +104,7 @@ def recorded_site(name: str, grid: VoxelGrid, cameras: Sequence[DepthCamera], no
             "depth_kind": first.depth_kind,
             "depth_scale_m": UNIT_M,
             "noise": noise,
+            **({"repeats": True} if noise == "exact" else {}),
             "min_depth_m": first.min_depth_m,
             "max_depth_m": min(first.max_depth_m, LARGEST * UNIT_M),
         },

@@ -27,6 +27,7 @@ from elbowroom.monitor.gate.faults import faults_of
 from elbowroom.monitor.gate.gate import Gate
 from elbowroom.monitor.gate.state import Phase, Rules
 from elbowroom.monitor.gate.told import GateRows, gate_lines
+from elbowroom.monitor.health.streams.cause import HealthCause, Sick
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.motion.verdict import Creep
 
@@ -329,6 +330,24 @@ def test_whatever_fails_in_the_gate_is_stop(run: Run, monkeypatch: pytest.Monkey
     assert run.told.beats[-1].machine.per_mille == 0
 
 
+def test_a_run_whose_stop_could_not_be_latched_has_not_ended_well(
+    begin: Begin, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Short of memory, for one: the gate itself fails, twice, and the run ends by that error."""
+    run = begin()
+    run.passes()
+
+    def fails() -> list[Fault]:
+        raise MemoryError
+
+    monkeypatch.setattr(run.told, "faults", fails)
+    with pytest.raises(MemoryError):
+        run.passes()
+    run.end()
+    assert run.on_disk == [Reason.UNCLEAN_END]
+    assert begin().passes().latched[0].reason is Reason.UNCLEAN_END
+
+
 def test_two_monitors_cannot_share_a_folder(run: Run) -> None:
     with pytest.raises(InputError, match="another monitor"):
         Gate(run.folder, SITE, RULES).begin()
@@ -420,3 +439,35 @@ def test_faults_of_one_camera_are_one_fault() -> None:
     more = Health((), (), {"cam1": "camera cam1 has moved by 2°", "cam2": "covered"})
     assert faults_of(result(health=moved))[0] == faults_of(result(health=more))[0]
     assert len(faults_of(result(health=more))) == 2
+
+
+CAMERAS = [cause for cause in HealthCause if cause.is_of_camera and cause.latches]
+
+
+@pytest.mark.parametrize("cause", [cause for cause in HealthCause if cause.latches])
+def test_every_cause_of_a_sick_source_latches_by_its_own_reason(run: Run, cause: HealthCause) -> None:
+    run.passes(3)
+    sick = Sick(cause, "cam1", "camera cam1 is not well", "3 images")
+    decision = run.passes(sick=(sick,))
+    assert (
+        decision.level is Level.STOP
+        and decision.reason is Reason[cause.name]
+        and run.on_disk == [cause.value]
+    )
+    assert decision.latched[0].subject == "cam1" and decision.latched[0].sentence == sick.text
+    assert run.passes().reason is Reason.RESET_DUE
+    # one camera is left out, and what is judged holds; without joints nothing does
+    assert cause.value.leaves_doubt is not cause.is_of_camera
+
+
+@pytest.mark.parametrize("cause", CAMERAS)
+def test_a_camera_that_the_site_can_do_without_latches_nothing(run: Run, cause: HealthCause) -> None:
+    decision = run.passes(20, sick=(Sick(cause, "cam1", "", "", tolerated=True),))
+    assert not decision.latched and decision.speed > 0
+
+
+def test_nothing_moves_while_a_camera_has_not_given_its_first_image(run: Run) -> None:
+    awaited = Sick(HealthCause.CAMERA_STARTING, "cam1", "camera cam1 is awaited", "its first image")
+    decision = run.passes(5, sick=(awaited,))
+    assert decision.level is Level.STOP and decision.reason is Reason.STARTING and not decision.latched
+    assert run.passes(5).speed > 0

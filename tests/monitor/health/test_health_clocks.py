@@ -124,3 +124,38 @@ def test_a_recording_may_be_slow_may_have_gaps_and_its_layout_looks_at_skews():
 
 def test_images_without_times_are_not_looked_at():
     assert heard(moment(None, None, None), moment(None, None)) == [[], []]
+
+
+@given(st.integers(150, 10**7), st.integers(10, 90), st.integers(4, 30), st.integers(0, 2**16))
+def test_a_clock_that_is_set_ahead_is_a_stop_for_a_second(by_ms, step_ms, before, seed):
+    ticks, random = Ticks(), np.random.default_rng(seed)
+    clocks, late = Clocks(clock_ns=ticks), random.integers(0, step_ms, before + 200)
+    said = []
+    for number in range(before + 200):
+        now_ms = number * step_ms + (by_ms + 2 * step_ms if number >= before else 0)
+        ticks.now_ns = (number * step_ms + int(late[number])) * MS
+        said.append([f.kind for f in clocks.hear(moment(EPOCH + now_ms * MS)) if f.stops])
+        if number * step_ms > before * step_ms + 1500:
+            break
+    assert not any(said[:before]) and said[before] == ["clock"]
+    assert said[-1] == []
+
+
+@given(st.lists(st.integers(1, 2000), min_size=3, max_size=40), st.integers(0, 2**16))
+def test_passes_of_any_length_are_no_jump_of_the_clock(steps_ms, seed):
+    """The time is taken when a snapshot begins to be brought, which takes as long as it takes."""
+    ticks, random = Ticks(), np.random.default_rng(seed)
+    clocks, at_ms = Clocks(clock_ns=ticks), 0
+    for step_ms in steps_ms:
+        now_ms = at_ms + int(random.integers(0, step_ms))
+        at_ms += step_ms
+        ticks.now_ns = at_ms * MS
+        assert clocks.hear(moment(EPOCH + now_ms * MS)) == ()
+
+
+def test_a_source_that_runs_faster_than_the_clock_does_not_jump():
+    ticks = Ticks()
+    clocks = Clocks(clock_ns=ticks)
+    for number in range(40):
+        ticks.now_ns = number * 10 * MS
+        assert clocks.hear(moment(EPOCH + number * 300 * MS)) == ()

@@ -14,6 +14,7 @@ from rich.console import Console
 from elbowroom.finding import Finding
 from elbowroom.geometry import VoxelGrid
 from elbowroom.monitor import CameraHealth, Condition, CycleResult, Health, LinkHealth, Pass, Shift
+from elbowroom.monitor.health.streams.cause import HealthCause, Sick
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.sensing import Snapshot
 from elbowroom.view.screen.run_log import RunLog
@@ -248,3 +249,20 @@ def test_what_was_found_about_the_input_is_shown():
         view.end()
         assert mild.text in said and grave.text in said
         assert terminal or said.count(mild.text) == 1
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_what_is_sick_is_shown_with_what_ends_it_and_stays_in_the_summary(terminal):
+    text = "camera cam03 gives the image before again"
+    sick = Sick(
+        HealthCause.CAMERA_FROZEN, "cam03", text, "3 images in a row that are not the one before", 2.0
+    )
+    console = Console(file=io.StringIO(), width=140, force_terminal=terminal, color_system=None)
+    view = TerminalView(console)
+    view.open(WATCHED)
+    view.show(a_pass(replace(a_result(), sick=(sick,), blind="no camera gives anything that counts")))
+    view.end()
+    said = console.file.getvalue()
+    assert f"Left out: {text} (until 3 images" in said
+    assert "no camera gives anything that counts" in said
+    assert "cam03: frozen in 1 of 1 cycles" in said

@@ -6,6 +6,7 @@ from elbowroom.cli.evaluate.bits import bits
 from elbowroom.cli.evaluate.cell import cell
 from elbowroom.cli.evaluate.contradictions import contradictions
 from elbowroom.cli.evaluate.escape import escape
+from elbowroom.cli.evaluate.faults import faults
 from elbowroom.cli.evaluate.hand import hand
 from elbowroom.cli.evaluate.latch import latch
 from elbowroom.cli.evaluate.looks import looks
@@ -51,6 +52,7 @@ evaluate_app.command(epilog=_example("contradictions --sites 5 --right 20 --json
     contradictions
 )
 evaluate_app.command(epilog=_example("latch --quick --json latch.json"))(latch)
+evaluate_app.command(epilog=_example("faults --quick --json faults.json"))(faults)
 evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
 evaluate_app.command(epilog=_example("robots packages --json robots.json"))(robots)
 evaluate_app.command(epilog=_example("own-links packages --quick --json own_links.json"))(own_links)

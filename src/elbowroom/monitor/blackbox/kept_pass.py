@@ -12,6 +12,7 @@ from elbowroom.monitor.blackbox.kept_values import kept
 from elbowroom.monitor.face import Pass
 from elbowroom.monitor.gate.state import Decision
 from elbowroom.monitor.gate.told import decision_row
+from elbowroom.monitor.health.streams.told import sick_row
 from elbowroom.monitor.result import CycleResult
 from elbowroom.motion import Level, Verdict
 from elbowroom.reconstruct import FreeSpace
@@ -189,6 +190,7 @@ def judged(result: CycleResult) -> dict[str, Any]:
         "late": result.late,
         "stopped_by": result.stopped_by,
         "given": None if result.given is None else list(result.given),
+        "sick": [plain(sick_row(each)) for each in result.sick],
         "findings": [asdict(finding) for finding in result.findings],
         "stage_ms": plain(dict(result.stage_ms)),
         "oldest_age_ms": plain(result.oldest_age_ms),

@@ -1,13 +1,16 @@
 """What of a pass latches."""
 
+from collections.abc import Mapping
+
 from elbowroom.guard.fault import Fault
 from elbowroom.guard.reason import Reason
+from elbowroom.monitor.health.streams.cause import HealthCause
 from elbowroom.monitor.result import CycleResult
 
 
 def faults_of(result: CycleResult) -> tuple[Fault, ...]:
-    """Faults of a pass: it failed, came too late, had input that cannot be right, or the watch found something."""
-    found = []
+    """Faults of a pass: a sick source, a failure, too late, input that cannot be right, what the watch found."""
+    found = [Fault(sick.cause.value, sick.source, sick.text) for sick in result.sick if sick.latches]
     if result.fault is not None:
         found.append(Fault(Reason.FAULT, "", result.fault))
     if result.late is not None:
@@ -17,5 +20,7 @@ def faults_of(result: CycleResult) -> tuple[Fault, ...]:
         for finding in result.findings
         if finding.stops
     ]
-    stops = {} if result.health is None else result.health.stops
-    return (*found, *(Fault(Reason.WATCH, subject, text) for subject, text in stops.items()))
+    stops: Mapping[str, str] = {} if result.health is None else result.health.stops
+    told = {sick.source for sick in result.sick if sick.cause is HealthCause.CAMERA_MOVED}
+    watched = [(subject, text) for subject, text in stops.items() if subject not in told]
+    return (*found, *(Fault(Reason.WATCH, subject, text) for subject, text in watched))

@@ -16,7 +16,7 @@ from elbowroom.guard.fault import Fault
 from elbowroom.guard.latch_file import LatchFile
 from elbowroom.guard.link import WatchdogLink
 from elbowroom.guard.reason import Reason
-from elbowroom.monitor.gate.claim import claims_of
+from elbowroom.monitor.gate.claim import Claim, claims_of
 from elbowroom.monitor.gate.faults import faults_of
 from elbowroom.monitor.gate.state import (
     Decision,
@@ -31,7 +31,9 @@ from elbowroom.monitor.gate.state import (
 )
 from elbowroom.monitor.gate.step import step
 from elbowroom.monitor.gate.told import decision_row, heartbeat_of
+from elbowroom.monitor.health.streams.cause import HealthCause
 from elbowroom.monitor.result import CycleResult
+from elbowroom.motion import Level
 
 
 @dataclass(slots=True, eq=False)
@@ -57,6 +59,7 @@ class Gate:
     _control: Control = field(init=False)
     _lock: int | None = field(default=None, init=False)
     _sequence: int = field(default=0, init=False)
+    _is_broken: bool = field(default=False, init=False)
 
     def begin(self) -> None:
         """Takes the folder and what its latch holds, and starts the watchdog. The machine is stop.
@@ -84,22 +87,29 @@ class Gate:
         asked = self._asked()
         try:
             claims = claims_of(result.verdicts, self.rules.low_speed)
+            if any(sick.cause is HealthCause.CAMERA_STARTING for sick in result.sick):
+                claims = tuple(Claim(each.motion, Level.STOP, 0.0, Reason.STARTING) for each in claims)
             self._pass(Judged(claims, faults_of(result)))
         except Exception as error:  # whatever fails here is a stop
+            self._is_broken = True  # until that stop is latched, this run cannot have ended well
             self._pass(Judged((), (Fault(Reason.FAULT, "gate", f"{type(error).__name__}: {error}"),)))
+            self._is_broken = False
         for request, answer in asked:
             self._answer(request, answer)
         return self._decision
 
     def end(self) -> None:
-        """Says stop for good. Where nothing is latched, the latch says that this run has ended as it was asked to."""
+        """Says stop for good. Where nothing is latched, the latch says that this run has ended as it was asked to; not
+        where a stop could not be latched: that reads as killed.
+        """
         latched = self._state.latched
         self._sequence += 1
         self._decision = self._stepped(Ended())
         self._send()
         if self.watchdog is not None:
             self.watchdog.end()
-        self._latch.end(latched)
+        if not self._is_broken:
+            self._latch.end(latched)
         self._control.end()
         self._let_go()
 

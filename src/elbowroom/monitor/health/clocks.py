@@ -21,6 +21,12 @@ UNKNOWN_STEP_NS = 1_000_000_000
 """Where no camera has given two frames yet, they lie no farther apart than this [ns]."""
 RATE_AFTER_NS = 1_000_000_000
 """After so long it is known how fast stamps go [ns]."""
+JUMP_NS = 100_000_000
+"""The clock jumped if it went ahead by so much more than any snapshot could have waited [ns],"""
+JUMP_STEPS, LEAST_STEPS = 3, 3
+"""and by more than so many usual steps; of a source that runs faster than this computer's clock all steps are large."""
+JUMP_LASTS_NS = 1_000_000_000
+"""For so long after a jump no age is trusted [ns]."""
 TOO_SLOW, TOO_FAST = 0.02, 50.0
 """Stamps that go so much slower or faster than the clock of this computer are in another unit."""
 REMEMBERED = 15
@@ -60,6 +66,9 @@ class Clocks:
     _now_ns: int | None = field(default=None, init=False)
     _greatest_now_ns: int | None = field(default=None, init=False)
     _first: tuple[int, int] | None = field(default=None, init=False)
+    _heard_ns: tuple[int, ...] = field(default=(), init=False)
+    _went_ns: deque[int] = field(default_factory=lambda: deque(maxlen=REMEMBERED), init=False)
+    _jumped: tuple[int, str] | None = field(default=None, init=False)
 
     @property
     def name(self) -> str:
@@ -89,8 +98,32 @@ class Clocks:
                 "Start the monitor again"
             )
             yield Finding("clock", (), text, True)
+        elif not self.recorded and before is not None:
+            yield from self._jump(now - before)
         elif self.recorded and before is not None and now - before > self.gap_ns:
             yield Finding("gap", (), f"nothing was recorded for {length_text(now - before)}: skipped", False)
+
+    def _jump(self, went_ns: int) -> Iterator[Finding]:
+        """That the clock went ahead of this computer's: a snapshot is dated after the one before was taken up, so that
+        between two of them there is no more time than between their passes and one pass before.
+
+        Args:
+            went_ns: by the clock of the snapshots, since the one before [ns].
+        """
+        heard_ns = self.clock_ns()
+        steps = sorted(self._went_ns)
+        usual_ns = steps[len(steps) // 2] if len(steps) >= LEAST_STEPS else went_ns
+        self._went_ns.append(went_ns)
+        is_far = len(self._heard_ns) == 2 and went_ns > heard_ns - self._heard_ns[0] + JUMP_NS
+        if is_far and went_ns > JUMP_STEPS * usual_ns:
+            text = (
+                f"the clock went ahead by {length_text(went_ns)} within "
+                f"{length_text(heard_ns - self._heard_ns[0])}, so no age can be trusted: was it set?"
+            )
+            self._jumped = heard_ns, text
+        self._heard_ns = (*self._heard_ns, heard_ns)[-2:]
+        if self._jumped is not None and heard_ns - self._jumped[0] <= JUMP_LASTS_NS:
+            yield Finding("clock", (), self._jumped[1], True)
 
     def _camera(self, frame: DepthFrame, stamp_ns: int, now_ns: int | None) -> Iterator[Finding]:
         """One frame beside what its camera gave before, and beside the clock."""

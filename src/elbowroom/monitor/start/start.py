@@ -9,7 +9,7 @@ from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.health.clocks import Clocks
 from elbowroom.monitor.loop import Loop
 from elbowroom.monitor.space_cycle import SpaceCycle
-from elbowroom.monitor.start.looking import looks_of
+from elbowroom.monitor.start.looking import first_looks_of, looks_of, streams_of
 from elbowroom.monitor.start.watching import checks_of
 from elbowroom.motion import check_motions
 from elbowroom.reconstruct import FreeSpace
@@ -32,12 +32,13 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
     cycle = _cycle(room)
     waits, recorded = isinstance(room.source, Recorded), isinstance(room.source, Recorded | Played)
     pause_ns = _gap_ns(room) if recorded else gap_ns(None)
-    checks = replace(checks_of(room, begin), looks=looks_of(room))
+    checks = replace(checks_of(room, begin), looks=looks_of(room), first=first_looks_of(room))
     loop = Loop(room, checks, cycle, Pace(pause_ns).early_s if waits else None)
     _warm_up(loop, begin)
     # after that, since the source begins anew, and its times with it
     clocks = Clocks(room.terms.max_age_ns, recorded, pause_ns)
-    return replace(loop, checks=replace(loop.checks, looks=(*loop.checks.looks, clocks)))
+    streams = streams_of(room, () if checks.watch is None else checks.watch.references)
+    return replace(loop, checks=replace(checks, first=(*checks.first, clocks), streams=streams))
 
 
 def _gap_ns(room: Room) -> int:

@@ -19,6 +19,8 @@ from elbowroom.view.screen.words import LEVEL_WORDS, NOT_CERTIFIED
 
 RECENT = 15
 """So many passes are looked at for figures that are shown live."""
+MOST_SICK = 12
+"""So many sick sources are named in the summary, those first that were so for longest."""
 KEPT = 100_000
 """So many passes are looked at for the summary: the latest ones, some two hours at 12 Hz."""
 
@@ -48,6 +50,7 @@ class RunLog:
     levels: dict[str, Counter[Level]] = field(default_factory=dict, init=False)
     faults: Counter[str] = field(default_factory=Counter, init=False)
     late: int = field(default=0, init=False)
+    sick: Counter[tuple[str, str]] = field(default_factory=Counter, init=False)
     stops: dict[str, str] = field(default_factory=dict, init=False)
     is_watched: bool = field(default=False, init=False)
     cycles: int = field(default=0, init=False)
@@ -77,6 +80,8 @@ class RunLog:
             self.faults[result.fault] += 1
         if result.late is not None:
             self.late += 1
+        for sick in result.sick:
+            self.sick[sick.source, sick.cause.word] += 1
         if result.health is not None:
             self.is_watched = True
             self.stops = dict(result.health.stops)
@@ -178,6 +183,9 @@ class RunLog:
             late = f"{self.late} of {self.cycles} cycles said stop"
             text = f"{late}, as images were past max_frame_age_ms when their verdicts were out"
             yield Text(f"{text}: larger voxels, fewer pixels or more cores make a pass shorter", "bold red")
+        for (source, word), count in self.sick.most_common(MOST_SICK):
+            of = f"{count} of {self.cycles} cycles"
+            yield Text(f"{source}: {word.replace('_', ' ')} in {of}", "bold")
         for reason in self.stops.values():
             yield Text(f"Every motion was stopped: {reason}", "bold red")
         if self.stops:

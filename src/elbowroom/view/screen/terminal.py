@@ -13,6 +13,7 @@ from rich.text import Text
 
 from elbowroom.monitor import CycleResult, Decision, Pass
 from elbowroom.monitor.gate.told import gate_lines
+from elbowroom.monitor.health.streams.told import sick_lines
 from elbowroom.monitor.rows import shares_pct
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.sources import Room
@@ -121,7 +122,7 @@ class TerminalView:
             self._live.update(self._last_screen, refresh=True)
         else:
             self.console.print(self.line(result), soft_wrap=True, highlight=False, markup=False)
-            for line in self._gate():
+            for line in (*sick_lines(result.sick), *self._gate()):
                 self.console.print(line, soft_wrap=True, highlight=False, markup=False)
 
     def end(self) -> None:
@@ -161,7 +162,7 @@ class TerminalView:
             Text(health_text(result.health), "dim"),
         ]
         lines += [Text(f" {line} ", STYLES[Level.STOP]) for line in _stops(result)]
-        lines += [Text(line, "bold") for line in self._gate()]
+        lines += [Text(line, "bold") for line in (*sick_lines(result.sick), *self._gate())]
         lines += [Text(f"Warning: {finding.text}") for finding in result.findings if not finding.stops]
         if self.watched.unchecked_links:
             lines.append(
@@ -263,8 +264,7 @@ def _stops(result: CycleResult) -> list[str]:
     found = () if result.health is None else result.health.stops.values()
     lines = [f"Stop: {reason}. Stays until the monitor is started again." for reason in found]
     lines += [f"Stop: {finding.text}" for finding in result.findings if finding.stops]
-    if result.late is not None:
-        lines.append(f"Stop: {result.late}")
+    lines += [f"Stop: {text}" for text in (result.late, result.blind) if text is not None]
     return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
 
 

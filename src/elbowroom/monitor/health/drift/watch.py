@@ -51,6 +51,11 @@ class Watch:
         self.turn = 0
         """The next pass listens to the cameras from this one on, one in `TURNS`."""
 
+    @property
+    def references(self) -> tuple[CameraReference, ...]:
+        """What the cameras were commissioned on, in the room's order."""
+        return tuple(watch.reference for watch in self._watches)
+
     def shift_of(self, camera: str) -> Shift | None:
         """By how much a camera had moved when that was found; None: it was not.
 

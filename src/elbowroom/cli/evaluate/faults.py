@@ -1,0 +1,66 @@
+"""`elbowroom evaluate faults`: whether any fault passes silently."""
+
+from typing import Annotated
+
+import typer
+
+from elbowroom.cli.options import JsonFile
+
+QUICK, QUICK_DEADLINE_MS = 1, 400.0
+
+
+def faults(
+    times: Annotated[int, typer.Option(min=1, metavar="COUNT", help="How often each kind is thrown.")] = 26,
+    quick: Annotated[
+        bool,
+        typer.Option("--quick", help="Each kind once, on a computer that may be busy: times say nothing."),
+    ] = False,
+    deadline: Annotated[
+        float,
+        typer.Option(min=20, max=5000, metavar="MS", help="Of the gate; two without a pass are silence."),
+    ] = 60.0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the moments and the cameras.")] = 1,
+    json: JsonFile = None,
+) -> None:
+    """Throw every kind of fault at a running monitor, and look whether, when and why the machine stops.
+
+    A small room of eight cameras at 15 Hz and a box that slides, with a gate, its
+    watchdog and a Modbus reader, each in its own process or thread. Kinds: of a
+    camera, of the joints, of the clock, of the process. Each begins at a random
+    moment. After it has stopped it ends, its cause has to clear, and a reset lets
+    the machine move again. Times are from when the first wrong thing was handed
+    to the monitor to when the reader reads stop.
+    """
+    from elbowroom.cli.evaluate.measured import watched
+    from elbowroom.cli.evaluate.shown import as_table, text
+    from elbowroom.evaluate.due import sentence
+    from elbowroom.evaluate.faults.faults import DUE, fault_rows, fault_summary
+    from elbowroom.evaluate.faults.kinds import KINDS
+    from elbowroom.files.json_rows import json_rows
+
+    many = QUICK if quick else times
+    show = as_table(
+        {
+            "input": "{input}",
+            "fault": "{case}",
+            "times": "{times}",
+            "shown": "{shown}",
+            "silent": "{silent}",
+            "misnamed": "{misnamed}",
+            "median": text("{:.0f} ms", "median_ms"),
+            "worst": text("{:.0f} ms", "worst_ms"),
+            "noticed by": "{noticed_by}",
+            "named": "{causes}",
+        },
+        sentence(DUE),
+    )
+    with json_rows(json) as add:  # a folder that is not there is said at once
+        found = fault_rows(many, seed, QUICK_DEADLINE_MS if quick else deadline)
+        rows = list(watched("faults", found, many * len(KINDS)))
+        summary = fault_summary(rows)
+        for row in (
+            *[row for row in rows if not (row["stopped"] and row["named"]) and row["shown"]],
+            *summary,
+        ):
+            add(row)
+    show(summary)

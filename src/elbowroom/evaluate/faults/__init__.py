@@ -1,0 +1,1 @@
+"""Faults thrown at a running monitor, its gate, its watchdog and its Modbus reader."""
