@@ -330,6 +330,17 @@ and no others. The recordings, the simulated room and random sites, described ri
         tables.contradiction_tables,
     ),
     Section(
+        "decision.json",
+        "Exposure to decision",
+        """
+The whole monitor (clocks, watch, pass, distances, gate with its latch on disk) on frames that lie in memory and are
+there when they are exposed: from the exposure of the oldest frame that a pass used to its decision. *running free*:
+the cameras' exposures are spread over a frame period, so the oldest frame is up to one older.
+""",
+        "elbowroom bench decision",
+        tables.decision_tables,
+    ),
+    Section(
         "latch.json",
         "The latch",
         """

@@ -4,6 +4,7 @@ from result_tables.calibration import calibration_tables
 from result_tables.cells import Row, any_tables
 from result_tables.drift import drift_tables
 from result_tables.faults import fault_tables
+from result_tables.lag import decision_tables, lag_tables
 from result_tables.latch import latch_tables
 from result_tables.looks import contradiction_tables, looks_tables
 from result_tables.placement import placement_tables, sweep_tables
@@ -31,10 +32,12 @@ __all__ = [
     "cell_tables",
     "contradiction_tables",
     "cut_tables",
+    "decision_tables",
     "drift_tables",
     "escape_tables",
     "fault_tables",
     "hand_tables",
+    "lag_tables",
     "latch_tables",
     "looks_tables",
     "machine_tables",

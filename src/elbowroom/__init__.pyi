@@ -17,6 +17,7 @@ from elbowroom.machine import (
 from elbowroom.machine.c_arm import ceiling_c_arm as ceiling_c_arm
 from elbowroom.motion import (
     Cause as Cause,
+    Distances as Distances,
     JointPath as JointPath,
     Level as Level,
     Motion as Motion,
@@ -25,6 +26,7 @@ from elbowroom.motion import (
     check_motion as check_motion,
     check_motions as check_motions,
     joint_motions as joint_motions,
+    link_distances as link_distances,
     most_cautious as most_cautious,
 )
 from elbowroom.reconstruct import (

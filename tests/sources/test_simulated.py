@@ -5,6 +5,7 @@ import pytest
 
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
 from elbowroom.simulate.knock import Knock
+from elbowroom.simulate.rounds import walking_staff
 from elbowroom.sources.simulated import Simulated
 
 CAMERAS = wall_cameras(2, width=32, height=24)
@@ -12,7 +13,7 @@ TIMES_S = (0.5, 1.5)
 
 
 def test_snapshots_are_the_rooms_at_these_times():
-    room = InterventionRoom()
+    room = InterventionRoom(staff=walking_staff())
     for number, (time_s, snapshot) in enumerate(
         zip(TIMES_S, Simulated(CAMERAS, seed=4).at(TIMES_S), strict=True)
     ):

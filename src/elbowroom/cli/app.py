@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from elbowroom.cli.budget import budget
 from elbowroom.cli.calibrate.app import calibrate_app
 from elbowroom.cli.check import check
 from elbowroom.cli.evaluate.app import evaluate_app
@@ -70,6 +71,12 @@ app.command(
         "elbowroom bench calibration --json calibration.json",
     )
 )(bench)
+app.command(
+    epilog=_example(
+        "elbowroom budget",
+        "elbowroom budget my_room.yaml --seconds 60 --json budget.json",
+    )
+)(budget)
 app.add_typer(calibrate_app, name="calibrate")
 app.add_typer(evaluate_app, name="evaluate")
 app.add_typer(gate_app, name="gate")

@@ -12,16 +12,17 @@ WIDE = 140
 
 def show(table: Table) -> None:
     """Prints a table; it is not folded where nobody says how wide the screen is."""
-    _console().print(rich_table(table))
+    console().print(rich_table(table))
 
 
 def note(words: str) -> None:
     """Prints what explains a table, paler than the table on a terminal."""
-    _console().print(Text(words, style="dim"))
+    console().print(Text(words, style="dim"))
 
 
-def _console() -> Console:
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console.width = max(console.width, WIDE)
-    return console
+def console() -> Console:
+    """Where tables are printed; as wide as they are where no terminal says how wide it is."""
+    made = Console(highlight=False)
+    if not made.is_terminal:
+        made.width = max(made.width, WIDE)
+    return made

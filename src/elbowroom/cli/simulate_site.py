@@ -15,6 +15,7 @@ from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.simulate import InterventionRoom, Moment
 from elbowroom.simulate.crowd import Floor
 from elbowroom.simulate.floor import floor_height
+from elbowroom.simulate.rounds import walking_staff
 from elbowroom.simulate.scene import Course, InUse, Surroundings, scene_in
 from elbowroom.simulate.solid import Solid
 from elbowroom.site import Site
@@ -79,7 +80,8 @@ class SiteRoom:
             MachineError, InputError: as `scene_in`.
         """
         if self.site.simulated is not None:
-            return Intervention(InterventionRoom(machine=self.machine), course), ()
+            room = InterventionRoom(machine=self.machine, staff=walking_staff())
+            return Intervention(room, course), ()
         speeds = {}
         if self.machine is not None:
             entries = self.site.entry.joints

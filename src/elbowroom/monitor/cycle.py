@@ -13,12 +13,14 @@ from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.stages import raise_interrupt, timed
 from elbowroom.motion import (
     Cause,
+    Distances,
     Level,
     Motion,
     Override,
     Verdict,
     blocks_in_reach,
     check_motions,
+    link_distances,
     with_creep,
 )
 from elbowroom.reconstruct import FreeSpace, Terms, free_space_of
@@ -39,6 +41,7 @@ class Cycle:
         keeps_images: results keep the images that their free space was made of, so that it can be explained.
         override: how fast an operator may creep where nobody sees; None: of no stop it is said.
         clock_ns: by which the time that a pass takes is told [ns]; it never goes back.
+        look_m: how far from the machine distances are asked, and so looked, in each pass [m]; None: they are not.
 
     Raises:
         InputError: no motions, since then nothing would ever say stop.
@@ -53,6 +56,7 @@ class Cycle:
     keeps_images: bool = False
     clock_ns: Callable[[], int] = time.perf_counter_ns
     override: Override | None = None
+    look_m: float | None = None
     sequence: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -77,6 +81,7 @@ class Cycle:
             space = self._space_of(snapshot, stage_ms)
             with timed("motion", stage_ms):
                 given = _usable(self._checked(space, snapshot.joints or {}))
+            distances = self._distances(space, snapshot, stage_ms)
             late = self._late(snapshot, begun_ns)
         except Exception as error:  # at this border a fault becomes a decision: stop
             raise_interrupt(error)
@@ -89,7 +94,8 @@ class Cycle:
         kept = space if self.keeps_images else space.released()
         result = CycleResult(self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault)
         result = replace(result, given=cameras_of(snapshot))
-        return replace(result, late=late, skew_ms=snapshot.fresh(self.terms.max_age_ns).skew_ms)
+        skew_ms = snapshot.fresh(self.terms.max_age_ns).skew_ms
+        return replace(result, late=late, skew_ms=skew_ms, distances=distances)
 
     def failed(
         self, error: Exception, snapshot: Snapshot | None, stage_ms: dict[str, float] | None = None
@@ -116,7 +122,8 @@ class Cycle:
     def _space_of(self, snapshot: Snapshot, stage_ms: dict[str, float]) -> FreeSpace:
         reach = None
         if self.focused:
-            reach = blocks_in_reach(self.grid, self.machine, snapshot.joints or {}, self.motions)
+            joints, around_m = snapshot.joints or {}, self.look_m or 0.0
+            reach = blocks_in_reach(self.grid, self.machine, joints, self.motions, around_m)
         return free_space_of(
             self.grid,
             self.cameras,
@@ -132,6 +139,15 @@ class Cycle:
         if self.override is None:
             return verdicts
         return with_creep(space, self.machine, joints, verdicts, self.override)
+
+    def _distances(
+        self, space: FreeSpace, snapshot: Snapshot, stage_ms: dict[str, float]
+    ) -> Distances | None:
+        """How far the links are from what is blocked, if anybody asks."""
+        if self.look_m is None:
+            return None
+        with timed("distances", stage_ms):
+            return link_distances(space, self.machine, snapshot.joints or {}, self.look_m)
 
     def _number(self) -> int:
         self.sequence += 1

@@ -5,6 +5,7 @@ from typing import Protocol
 
 from elbowroom.monitor.gate.state import Decision
 from elbowroom.monitor.result import CycleResult
+from elbowroom.monitor.separation.margins import Margins
 from elbowroom.sensing import Snapshot
 from elbowroom.sources import Room
 
@@ -18,12 +19,14 @@ class Pass:
         result: what it was judged to be.
         source_ms: what it took to bring the snapshot [ms], simulating or reading.
         decision: what the gate made of it; None: the run has no gate.
+        margins: how far the machine was from what it may hit; None: nobody asks, or the pass failed.
     """
 
     snapshot: Snapshot
     result: CycleResult
     source_ms: float
     decision: Decision | None = None
+    margins: Margins | None = None
 
 
 class Face(Protocol):

@@ -12,6 +12,8 @@ from elbowroom.monitor.gate.state import Decision
 from elbowroom.monitor.health.checks import Checks
 from elbowroom.monitor.health.streams.streams import without_sick
 from elbowroom.monitor.result import CycleResult
+from elbowroom.monitor.separation.margins import Margins
+from elbowroom.monitor.separation.separating import Separating
 from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.sensing import Snapshot
 from elbowroom.sources import Room, Source
@@ -32,6 +34,7 @@ class Loop:
         pace: called with each snapshot before it is judged; says for how long it is early [s], and so long the loop
             waits, unless the run ends before; None: nobody waits.
         gate: decides after each pass, before any face is told, and stops the machine at the end; None: nobody does.
+        separating: measures reaction times and says how far the machine is from what it may hit; None: nobody does.
     """
 
     room: Room
@@ -39,6 +42,7 @@ class Loop:
     cycle: Cycle | SpaceCycle
     pace: Callable[[Snapshot], float | None] | None = None
     gate: Gate | None = None
+    separating: Separating | None = None
 
     def run(
         self,
@@ -73,8 +77,12 @@ class Loop:
                 for snapshot, source_ms in timed_source(self.room.source):
                     if not self._waited(snapshot, until, is_over):
                         break
+                    begun_ns = self._time_ns()
                     result = self.judge(snapshot)
-                    done = Pass(snapshot, result, source_ms, self._decision(result))
+                    judged_ns = self._time_ns()
+                    decision = self._decision(result)
+                    margins = self._margins(snapshot, result, begun_ns, judged_ns)
+                    done = Pass(snapshot, result, source_ms, decision, margins)
                     for face in faces:
                         face.show(done)
                     if is_over() or time.perf_counter() >= until:
@@ -94,6 +102,19 @@ class Loop:
     def _decision(self, result: CycleResult) -> Decision | None:
         """What the gate makes of a pass."""
         return None if self.gate is None else self.gate.decide(result)
+
+    def _time_ns(self) -> int:
+        """The time by the clock that reaction times are measured by [ns]; 0: nobody measures any."""
+        return 0 if self.separating is None else self.separating.clock_ns()
+
+    def _margins(
+        self, snapshot: Snapshot, result: CycleResult, begun_ns: int, judged_ns: int
+    ) -> Margins | None:
+        """What is left of distances, with the time that it took until now."""
+        if self.separating is None:
+            return None
+        pass_ms, output_ms = (judged_ns - begun_ns) / 1e6, (self._time_ns() - judged_ns) / 1e6
+        return self.separating.judged(snapshot, result, pass_ms, output_ms)
 
     def _waited(self, snapshot: Snapshot, until_s: float, is_over: Callable[[], bool]) -> bool:
         """Sleeps while a snapshot is early, if the run does not end before; whether it did not."""

@@ -8,7 +8,7 @@ from elbowroom.finding import Finding
 from elbowroom.monitor.health.health import Health
 from elbowroom.monitor.health.known import Known
 from elbowroom.monitor.health.streams.cause import Sick
-from elbowroom.motion import Cause, Level, Verdict
+from elbowroom.motion import Cause, Distances, Level, Verdict
 from elbowroom.reconstruct.free_space import FreeSpace
 
 
@@ -30,6 +30,7 @@ class CycleResult:
         late: that frames were past their age when the verdicts were out, so that every one is stop, one sentence; None:
             they were in time, or there is no limit.
         skew_ms: between the stamps of the oldest and the newest frame that was used [ms]; None: there are no two.
+        distances: of the links from blocked space; None: nobody asked, or the pass failed.
         sick: what is wrong with which source. A camera of it was left out; while joints are, every verdict is stop.
         blind: that no camera gave anything that counts, so that every verdict is stop, one sentence; None: one did.
         given: names of the cameras whose frames were judged; None: nothing was.
@@ -49,6 +50,7 @@ class CycleResult:
     sick: tuple[Sick, ...] = ()
     blind: str | None = None
     given: tuple[str, ...] | None = None
+    distances: Distances | None = None
 
     def knowing(self, known: Known) -> Self:
         """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""

@@ -44,6 +44,8 @@ class Rows:
     def show(self, done: Pass) -> None:
         """Adds the rows of a pass."""
         for row in cycle_rows(done.result, done.source_ms):
+            if row["kind"] == "cycle" and done.margins is not None:
+                row["separation"] = done.margins.row()
             self._add(row)
         for row in (*health_rows(done.result, self._told), *self._gate.rows(done.result, done.decision)):
             self._add(row)

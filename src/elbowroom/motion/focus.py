@@ -26,6 +26,7 @@ def blocks_in_reach(
     machine: Machine,
     joints: Mapping[str, float],
     motions: Sequence[Motion | JointPath],
+    around_m: float = 0.0,
 ) -> NDArray[np.bool_]:
     """The blocks of 4 voxels that the body comes near on its motions, for `reconstruct(focus=...)`.
 
@@ -36,6 +37,7 @@ def blocks_in_reach(
         machine: what moves.
         joints: where it is now, by name [m or rad].
         motions: what is going to be checked.
+        around_m: about the body where it is now, all that is so near is looked at as well [m].
 
     Returns:
         bool, shape (words,), in the order of the planes.
@@ -52,15 +54,19 @@ def blocks_in_reach(
     samples = body_samples(machine, SAMPLES_VOXEL_M)
     balls = samples.clusters._replace(radius=samples.cluster_radius + SPARE_VOXELS * grid.voxel_size_m)
     lattice = bits.lattice(grid)
+    edge = BLOCK * grid.voxel_size_m
     near = np.zeros((4 * lattice.cubes_x, 4 * lattice.cubes_y, 4 * lattice.cubes_z), dtype=np.bool_)
     mark_ways(
         machine.world_from_link_array(np.vstack([start[None], *stops])),
         balls,
         before,
         grid.lower_m,
-        BLOCK * grid.voxel_size_m,
+        edge,
         near,
     )
+    if around_m > 0:
+        wide = balls._replace(radius=balls.radius + around_m)
+        mark_ways(machine.world_from_link_array(start[None]), wide, before[:1], grid.lower_m, edge, near)
     by_cube = near.reshape(lattice.cubes_x, 4, lattice.cubes_y, 4, lattice.cubes_z, 4)
     return by_cube.transpose(0, 2, 4, 1, 3, 5).reshape(-1)
 

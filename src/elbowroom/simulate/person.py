@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,17 @@ class Stance:
     y_m: float
     heading_rad: float
     phase: float = 0.0
+
+
+class Way(Protocol):
+    """A closed path that somebody walks round and round."""
+
+    @property
+    def period_s(self) -> float:
+        """Time of one round [s]."""
+
+    def at(self, time_s: float) -> Stance:
+        """Where the walker is at a time [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +90,7 @@ class Person:
     """
 
     name: str
-    walk: Walk
+    walk: Way
     height_m: float = 1.75
     elbow_rad: float = 0.3
     phases: int = GAIT_PHASES

@@ -21,6 +21,7 @@ from elbowroom.site.placement_entry import PlacementEntry
 from elbowroom.site.ranges import CENTIMETRES, MILLIMETRES, SECONDS, between, speed_of_people, up_to
 from elbowroom.site.recording_entry import RecordingEntry, SevenScenes
 from elbowroom.site.room_entry import RoomEntry
+from elbowroom.site.separation_entry import SeparationEntry
 from elbowroom.site.watch_entry import WatchEntry
 from elbowroom.site.zone_entry import ZoneEntry
 
@@ -142,6 +143,7 @@ class SiteEntry(Entry):
     watch: WatchEntry | None = None
     gate: GateEntry | None = None
     black_box: BlackBoxEntry | None = None
+    separation: SeparationEntry = SeparationEntry()
     health: HealthEntry = HealthEntry()
     calibration: CalibrationEntry | None = None
 

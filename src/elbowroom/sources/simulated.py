@@ -10,6 +10,7 @@ from elbowroom.machine import Machine
 from elbowroom.sensing import DepthFrame, Snapshot
 from elbowroom.simulate import InterventionRoom, render
 from elbowroom.simulate.knock import Knock, PlacedKnocks, reported_joints
+from elbowroom.simulate.rounds import walking_staff
 
 GOLDEN = 0.6180339887
 """Its multiples, less the whole, keep neighbours apart."""
@@ -47,7 +48,8 @@ class Simulated:
 
     def at(self, times_s: Iterable[float]) -> Iterator[Snapshot]:
         """Snapshots at given times, each with noise of its own [s]."""
-        room, placed = InterventionRoom(machine=self.machine), PlacedKnocks(self.knocks, self.cameras)
+        room = InterventionRoom(machine=self.machine, staff=walking_staff())
+        placed = PlacedKnocks(self.knocks, self.cameras)
         for number, time_s in enumerate(times_s):
             moment = room.at(time_s, joints=self.joints)
             told = reported_joints(self.knocks, moment.joints, moment.time_s)

@@ -8,6 +8,7 @@ from elbowroom.cli.evaluate.contradictions import contradictions
 from elbowroom.cli.evaluate.escape import escape
 from elbowroom.cli.evaluate.faults import faults
 from elbowroom.cli.evaluate.hand import hand
+from elbowroom.cli.evaluate.lag import lag
 from elbowroom.cli.evaluate.latch import latch
 from elbowroom.cli.evaluate.looks import looks
 from elbowroom.cli.evaluate.own_links import own_links
@@ -51,6 +52,7 @@ evaluate_app.command(epilog=_example("bits --json now.json --against benchmarks/
 evaluate_app.command(epilog=_example("contradictions --sites 5 --right 20 --json contradictions.json"))(
     contradictions
 )
+evaluate_app.command(epilog=_example("lag --quick --json lag.json"))(lag)
 evaluate_app.command(epilog=_example("latch --quick --json latch.json"))(latch)
 evaluate_app.command(epilog=_example("faults --quick --json faults.json"))(faults)
 evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)

@@ -10,9 +10,10 @@ from elbowroom.cli.options import JsonFile
 
 def bench(
     what: Annotated[
-        Literal["cycle", "start", "machine", "record", "calibration"],
+        Literal["cycle", "decision", "start", "machine", "record", "calibration"],
         typer.Argument(
-            help="cycle: carve and whole cycles; start: a new process to its first answer; "
+            help="cycle: carve and whole cycles; decision: exposure to decision in the running monitor; "
+            "start: a new process to its first answer; "
             "machine: what triangles cost; record: whether recording keeps up; calibration: how well cameras are found."
         ),
     ] = "cycle",
@@ -20,6 +21,7 @@ def bench(
     cameras: Annotated[int, typer.Option(min=1, max=255, help="How many cameras.")] = 21,
     size: Annotated[str, typer.Option(help="Of their images: vga, qqvga or thesis.")] = "vga",
     threads: Annotated[int | None, typer.Option(min=1, help="Default: all cores.")] = None,
+    seconds: Annotated[float, typer.Option(min=1, help="decision: how long, of each case.")] = 30.0,
     octomap: Annotated[bool, typer.Option(help="Also run OctoMap, where pyoctomap is installed.")] = True,
     against: Annotated[
         Path | None,
@@ -27,9 +29,6 @@ def bench(
             metavar="DIR", help="start: src of another checkout, measured in turns with this package."
         ),
     ] = None,
-    seconds: Annotated[
-        float, typer.Option(min=1, help="record: how long each run is; some 50 MB of disk a second.")
-    ] = 60.0,
     captures: Annotated[
         Path | None,
         typer.Option(
@@ -51,11 +50,15 @@ def bench(
     ] = None,
     json: JsonFile = None,
 ) -> None:
-    """Measure carve and whole cycles in the simulated room, each in its own process; or what else is named."""
+    """Measure carve and whole cycles in the simulated room, each in its own process; or something else."""
     if what == "calibration":
         from elbowroom.cli.evaluate.bench_calibration_run import run_bench_calibration
 
         run_bench_calibration(quick, captures, tuple(part or ()), json, examples)
+    elif what == "decision":
+        from elbowroom.cli.evaluate.bench_run import run_bench_decision
+
+        run_bench_decision(5.0 if quick else seconds, cameras, size, threads, json)
     elif what == "start":
         from elbowroom.cli.evaluate.bench_run import run_bench_start
 

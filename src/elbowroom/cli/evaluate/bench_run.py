@@ -46,6 +46,36 @@ def _case(row: Row) -> str:
     return str(row["case"]) + (f" ({slower:.0f} times carve)" if slower else "")
 
 
+def run_bench_decision(
+    seconds: float, cameras: int, size: str, threads: int | None, json: Path | None
+) -> None:
+    """From the middle of exposure to the decision.
+
+    Args:
+        seconds: how long, of each case.
+        cameras, size, threads: of the simulated cameras, and over how many threads work is spread.
+        json: file for the rows.
+    """
+    from elbowroom.evaluate.due import sentence
+    from elbowroom.evaluate.speed.decision import DUE, SPREADS, decision_rows, words_of_worst
+    from elbowroom.simulate.cameras import SIZES
+
+    show = as_table(
+        {
+            "case": "{case}",
+            "voxel": voxel,
+            "passes": "{passes}",
+            "too old": "{late}",
+            "median": "{median_ms:.1f} ms",
+            "99 %": "{p99_ms:.1f} ms",
+            "worst": "{max_ms:.1f} ms",
+            "where the worst went [ms]": words_of_worst,
+        },
+        sentence(DUE),
+    )
+    measured("cases", decision_rows(seconds, cameras, SIZES[size][:2], threads), len(SPREADS), json, show)
+
+
 def run_bench_start(quick: bool, against: Path | None, json: Path | None) -> None:
     """A new process to its first answer.
 

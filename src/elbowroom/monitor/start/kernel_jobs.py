@@ -77,14 +77,16 @@ def _machine_in_images() -> None:
 def _motion() -> None:
     from elbowroom.geometry import VoxelGrid, bits
     from elbowroom.machine.probe import probe
-    from elbowroom.motion import Motion, blocks_in_reach, check_motion
+    from elbowroom.motion import Motion, blocks_in_reach, check_motion, link_distances
     from elbowroom.reconstruct import FreeSpace
 
     grid = VoxelGrid((-0.2, -0.2, -0.2), (8, 8, 8), 0.05)
     nothing = bits.empty(grid)
     motion = Motion("slide", 1, 0.01)
     for free in (nothing, ~nothing):
-        check_motion(FreeSpace(grid, free, nothing, nothing, nothing), probe(), {"slide": 0.0}, motion)
+        space = FreeSpace(grid, free, nothing, nothing, nothing)
+        check_motion(space, probe(), {"slide": 0.0}, motion)
+        link_distances(space, probe(), {"slide": 0.0}, 0.1)
     blocks_in_reach(grid, probe(), {"slide": 0.0}, [motion])
 
 

@@ -8,6 +8,7 @@ from elbowroom.geometry import bits
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.health.clocks import Clocks
 from elbowroom.monitor.loop import Loop
+from elbowroom.monitor.separation.separating import Separating
 from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.monitor.start.looking import first_looks_of, looks_of, streams_of
 from elbowroom.monitor.start.watching import checks_of
@@ -29,11 +30,13 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
         InputError: the first cycle failed, so that all would.
         SiteError, CalibrationError: as `checks_of`.
     """
-    cycle = _cycle(room)
+    separating = None if room.unasked is not None else Separating.of(room)
+    cycle = _cycle(room, separating)
     waits, recorded = isinstance(room.source, Recorded), isinstance(room.source, Recorded | Played)
     pause_ns = _gap_ns(room) if recorded else gap_ns(None)
     checks = replace(checks_of(room, begin), looks=looks_of(room), first=first_looks_of(room))
-    loop = Loop(room, checks, cycle, Pace(pause_ns).early_s if waits else None)
+    pace = Pace(pause_ns).early_s if waits else None
+    loop = Loop(room, checks, cycle, pace, separating=separating)
     _warm_up(loop, begin)
     # after that, since the source begins anew, and its times with it
     clocks = Clocks(room.terms.max_age_ns, recorded, pause_ns)
@@ -47,12 +50,13 @@ def _gap_ns(room: Room) -> int:
     return gap_ns(None) if times is None else times.gap_ns
 
 
-def _cycle(room: Room) -> Cycle | SpaceCycle:
-    if room.unasked is not None:
+def _cycle(room: Room, separating: Separating | None) -> Cycle | SpaceCycle:
+    if separating is None:
         return SpaceCycle(room.grid, room.cameras, room.machine, room.terms)
     machine, motions = room.machine_and_motions()
     override = room.site.override(machine)
-    return Cycle(room.grid, room.cameras, machine, motions, room.terms, override=override)
+    look_m = separating.figures.look_m
+    return Cycle(room.grid, room.cameras, machine, motions, room.terms, override=override, look_m=look_m)
 
 
 def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:

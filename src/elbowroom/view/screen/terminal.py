@@ -15,6 +15,7 @@ from elbowroom.monitor import CycleResult, Decision, Pass
 from elbowroom.monitor.gate.told import gate_lines
 from elbowroom.monitor.health.streams.told import sick_lines
 from elbowroom.monitor.rows import shares_pct
+from elbowroom.monitor.separation.margins import Margins
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.sources import Room
 from elbowroom.view.screen.run_log import RunLog
@@ -26,6 +27,7 @@ from elbowroom.view.screen.words import (
     cause_text,
     counts_text,
     health_text,
+    margins_text,
     place_first,
     place_text,
     plain_line,
@@ -77,6 +79,7 @@ class TerminalView:
         self._last_shown_s = float("-inf")
         self._said: dict[tuple[str, tuple[str, ...]], str] = {}
         self._decision: Decision | None = None
+        self._margins: Margins | None = None
 
     def __enter__(self) -> "TerminalView":
         return self
@@ -110,7 +113,7 @@ class TerminalView:
 
     def show(self, done: Pass) -> None:
         """Notes a pass and, if it is time, shows it."""
-        result, self._decision = done.result, done.decision
+        result, self._decision, self._margins = done.result, done.decision, done.margins
         self.log.add(result, done.source_ms)
         self._warn(result)
         now = time.perf_counter()
@@ -122,7 +125,7 @@ class TerminalView:
             self._live.update(self._last_screen, refresh=True)
         else:
             self.console.print(self.line(result), soft_wrap=True, highlight=False, markup=False)
-            for line in (*sick_lines(result.sick), *self._gate()):
+            for line in (*sick_lines(result.sick), *self._gate(), *self._distances()):
                 self.console.print(line, soft_wrap=True, highlight=False, markup=False)
 
     def end(self) -> None:
@@ -160,6 +163,7 @@ class TerminalView:
             self._judged(result, wide),
             Text(),
             Text(health_text(result.health), "dim"),
+            *(Text(line, "dim") for line in self._distances()),
         ]
         lines += [Text(f" {line} ", STYLES[Level.STOP]) for line in _stops(result)]
         lines += [Text(line, "bold") for line in (*sick_lines(result.sick), *self._gate())]
@@ -193,6 +197,10 @@ class TerminalView:
     def _gate(self) -> list[str]:
         """What the gate says, a line each; said again with each line or screen."""
         return [] if self._decision is None else gate_lines(self._decision)
+
+    def _distances(self) -> list[str]:
+        """How far the machine is from what it may hit, in one line, if it is known."""
+        return [] if self._margins is None else [margins_text(self._margins)]
 
     def _speed(self, result: CycleResult) -> Text:
         log = self.log

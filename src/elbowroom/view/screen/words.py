@@ -4,7 +4,8 @@ import math
 from collections.abc import Mapping
 
 from elbowroom.monitor import Condition, Health
-from elbowroom.motion import Cause, Level, Verdict
+from elbowroom.monitor.separation.margins import Margins
+from elbowroom.motion import Cause, Level, Nearest, Verdict
 from elbowroom.motion.motion import REACH_IN_BRAKING_DISTANCES
 
 NOT_CERTIFIED = (
@@ -87,6 +88,32 @@ def place_first(verdict: Verdict) -> str:
         return verdict.link or ""
     x, y, z = verdict.place_in_world
     return f"{x:.2f} {y:.2f} {z:.2f} {verdict.link}"
+
+
+def margins_text(margins: Margins) -> str:
+    """How far the machine is from what it may hit, in one line.
+
+    "nearest seen 12 cm (detector), unseen 41 mm (sleeve); left before what stands -0.38 m, before a person out of
+    unseen space -2.11 m (T_r 212 ms)"
+    """
+    near = margins.distances
+    nearest = f"nearest seen {_nearest_text(near.seen)}, unseen {_nearest_text(near.unseen)}"
+    standing, person, reaction_s = margins.least_standing_m, margins.least_person_m, margins.reaction_s
+    if standing is None or person is None or reaction_s is None:
+        return nearest
+    return (
+        f"{nearest}; left before what stands {standing:.2f} m, before a person out of unseen space {person:.2f} m "
+        f"(T_r {1e3 * reaction_s:.0f} ms)"
+    )
+
+
+def _nearest_text(nearest: Nearest | None) -> str:
+    if nearest is None:
+        return "-"
+    if not nearest.is_there:
+        return f"none within {travel_text(nearest.distance_m, 'm')}"
+    of = f"{nearest.link}, outside the grid" if nearest.is_outside else nearest.link
+    return f"{travel_text(nearest.distance_m, 'm')} ({of})"
 
 
 def shares_text(shares: Mapping[str, float]) -> str:
