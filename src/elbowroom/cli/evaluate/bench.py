@@ -21,7 +21,7 @@ def bench(
     cameras: Annotated[int, typer.Option(min=1, max=255, help="How many cameras.")] = 21,
     size: Annotated[str, typer.Option(help="Of their images: vga, qqvga or thesis.")] = "vga",
     threads: Annotated[int | None, typer.Option(min=1, help="Default: all cores.")] = None,
-    seconds: Annotated[float, typer.Option(min=1, help="decision: how long, of each case.")] = 30.0,
+    seconds: Annotated[float, typer.Option(min=1, help="decision, record: how long, of each case.")] = 30.0,
     octomap: Annotated[bool, typer.Option(help="Also run OctoMap, where pyoctomap is installed.")] = True,
     against: Annotated[
         Path | None,
