@@ -370,6 +370,40 @@ can move.
         tables.latch_tables,
     ),
     Section(
+        "record.json",
+        "Recording",
+        """
+Whether the [recorder](recording.md) keeps up with 21 cameras of 640x480 at 15 images a second: images of the simulated
+room with the noise of time-of-flight cameras, in whole millimetres, handed over from memory. *whole run*: all is kept
+in one file; *black box*: in memory, and a stop leaves a file on the way. *of a core*: processor time of the recorder's
+thread, a second. *not as given*: of every seventh pass, images that do not come back bit for bit.
+""",
+        "elbowroom bench record",
+        tables.record_tables,
+    ),
+    Section(
+        "cut.json",
+        "Cut files",
+        """
+A [recording](recording.md) of a few passes is cut off at each of many bytes, evenly over the whole file, and opened.
+*lost*: of the passes that had begun, those that are not there. *one bit changed*: one at random; a file of which
+nothing is said is *unnoticed*.
+""",
+        "elbowroom evaluate cut",
+        tables.cut_tables,
+    ),
+    Section(
+        "replay.json",
+        "Replay",
+        """
+A run of the simulated room with 5 cameras of 48x36 and voxels of 20 cm, in which images are lost and old and joints are
+missing at random, judged again from its [recording](recording.md): verdicts, faults and free space are compared to the
+last bit. *any x86-64*: kernels compiled with `NUMBA_CPU_NAME=generic`, without this processor's vector instructions.
+""",
+        "elbowroom evaluate replay",
+        tables.replay_tables,
+    ),
+    Section(
         "robots.json",
         "Robots as published",
         """

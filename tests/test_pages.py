@@ -39,6 +39,12 @@ TYPED_ALONE = {
     "monitor my_room.yaml --gate my_gate": "a gate stops for good, and has tests of its own",
     "gate status my_gate": "as the line before it",
     "gate reset my_gate": "as the line before it",
+    "monitor my_room.yaml --record run.mcap": "writes into the folder; its own tests run it",
+    "monitor my_room.yaml --black-box stops": "as the line before it",
+    "replay run.mcap": "as the line before it",
+    "replay run.mcap --from 1200": "as the line before it",
+    "replay run.mcap --why 1200": "as the line before it",
+    "export run.mcap images": "as the line before it",
     "site topics my_bag": "needs a bag, which tests of bags write",
     "site from-bag my_bag --out my_room.yaml": "as the line before it",
     "placement optimise my_room.yaml --motions --cameras 12 --write placed.yaml": "needs a machine with speeds: "

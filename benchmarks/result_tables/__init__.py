@@ -8,6 +8,7 @@ from result_tables.lag import decision_tables, lag_tables
 from result_tables.latch import latch_tables
 from result_tables.looks import contradiction_tables, looks_tables
 from result_tables.placement import placement_tables, sweep_tables
+from result_tables.recording import cut_tables, record_tables, replay_tables
 from result_tables.robots import robot_tables
 from result_tables.skew import skew_tables
 from result_tables.space import room_tables, sevenscenes_tables
@@ -31,6 +32,7 @@ __all__ = [
     "calibration_tables",
     "cell_tables",
     "contradiction_tables",
+    "cut_tables",
     "decision_tables",
     "drift_tables",
     "escape_tables",
@@ -44,6 +46,8 @@ __all__ = [
     "path_tables",
     "placement_tables",
     "poses_tables",
+    "record_tables",
+    "replay_tables",
     "robot_tables",
     "room_tables",
     "sevenscenes_tables",

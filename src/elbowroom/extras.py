@@ -18,7 +18,10 @@ PACKAGES = {
     "pymodbus": ("the Modbus output needs pymodbus", "modbus"),
     "small_gicp": ("calibration by the machine needs small_gicp", "calibrate"),
     "xacro": ("expanding a xacro file needs xacro", "xacro"),
-    "zstandard": ("reading this bag, which is compressed with zstd, needs zstandard", "bag"),
+    "zstandard": (
+        "what is compressed with zstd, as some bags and all recordings of a run are, needs zstandard",
+        "bag",
+    ),
 }
 """What needs each of them, and the extra of elbowroom that names its version."""
 

@@ -9,10 +9,12 @@ from elbowroom.cli.calibrate.app import calibrate_app
 from elbowroom.cli.check import check
 from elbowroom.cli.evaluate.app import evaluate_app
 from elbowroom.cli.evaluate.bench import bench
+from elbowroom.cli.export import export
 from elbowroom.cli.gate import gate_app
 from elbowroom.cli.monitor import monitor
 from elbowroom.cli.placement.app import placement_app
 from elbowroom.cli.reconstruct import reconstruct
+from elbowroom.cli.replay import replay
 from elbowroom.cli.simulate import simulate
 from elbowroom.cli.site import site_app
 
@@ -37,6 +39,7 @@ app.command(
         "elbowroom monitor --knock cam03:1deg@5",
         "elbowroom monitor my_room.yaml",
         "elbowroom monitor my_room.yaml --gate my_gate",
+        "elbowroom monitor my_room.yaml --record run.mcap --black-box stops",
     )
 )(monitor)
 app.command(
@@ -46,6 +49,13 @@ app.command(
     )
 )(reconstruct)
 app.command(epilog=_example("elbowroom check my_room.yaml --joint larm --direction + --out seen"))(check)
+app.command(
+    epilog=_example(
+        "elbowroom replay run.mcap",
+        "elbowroom replay run.mcap --why 1200",
+    )
+)(replay)
+app.command(epilog=_example("elbowroom export run.mcap images"))(export)
 app.command(
     epilog=_example(
         "elbowroom simulate my_cell.yaml --moving person",

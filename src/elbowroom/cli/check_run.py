@@ -56,7 +56,7 @@ def ask(
             override = room.site.override(machine)
             (verdict,) = with_creep(space, machine, snapshot.joints or {}, checked, override)
         found = why(space, machine, snapshot.joints or {}, verdict)
-        reasons = _reasons(found, verdict)
+        reasons = reasons_of(found, verdict)
         pictures = _pictures(space, found, out)
         add(
             {
@@ -77,9 +77,9 @@ def ask(
                 "allowances": room.allowances,
             }
         )
-    for line in _said(motion, verdict):
+    for line in said(motion, verdict):
         print(line)
-    for line in [*reasons, *_numbers(found), *map(_sentence, found.advice)]:
+    for line in [*reasons, *numbers(found), *map(sentence, found.advice)]:
         print(line)
     if pictures:
         print(f"{len(pictures)} pictures, one of each camera that has the voxel in its image, in {out}")
@@ -88,7 +88,7 @@ def ask(
     print(NOT_CERTIFIED)
 
 
-def _said(motion: Motion, verdict: Verdict) -> Iterator[str]:
+def said(motion: Motion, verdict: Verdict) -> Iterator[str]:
     """The verdict in words."""
     yield f"{verdict.motion.name}: {verdict.level.value}"
     yield _travel(motion, verdict)
@@ -148,17 +148,18 @@ def _creeping(verdict: Verdict, creep: Creep) -> str:
     )
 
 
-def _numbers(found: Why) -> list[str]:
+def numbers(found: Why) -> list[str]:
     """A line for each camera that has the voxel in its image and does not see through it."""
     seen = () if found.report is None else found.report.cameras
     return [f"  {one}" for one in seen if one.reach_m is not None and one.sight is not Sight.THROUGH]
 
 
-def _sentence(words: str) -> str:
+def sentence(words: str) -> str:
+    """The words as a sentence."""
     return f"{words[0].upper()}{words[1:]}."
 
 
-def _reasons(found: Why, verdict: Verdict) -> list[str]:
+def reasons_of(found: Why, verdict: Verdict) -> list[str]:
     """What each camera saw at the place that ends the travel, a line each; nothing if that lies nowhere.
 
     Of the machine itself: what to do if its links are meant to touch.

@@ -22,6 +22,7 @@ from elbowroom.errors import InputError
 
 if TYPE_CHECKING:
     from elbowroom.monitor import Gate
+    from elbowroom.monitor.blackbox.recorder import Recorder
     from elbowroom.site import Site
     from elbowroom.sources import Room
 
@@ -49,6 +50,19 @@ GateFolder = Annotated[
 ]
 
 
+RecordFile = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Keep all that comes in and all that is decided in this MCAP file (elbowroom replay).",
+    ),
+]
+BlackBoxFolder = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR", help="Keep the minute before each stop, and 10 s after it, as a file in this folder."
+    ),
+]
 SkewMs = Annotated[
     float,
     typer.Option(
@@ -88,6 +102,8 @@ def monitor(
     skew_ms: SkewMs = 0.0,
     gate: GateFolder = None,
     callback: Callback = None,
+    record: RecordFile = None,
+    black_box: BlackBoxFolder = None,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
@@ -110,12 +126,17 @@ def monitor(
     resets (`elbowroom gate reset DIR`), speed rises slowly, a watchdog in a process
     of its own says stop when this one falls silent, and a PLC may poll by Modbus.
 
+    With --record, or --black-box (or a key `black_box` of the site), it is kept what
+    came in and what was decided; `elbowroom replay FILE` judges it again. A full disk
+    is told, and stops nothing.
+
     Not a certified safety function.
     """
     positions = parse_joints(joints)
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
 
+    from elbowroom.monitor.blackbox.made import recorder_of
     from elbowroom.monitor.gate.made import gate_of
     from elbowroom.site import Site
     from elbowroom.sources import live, open_room
@@ -136,7 +157,8 @@ def monitor(
             knocks=knock or (),
         )
         shown = live(_skewed(room, skew_ms) if skew_ms else room)
-        _watch(shown, seconds, json, out, gate_of(room, gate, callback))
+        recorder = recorder_of(room, record, black_box)
+        _watch(shown, seconds, json, out, gate_of(room, gate, callback), recorder)
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -170,7 +192,12 @@ def _skewed(room: "Room", skew_ms: float) -> "Room":
 
 
 def _watch(
-    room: "Room", seconds: float | None, json_file: Path | None, out_dir: Path | None, gate: "Gate | None"
+    room: "Room",
+    seconds: float | None,
+    json_file: Path | None,
+    out_dir: Path | None,
+    gate: "Gate | None",
+    recorder: "Recorder | None",
 ) -> None:
     """Runs the loop over a room, with the faces that were asked for."""
     from rich.console import Console
@@ -205,6 +232,12 @@ def _watch(
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]
+        if recorder is not None:
+            recorder.cycle = loop.cycle
+            faces.append(recorder)
+            loop = replace(loop, checks=replace(loop.checks, looks=(*loop.checks.looks, recorder)))
         with asked_to_end() as is_over:
             loop.run(faces, seconds, is_over)
         add(view.log.row())
+    for line in () if recorder is None else (*recorder.said, *recorder.troubles):
+        console.print(line, highlight=False)

@@ -101,6 +101,7 @@ class Cycle:
         verdicts = tuple(given.get(motion) or self._stop(motion) for motion in self.motions)
         kept = space if self.keeps_images else space.released()
         result = CycleResult(self._number(), snapshot.now_ns or 0, kept, verdicts, stage_ms, oldest_ms, fault)
+        result = replace(result, given=cameras_of(snapshot))
         skew_ms = snapshot.fresh(self.terms.max_age_ns).skew_ms
         return replace(
             result,
@@ -203,10 +204,16 @@ def failure(
     """
     try:
         now_ns, oldest_ms = (snapshot.now_ns or 0, snapshot.oldest_age_ms) if snapshot else (0, None)
+        given = cameras_of(snapshot) if snapshot else None
     except Exception:  # what failed may be the snapshot itself
-        now_ns, oldest_ms = 0, None
+        now_ns, oldest_ms, given = 0, None, None
     fault = f"{type(error).__name__}: {error}"
-    return CycleResult(sequence, now_ns, None, verdicts, stage_ms or {}, oldest_ms, fault)
+    return CycleResult(sequence, now_ns, None, verdicts, stage_ms or {}, oldest_ms, fault, given=given)
+
+
+def cameras_of(snapshot: Snapshot) -> tuple[str, ...]:
+    """Names of the cameras that a snapshot has frames of."""
+    return tuple(frame.camera for frame in snapshot.frames)
 
 
 def lateness(snapshot: Snapshot, terms: Terms, took_ms: float) -> str | None:

@@ -35,6 +35,7 @@ class CycleResult:
         blind: that no camera gave anything that counts, so that every verdict is stop, one sentence; None: one did.
         stopping: whether the machine, as fast as it is, would come to rest in free space; None: that is not known.
         velocities: how fast its joints are, by name [m/s or rad/s]; None: that is not known.
+        given: names of the cameras whose frames were judged; None: nothing was.
     """
 
     sequence: int
@@ -50,6 +51,7 @@ class CycleResult:
     skew_ms: float | None = None
     sick: tuple[Sick, ...] = ()
     blind: str | None = None
+    given: tuple[str, ...] | None = None
     distances: Distances | None = None
     stopping: PathVerdict | None = None
     velocities: Mapping[str, float] | None = None

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
-from elbowroom.monitor.cycle import failure, lateness
+from elbowroom.monitor.cycle import cameras_of, failure, lateness
 from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.stages import raise_interrupt, timed
 from elbowroom.reconstruct import Terms, free_space_of
@@ -58,7 +58,7 @@ class SpaceCycle:
         now_ns = snapshot.now_ns or 0
         skew_ms = snapshot.fresh(self.terms.max_age_ns).skew_ms
         result = CycleResult(self._number(), now_ns, space.released(), (), stage_ms, oldest_ms)
-        return replace(result, late=late, skew_ms=skew_ms)
+        return replace(result, late=late, skew_ms=skew_ms, given=cameras_of(snapshot))
 
     def failed(
         self, error: Exception, snapshot: Snapshot | None, stage_ms: dict[str, float] | None = None

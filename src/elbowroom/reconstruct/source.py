@@ -95,7 +95,10 @@ class ImageSource:
         word, bit = bits.place_of(index, space.grid)
         if self._more_is_blocked(space) or not (self.focus is None or self.focus[word]):
             return NONE
-        fine = pixel_width_m(self.images.cameras, space.grid.centre_of(np.array(index))) <= space.grid.voxel_size_m
+        fine = (
+            pixel_width_m(self.images.cameras, space.grid.centre_of(np.array(index)))
+            <= space.grid.voxel_size_m
+        )
         if not fine and space.disputed_words[word] & bit:
             return NONE
         free = free_parts(space.grid, index, self.kept)

@@ -9,6 +9,7 @@ from elbowroom.choices import Detail, Rule
 from elbowroom.errors import InputError
 from elbowroom.geometry import VoxelGrid
 from elbowroom.reconstruct.terms import MOST_ANGLE_DEG, PEOPLE_SPEED_M_S, WITNESS_ANGLE_DEG, require_speed
+from elbowroom.site.black_box_entry import BlackBoxEntry
 from elbowroom.site.calibration_entry import CalibrationEntry
 from elbowroom.site.camera_entry import CameraEntry, CameraSettings, MarginEntry
 from elbowroom.site.entry import Count, Entry, Flag, NotNegative, Number, Point, Positive, Text, Whole
@@ -142,6 +143,7 @@ class SiteEntry(Entry):
     placement: PlacementEntry | None = None
     watch: WatchEntry | None = None
     gate: GateEntry | None = None
+    black_box: BlackBoxEntry | None = None
     separation: SeparationEntry = SeparationEntry()
     health: HealthEntry = HealthEntry()
     calibration: CalibrationEntry | None = None

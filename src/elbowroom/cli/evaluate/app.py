@@ -14,6 +14,7 @@ from elbowroom.cli.evaluate.looks import looks
 from elbowroom.cli.evaluate.own_links import own_links
 from elbowroom.cli.evaluate.paths import paths
 from elbowroom.cli.evaluate.placement import placement
+from elbowroom.cli.evaluate.recording import cut, replay
 from elbowroom.cli.evaluate.robots import robots
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
 from elbowroom.cli.evaluate.scale import scale_budget, scale_cameras
@@ -63,4 +64,6 @@ evaluate_app.command(epilog=_example("hand --scenes 5 --json hand.json"))(hand)
 evaluate_app.command(epilog=_example("paths --quick --json paths.json"))(paths)
 evaluate_app.command(epilog=_example("skew --quick --json skew.json"))(skew)
 evaluate_app.command(epilog=_example("cell --quick --json cell.json"))(cell)
+evaluate_app.command(epilog=_example("cut --quick --json cut.json"))(cut)
+evaluate_app.command(epilog=_example("replay --quick --json replay.json"))(replay)
 evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

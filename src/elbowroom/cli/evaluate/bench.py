@@ -10,18 +10,18 @@ from elbowroom.cli.options import JsonFile
 
 def bench(
     what: Annotated[
-        Literal["cycle", "decision", "start", "machine", "calibration"],
+        Literal["cycle", "decision", "start", "machine", "record", "calibration"],
         typer.Argument(
             help="cycle: carve and whole cycles; decision: exposure to decision in the running monitor; "
             "start: a new process to its first answer; "
-            "machine: what triangles cost; calibration: how well cameras are found."
+            "machine: what triangles cost; record: whether recording keeps up; calibration: how well cameras are found."
         ),
     ] = "cycle",
     quick: Annotated[bool, typer.Option(help="Few rounds: a first impression in under a minute.")] = False,
     cameras: Annotated[int, typer.Option(min=1, max=255, help="How many cameras.")] = 21,
     size: Annotated[str, typer.Option(help="Of their images: vga, qqvga or thesis.")] = "vga",
     threads: Annotated[int | None, typer.Option(min=1, help="Default: all cores.")] = None,
-    seconds: Annotated[float, typer.Option(min=1, help="decision: how long, of each case.")] = 30.0,
+    seconds: Annotated[float, typer.Option(min=1, help="decision, record: how long, of each case.")] = 30.0,
     octomap: Annotated[bool, typer.Option(help="Also run OctoMap, where pyoctomap is installed.")] = True,
     against: Annotated[
         Path | None,
@@ -63,6 +63,10 @@ def bench(
         from elbowroom.cli.evaluate.bench_run import run_bench_start
 
         run_bench_start(quick, against, json)
+    elif what == "record":
+        from elbowroom.cli.evaluate.bench_run import run_bench_record
+
+        run_bench_record(quick, cameras, size, seconds, json)
     elif what == "machine":
         from elbowroom.cli.evaluate.bench_run import run_bench_machine
 

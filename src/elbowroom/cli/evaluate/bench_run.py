@@ -5,7 +5,7 @@ from pathlib import Path
 
 from elbowroom.cli.evaluate.measured import measured
 from elbowroom.cli.evaluate.shown import as_table, text, voxel, yes_or_no
-from elbowroom.evaluate.due import Row
+from elbowroom.evaluate.due import Row, sentence
 from elbowroom.evaluate.speed.bench import CASES, bench_rows
 from elbowroom.evaluate.speed.start import DUE, start_rows
 
@@ -133,3 +133,35 @@ def run_bench_machine(quick: bool, cameras: int, json: Path | None) -> None:
         "Both machines in turns, cameras of 160 x 120 pixels, samples for voxels of 5 cm.",
     )
     measured("cases", fine_machine_rows(3 if quick else 15, cameras), None, json, show)
+
+
+def run_bench_record(quick: bool, cameras: int, size: str, seconds: float, json: Path | None) -> None:
+    """Whether the recorder keeps up.
+
+    Args:
+        quick: ten seconds each.
+        cameras: how many.
+        size: of their images, by name.
+        seconds: how long each run is.
+        json: file for the rows.
+    """
+    from elbowroom.evaluate.recording.rate import DUE as RATE_DUE
+    from elbowroom.evaluate.recording.rate import rate_rows
+    from elbowroom.simulate.cameras import SIZES
+
+    show = as_table(
+        {
+            "case": "{case}",
+            "cameras": "{cameras} of {width}x{height}",
+            "ran": "{seconds:.0f} s",
+            "raw": "{raw_mb_s:.0f} MB/s",
+            "file": "{file_mb_s:.0f} MB/s",
+            "of a core": "{core_share:.2f}",
+            "lost": "{lost}",
+            "not as given": "{not_as_given}",
+            "handed over in": "{handed_over_ms:.1f} ms",
+        },
+        sentence(RATE_DUE, "with 21 cameras of 640x480 at 15 images a second"),
+    )
+    rows = rate_rows(10.0 if quick else seconds, cameras, SIZES[size][:2])
+    measured("runs", rows, None, json, show)

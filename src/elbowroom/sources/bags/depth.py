@@ -11,11 +11,15 @@ from elbowroom.sources.bags.messages import IMAGE, RawImage, compressed_of, imag
 from elbowroom.sources.bags.rvl import rvl_pixels
 from elbowroom.sources.depth_pgm import exchanged
 from elbowroom.sources.depth_png import check_png_bytes, png_pixels
+from elbowroom.wire import depth_codec
+from elbowroom.wire.ros_messages import PLANAR, RADIAL
 
 Pixels = NDArray[np.uint16] | NDArray[np.float32]
 WHOLE, METRES = "16UC1", "32FC1"
 ENCODINGS = {WHOLE: 2, "mono16": 2, METRES: 4}
 """Encodings that are read, and their bytes a pixel."""
+OWN, OWN_RADIAL = "elbowroom", "elbowroom, radial"
+"""Packing of a recorded run: metres, not quantised; or such from the camera's centre."""
 TRANSPORT = "compressedDepth"
 CONFIG = struct.Struct("<iff")
 """Of that transport: a number, and A and B of what stands in a pixel for a depth z [m]: floor(A / z + B)."""
@@ -31,7 +35,7 @@ class Kind(NamedTuple):
         stamp_ns: of its header [ns].
         encoding: "16UC1" or "32FC1".
         size: width and height [px].
-        packing: "", "png" or "rvl".
+        packing: "", "png", "rvl", or `OWN` or `OWN_RADIAL` of a recorded run (`wire/depth_codec.py`).
     """
 
     frame: str
@@ -107,6 +111,8 @@ def depth_of(type_: str, data: bytes, what: str, size: tuple[int, int]) -> Pixel
         return _raw_pixels(image_of(data, what))
     packed = _packed(data, what)
     width, height = size
+    if packed.kind.packing in (OWN, OWN_RADIAL):
+        return depth_codec.unpack_depth(packed.data, what)
     if packed.kind.packing == "rvl":
         numbers = rvl_pixels(packed.data, what, width, height)
     else:
@@ -137,7 +143,8 @@ def quantum(type_: str, data: bytes, what: str) -> float | None:
     if type_ == IMAGE:
         return None
     packed = _packed(data, what)
-    return 1.0 / packed.a if packed.kind.encoding == METRES else None
+    is_quantised = packed.kind.encoding == METRES and packed.kind.packing not in (OWN, OWN_RADIAL)
+    return 1.0 / packed.a if is_quantised else None
 
 
 def _raw_pixels(image: RawImage) -> Pixels:
@@ -171,8 +178,14 @@ def _require_size(size: tuple[int, int], what: str) -> None:
 
 
 def _packed(data: bytes, what: str) -> _Packed:
-    """A message of the transport compressedDepth: twelve bytes, then a PNG, or width, height and RVL."""
+    """A message of the transport compressedDepth: twelve bytes, then a PNG, or width, height and RVL; or of a run."""
     image = compressed_of(data, what)
+    if image.format in (PLANAR, RADIAL):
+        size = depth_codec.head_of(image.data, what).size
+        _require_size(size, what)
+        packing = OWN if image.format == PLANAR else OWN_RADIAL
+        own = Kind(image.header.frame, image.header.stamp_ns, METRES, size, packing)
+        return _Packed(own, 1.0, 0.0, image.data)
     encoding, _, transport = (part.strip() for part in image.format.partition(";"))
     if not transport.startswith(TRANSPORT):
         raise FrameError(

@@ -11,7 +11,7 @@ from elbowroom.errors import BagError
 from elbowroom.geometry import DepthCamera
 from elbowroom.sources.bags.bag import Bag
 from elbowroom.sources.bags.camera_infos import info_topic, lens_by
-from elbowroom.sources.bags.depth import METRES, depth_of
+from elbowroom.sources.bags.depth import METRES, OWN, OWN_RADIAL, depth_of
 from elbowroom.sources.bags.depth_topics import DepthTopic, chosen
 from elbowroom.sources.bags.frames import Frames, frames_of
 from elbowroom.sources.bags.joints import told_of
@@ -141,7 +141,12 @@ def _camera(
         told.append(
             f"{frame} is taken for optical axes (z forward), though its name does not say so: look at the picture"
         )
-    if topic.kind.encoding == METRES and topic.kind.packing:
+    if topic.kind.packing == OWN_RADIAL:
+        raise BagError(
+            f"{bag.path}: {topic.name}: depth from the camera's centre, which no CameraInfo says; take the site "
+            "file of that run (elbowroom export writes it)"
+        )
+    if topic.kind.encoding == METRES and topic.kind.packing not in ("", OWN):
         told.append("metres were quantised on the way; the nearest depth that fits is read")
     return camera, told
 

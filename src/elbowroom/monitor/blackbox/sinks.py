@@ -1,0 +1,255 @@
+"""Where passes go that are kept: one file of a whole run, or a file for each stop, of the minute before it."""
+
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+from elbowroom.monitor.blackbox.kept_pass import KeptFrame, KeptPass
+from elbowroom.wire.mcap_writer import Attached, McapWriter, Told
+
+
+class Head(NamedTuple):
+    """What each file begins with.
+
+    Args:
+        attached: files within it.
+        still: messages that are said once.
+    """
+
+    attached: Sequence[Attached]
+    still: Sequence[Told]
+
+
+class Sink(Protocol):
+    """Takes passes, in a thread of its own. It may raise `OSError`: that is told, and not the end of it."""
+
+    @property
+    def trouble(self) -> str | None:
+        """What is not kept, and why; None: all is."""
+
+    def begin(self, head: Head) -> None:
+        """A run begins."""
+
+    def take(self, one: KeptPass) -> None:
+        """The next pass."""
+
+    def work(self) -> bool:
+        """Does a little of what is left to do; whether there was something."""
+
+    def end(self) -> None:
+        """There will be no more passes; all that is left is done."""
+
+    @property
+    def said(self) -> list[str]:
+        """What was written, a line each."""
+
+
+class PassFile:
+    """A file that passes are added to; a frame is written with the first pass that it is part of.
+
+    Args:
+        path: of a file that is not there yet.
+        head: what it begins with.
+
+    Raises:
+        OSError: it cannot be written; here and in every call.
+    """
+
+    def __init__(self, path: Path, head: Head) -> None:
+        self._writer = McapWriter(path, head.attached)
+        self._still = list(head.still)
+        self._newest: dict[str, int] = {}
+        self.path, self.passes = path, 0
+
+    def add(self, one: KeptPass) -> None:
+        """Writes a pass."""
+        new = [frame for frame in one.frames if self._newest.get(frame.camera) != frame.number]
+        try:
+            self._writer.step([*self._still, *(frame.told for frame in new), *one.messages], one.time_ns)
+        except OSError:
+            self._writer.drop()
+            raise
+        self._still = []
+        self._newest |= {frame.camera: frame.number for frame in new}
+        self.passes += 1
+
+    def end(self) -> str:
+        """Ends it; what is said of it."""
+        self._writer.end()
+        megabytes = self._writer.length / 1e6
+        return f"{self.path}: {self.passes} passes, {megabytes:.1f} MB, sum {self._writer.sum[:16]}"
+
+
+@dataclass(slots=True, eq=False)
+class WholeRun:
+    """A file of all passes.
+
+    Args:
+        path: of a file that is not there yet.
+    """
+
+    path: Path
+    trouble: str | None = field(default=None, init=False)
+    said: list[str] = field(default_factory=list, init=False)
+    _file: PassFile | None = field(default=None, init=False)
+
+    def begin(self, head: Head) -> None:
+        """Begins the file."""
+        self._file = PassFile(self.path, head)
+
+    def take(self, one: KeptPass) -> None:
+        """Writes the pass. A file that could not be written is left as it is, and no more is added."""
+        if self._file is None:
+            return
+        try:
+            self._file.add(one)
+        except OSError as error:
+            passes, self._file = self._file.passes, None
+            self.trouble = f"{self.path}: {why(error)}; it ends after {passes} passes"
+
+    def work(self) -> bool:
+        """Nothing is left."""
+        return False
+
+    def end(self) -> None:
+        """Ends the file."""
+        if self._file is None:
+            return
+        try:
+            self.said.append(self._file.end())
+        except OSError as error:
+            self.trouble = f"{self.path}: {why(error)}; it has no end"
+        self._file = None
+
+
+@dataclass(slots=True, eq=False)
+class BlackBox:
+    """The last passes in memory; each stop leaves a file of what was before it and a while after.
+
+    Another stop before that while is over makes the same file longer. What is left to write is written while no pass
+    waits to be kept.
+
+    Args:
+        folder: of the files.
+        before_ns, after_ns: how much is kept of a stop [ns].
+        most_bytes: of passes in memory; those that came first are let go.
+        clock_ns: by which passes are heard.
+    """
+
+    folder: Path
+    before_ns: int = 60_000_000_000
+    after_ns: int = 10_000_000_000
+    most_bytes: int = 4_000_000_000
+    clock_ns: Callable[[], int] = time.monotonic_ns
+    _trouble: str | None = field(default=None, init=False)
+    _short_ns: int | None = field(default=None, init=False)
+    said: list[str] = field(default_factory=list, init=False)
+    _head: Head | None = field(default=None, init=False)
+    _kept: deque[KeptPass] = field(default_factory=deque, init=False)
+    _size: int = field(default=0, init=False)
+    _users: dict[int, int] = field(default_factory=dict, init=False)
+    _file: PassFile | None = field(default=None, init=False)
+    _waiting: deque[KeptPass] = field(default_factory=deque, init=False)
+    _until_ns: int = field(default=0, init=False)
+    _is_over: bool = field(default=False, init=False)
+
+    @property
+    def trouble(self) -> str | None:
+        """That a stop is not kept, or that memory does not hold as much as it should; None: neither."""
+        if self._trouble is not None or self._short_ns is None:
+            return self._trouble
+        return (
+            f"{self.folder}: {self.most_bytes / 1e6:g} MB of memory hold {self._short_ns / 1e9:.1f} s before a stop, "
+            f"not {self.before_ns / 1e9:g} (black_box.memory_mb)"
+        )
+
+    def begin(self, head: Head) -> None:
+        """Nothing is written before a stop."""
+        self._head = head
+
+    def take(self, one: KeptPass) -> None:
+        """Keeps the pass; begins a file if something stopped with it."""
+        self._hold(one)
+        if self._file is not None:
+            self._waiting.append(one)
+        elif one.stops:
+            self._begin_file(one)
+        if one.stops:
+            self._until_ns = one.heard_ns + self.after_ns
+        self.work()
+
+    def work(self) -> bool:
+        """Writes one pass of those that wait, or ends the file."""
+        if self._file is None:
+            return False
+        try:
+            if self._waiting:
+                self._file.add(self._waiting.popleft())
+                return True
+            if not self._is_over and self.clock_ns() < self._until_ns:
+                return False
+            self._end_file()
+        except OSError as error:
+            self._give_up(self._file.path, error)
+        return True
+
+    def end(self) -> None:
+        """Writes what waits."""
+        self._is_over = True
+        while self.work():
+            pass
+
+    def _hold(self, one: KeptPass) -> None:
+        """Keeps a pass in memory, and lets go of those that are too old, or too many."""
+        self._kept.append(one)
+        self._size += one.own_size + sum(self._used(frame, +1) for frame in one.frames)
+        while len(self._kept) > 1 and (
+            self._size > self.most_bytes or one.heard_ns - self._kept[0].heard_ns > self.before_ns
+        ):
+            old = self._kept.popleft()
+            held_ns = one.heard_ns - self._kept[0].heard_ns
+            if self._size > self.most_bytes and held_ns < self.before_ns:
+                self._short_ns = held_ns
+            self._size -= old.own_size + sum(self._used(frame, -1) for frame in old.frames)
+
+    def _used(self, frame: KeptFrame, more: int) -> int:
+        """By how much a frame counts where one more, or one less, pass holds it [bytes]."""
+        before = self._users.get(id(frame), 0)
+        now = before + more
+        if now:
+            self._users[id(frame)] = now
+        else:
+            del self._users[id(frame)]
+        return len(frame.told.data) if 0 in (before, now) else 0
+
+    def _begin_file(self, one: KeptPass) -> None:
+        assert self._head is not None
+        day = time.strftime("%Y%m%dT%H%M%SZ", time.gmtime(one.wall_ns / 1e9))
+        path = self.folder / f"stop-{day}-{one.sequence}.mcap"
+        try:
+            self._file = PassFile(path, self._head)
+            self._waiting = deque(self._kept)
+        except OSError as error:
+            self._give_up(path, error)
+
+    def _end_file(self) -> None:
+        assert self._file is not None
+        said = self._file.end()
+        self._file, self._trouble = None, None
+        self.said.append(said)
+
+    def _give_up(self, path: Path, error: OSError) -> None:
+        self._trouble = f"{path}: {why(error)}; this stop is not kept, or not all of it"
+        self._file = None
+        self._waiting.clear()
+
+
+def why(error: OSError) -> str:
+    """What the system says of a file that cannot be written."""
+    with suppress(AttributeError):
+        return f"cannot be written ({error.strerror})"
+    return "cannot be written"
