@@ -12,6 +12,7 @@ from rich.console import Console
 from elbowroom.cli.check_run import numbers, reasons_of, said, sentence
 from elbowroom.cli.evaluate.measured import watched
 from elbowroom.cli.progress import Steps
+from elbowroom.errors import BagError
 from elbowroom.files.json_rows import json_rows
 from elbowroom.monitor.blackbox.configuration import Configuration
 from elbowroom.monitor.blackbox.recording import Recording
@@ -46,9 +47,14 @@ def judge_again(file: Path, begin: int | None, json_file: Path | None) -> bool:
         first = 0 if begin is None else recording.number_of(begin)
         found: list[Compared] = []
         rows = watched("cycles", replayed(recording, first), len(recording) - first)
-        for one in rows:
-            found.append(one)
-            add(_row(one))
+        try:
+            for one in rows:
+                found.append(one)
+                add(_row(one))
+        except BagError as error:
+            if wrong is None:
+                raise
+            print(f"Cycles from here on cannot be read: {error}")
         add({"kind": "file", "wrong": wrong, "note": recording.note, "sum": recording.sum})
     for line in _summary(found):
         print(line)

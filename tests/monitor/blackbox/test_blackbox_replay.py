@@ -76,6 +76,7 @@ def test_what_was_known_beside_the_images_is_taken_as_it_was_kept(file, word):
                 "free_travel": 0.0,
                 "cause": cause,
                 "overridable": False,
+                "safe_speed": 0.0,
             }
             verdict |= {
                 "link": None,
@@ -200,7 +201,8 @@ def test_cameras_that_were_left_out_are_left_out_again(file):
 
 def test_a_pass_in_which_nothing_was_judged_is_stop_by_word(file):
     stop = {"level": "stop", "band": "S", "free_travel": 0.0, "cause": "input", "overridable": False}
-    empty = dict.fromkeys(("link", "place_m", "other_link", "zone", "creep")) | {"escapes": False}
+    empty = dict.fromkeys(("link", "place_m", "other_link", "zone", "creep"))
+    empty |= {"escapes": False, "safe_speed": 0.0}
     with Recording(file) as recording:
         cycle = recording.configuration().cycle()
         one = recording.at(4)

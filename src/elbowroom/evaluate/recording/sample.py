@@ -19,6 +19,8 @@ RATE_HZ = 15.0
 CAMERAS, SIZE, VOXEL_M = 5, (48, 36), 0.2
 LOSES, AGES, FORGETS = 0.05, 0.05, 0.01
 """Shares of images that do not come, and that are old; and of passes in which nobody knows where the machine is."""
+TELLS_SPEED = 0.9
+"""Of joints, so many say how fast they are."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +53,9 @@ class Troubled:
                 if chance.random() >= LOSES
             ]
             joints = one.joints if chance.random() >= FORGETS else {}
-            before = replace(one, frames=tuple(frames), joints=joints)
+            # where nobody knows how fast it is, one of them has no speed
+            speeds = {name: chance.uniform(-0.2, 0.2) for name in one.joints or {} if chance.random() < TELLS_SPEED}
+            before = replace(one, frames=tuple(frames), joints=joints, velocities=speeds)
             yield before
 
     def close(self) -> None:

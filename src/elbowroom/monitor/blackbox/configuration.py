@@ -124,7 +124,9 @@ def plain_cycle(room: Room) -> Cycle | SpaceCycle:
     if room.unasked is not None:
         return SpaceCycle(room.grid, room.cameras, room.machine, room.terms)
     machine, motions = room.machine_and_motions()
-    return Cycle(room.grid, room.cameras, machine, motions, room.terms, override=room.site.override(machine))
+    site = room.site
+    override, braking = site.override(machine), site.braking(machine)
+    return Cycle(room.grid, room.cameras, machine, motions, room.terms, override=override, braking=braking)
 
 
 def _require_sound(fields: Any, what: str) -> None:

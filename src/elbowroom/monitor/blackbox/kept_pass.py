@@ -170,6 +170,9 @@ def pass_record(moment: Moment, frames: Sequence[tuple[str, int]]) -> dict[str, 
         "joints": None if snapshot.joints is None else _positions(snapshot.joints),
         "joints_of": {camera: _positions(joints) for camera, joints in snapshot.joints_of.items()},
         "clock_bounds_ns": dict(snapshot.clock_bounds_ns),
+        "joints_ns": snapshot.joints_ns,
+        "commanded": None if snapshot.commanded is None else _positions(snapshot.commanded),
+        "velocities": _positions(snapshot.velocities),
     }
     return {
         "sequence": result.sequence,
@@ -185,6 +188,7 @@ def judged(result: CycleResult) -> dict[str, Any]:
     """What a pass came to, in what JSON knows, numbers to the last bit."""
     return {
         "verdicts": [plain(verdict.row()) for verdict in result.verdicts],
+        "stopping": None if result.stopping is None else plain(result.stopping.row()),
         "space": None if result.space is None else space_sum(result.space),
         "fault": result.fault,
         "late": result.late,

@@ -26,12 +26,13 @@ from elbowroom.machine.link import Link, Surface
 from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.stand import Stand
 from elbowroom.machine.zone import Zone
-from elbowroom.motion import Motion, Override
+from elbowroom.motion import Braking, Motion, Override
 from elbowroom.reconstruct import Terms
 
 KINDS = {
     kind.__name__: kind
     for kind in (
+        Braking,
         Contact,
         DepthCamera,
         Finding,

@@ -165,6 +165,9 @@ class Recording:
                 {camera: _positions(joints) for camera, joints in given["joints_of"].items()},
                 given["now_ns"],
                 dict(given["clock_bounds_ns"]),
+                given["joints_ns"],
+                None if given["commanded"] is None else _positions(given["commanded"]),
+                _positions(given["velocities"]),
             )
             numbers = int(told["sequence"]), int(told["wall_ns"]), int(told["lost"])
             return RecordedPass(number, *numbers, snapshot, told["judged"], told["gate"])
