@@ -12,7 +12,7 @@ from elbowroom.machine import Explained
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.carve import carve_images
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.parts import PARTS
+from elbowroom.reconstruct.parts import LATERAL_PX, PARTS
 from elbowroom.reconstruct.resolve import decide
 from elbowroom.reconstruct.source import ImageSource
 from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG, Terms
@@ -66,6 +66,11 @@ def space_of(grid, cameras, frames, margin, model, angle_deg=WITNESS_ANGLE_DEG):
     return replace(space, source=ImageSource(images, model, terms, space.free_words, kept=tuple(kept)))
 
 
+def wide(margin):
+    """The margin that parts are asked with."""
+    return replace(margin, lateral_px=max(margin.lateral_px, LATERAL_PX))
+
+
 def blocked(space):
     """Voxels that are not free, shape (n, 3)."""
     return np.argwhere(bits.unpack(space.blocked_words, space.grid))
@@ -93,7 +98,7 @@ def test_parts_are_free_as_smaller_voxels_are(seed, angle_deg):
     rng, grid, cameras, frames, _, model = a_room(seed)
     margin = Margin(lateral_px=float(rng.choice((0, 0.5))), bias_m=float(rng.choice((0, 0.01))))
     space = space_of(grid, cameras, frames, margin, model, angle_deg)
-    images = images_of(grid, cameras, frames, margin, model)
+    images = images_of(grid, cameras, frames, wide(margin), model)
     alone = set(range(len(cameras))).difference(*witnesses(grid, tuple(cameras), angle_deg))
     groups = [*witnesses(grid, tuple(cameras), angle_deg), *((n,) for n in alone)]
     for index in rng.permutation(blocked(space))[:5]:
@@ -156,7 +161,7 @@ def test_a_camera_without_a_frame_disputes_the_parts_that_it_looks_at():
     for seed in range(0, 8, 2):
         _, grid, cameras, frames, _, model = a_room(seed)
         margin = Margin(lateral_px=0.0)
-        images = images_of(grid, cameras, frames[:-1], margin, model)
+        images = images_of(grid, cameras, frames[:-1], wide(margin), model)
         space = space_of(grid, cameras, frames[:-1], margin, model)
         for index in blocked(space)[::200]:
             says = says_of(parts_of(grid, index), images, say_of_voxel)
@@ -189,7 +194,7 @@ def test_some_voxels_are_free_in_parts_and_some_are_not():
     none, some, every = (
         np.mean(those) for those in np.array([[s == 0, 0 < s < 1, s == 1] for s in shares]).T
     )
-    assert min(none, some, every) > 0.01
+    assert min(none, some, every) > 0.003
 
 
 def test_no_part_that_a_ball_touches_is_free():

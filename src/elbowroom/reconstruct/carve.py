@@ -19,7 +19,7 @@ from elbowroom.reconstruct.kernels.carve import carve_cubes
 from elbowroom.reconstruct.kernels.planes import PLANES, Answers
 from elbowroom.reconstruct.kernels.points import carve_points
 from elbowroom.reconstruct.layout import layout_of
-from elbowroom.reconstruct.parts import KeptViews
+from elbowroom.reconstruct.parts import KeptViews, widened
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.reconstruct.views import fill
 from elbowroom.reconstruct.witnesses import as_one, witnesses
@@ -151,7 +151,7 @@ class _Carve:
         lattice, worth = bits.lattice(self.grid), np.flatnonzero(asked.reshape(-1, 64).any(axis=1))
         kernel = carve_points if self.terms.detail == "point" else carve_cubes
         views, buffers = fill(layout, images, explained.model_depth)
-        carved = KeptViews(views, self.as_one)
+        carved = KeptViews(views if kept is None else widened(views), self.as_one)
         # its memory is used again when nobody has it any more
         finalize(carved, layout.give_back, buffers)
         spread(

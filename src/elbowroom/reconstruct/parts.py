@@ -13,6 +13,8 @@ from elbowroom.reconstruct.kernels.place import Boxes
 PARTS = 4
 """Along each axis a voxel is cut into so many parts: 64 in all, the bits of one word."""
 NONE = np.uint64(0)
+LATERAL_PX = 0.5
+"""By so much pixels are widened at least: what ends between the rays of two pixels ends in some part."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
@@ -20,12 +22,21 @@ class KeptViews:
     """The images of cameras that were carved together, as kernels take them, kept to be asked again.
 
     Args:
-        views: of the cameras.
+        views: of the cameras, `widened`.
         as_one: whether they are one witness; else each is one of its own.
     """
 
     views: Views
     as_one: bool
+
+
+def widened(views: Views) -> Views:
+    """The same with pixels as wide as parts need them."""
+    cameras = views.cameras.copy()
+    lateral_px = np.maximum(cameras["lateral_px"], LATERAL_PX)
+    cameras["ray_half_width"] *= ((0.5 + lateral_px) / (0.5 + cameras["lateral_px"]))[:, None]
+    cameras["lateral_px"] = lateral_px
+    return views._replace(cameras=cameras)
 
 
 def free_parts(grid: VoxelGrid, index: tuple[int, int, int], kept: Sequence[KeptViews]) -> np.uint64:

@@ -11,12 +11,14 @@ from elbowroom.geometry.bits import Words
 from elbowroom.reconstruct.free_space import FreeSpace, Index
 from elbowroom.reconstruct.growth import pixel_width_m
 from elbowroom.reconstruct.images import Image, RoomImages
-from elbowroom.reconstruct.kernels.box import ALL
 from elbowroom.reconstruct.parts import NONE, KeptViews, free_parts
 from elbowroom.reconstruct.point_report import PointReport, Sight
 from elbowroom.reconstruct.sight import sight_of, surface_about
 from elbowroom.reconstruct.terms import Terms
 
+ACROSS_VOXEL = 1.5
+"""So many pixels must fit across a voxel whose parts are asked: what is thinner than three pixels, such as a limb, a
+whole voxel notices more often than its parts do."""
 WILLING = (Sight.HIDDEN, Sight.BLIND, Sight.EDGE, Sight.AGED)
 """What a camera says that would see the voxel if what hides or blinds it were gone, or if its image were newer."""
 
@@ -83,8 +85,8 @@ class ImageSource:
         Args:
             space: judged by detail `pixel` and rule `three`, and no less free than the images say; else none are. None
                 are as well where the terms say that nothing is looked at again.
-            index: of the voxel; of one that cameras were not asked of none are. Where pixels are wider than it, all of
-                them are or none is, and none that anybody disputes.
+            index: of the voxel; of one that cameras were not asked of, or that is no wider than a pixel and a half,
+                none are.
 
         Returns:
             A word, as of `parts.free_parts`.
@@ -92,17 +94,13 @@ class ImageSource:
         terms = self.terms
         if not self.kept or not terms.look_again or terms.detail != "pixel" or terms.rule != "three":
             return NONE
-        word, bit = bits.place_of(index, space.grid)
+        word, _ = bits.place_of(index, space.grid)
         if self._more_is_blocked(space) or not (self.focus is None or self.focus[word]):
             return NONE
-        fine = (
-            pixel_width_m(self.images.cameras, space.grid.centre_of(np.array(index)))
-            <= space.grid.voxel_size_m
-        )
-        if not fine and space.disputed_words[word] & bit:
+        pixel_m = pixel_width_m(self.images.cameras, space.grid.centre_of(np.array(index)))
+        if ACROSS_VOXEL * pixel_m > space.grid.voxel_size_m:
             return NONE
-        free = free_parts(space.grid, index, self.kept)
-        return free if fine or free == ALL else NONE
+        return free_parts(space.grid, index, self.kept)
 
     def _more_is_blocked(self, space: FreeSpace) -> bool:
         """Whether somebody blocked what the images say is free, such as a zone to keep out of; asked again and again of

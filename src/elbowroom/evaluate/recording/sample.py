@@ -54,7 +54,9 @@ class Troubled:
             ]
             joints = one.joints if chance.random() >= FORGETS else {}
             # where nobody knows how fast it is, one of them has no speed
-            speeds = {name: chance.uniform(-0.2, 0.2) for name in one.joints or {} if chance.random() < TELLS_SPEED}
+            speeds = {
+                name: chance.uniform(-0.2, 0.2) for name in one.joints or {} if chance.random() < TELLS_SPEED
+            }
             before = replace(one, frames=tuple(frames), joints=joints, velocities=speeds)
             yield before
 
