@@ -16,9 +16,6 @@ from elbowroom.reconstruct.point_report import PointReport, Sight
 from elbowroom.reconstruct.sight import sight_of, surface_about
 from elbowroom.reconstruct.terms import Terms
 
-ACROSS_VOXEL = 1.5
-"""So many pixels must fit across a voxel whose parts are asked: what is thinner than three pixels, such as a limb, a
-whole voxel notices more often than its parts do."""
 WILLING = (Sight.HIDDEN, Sight.BLIND, Sight.EDGE, Sight.AGED)
 """What a camera says that would see the voxel if what hides or blinds it were gone, or if its image were newer."""
 
@@ -85,8 +82,8 @@ class ImageSource:
         Args:
             space: judged by detail `pixel` and rule `three`, and no less free than the images say; else none are. None
                 are as well where the terms say that nothing is looked at again.
-            index: of the voxel; of one that cameras were not asked of, or that is no wider than a pixel and a half,
-                none are.
+            index: of the voxel; of one that cameras were not asked of none are. No part is finer than a pixel is
+                wide there.
 
         Returns:
             A word, as of `parts.free_parts`.
@@ -98,9 +95,7 @@ class ImageSource:
         if self._more_is_blocked(space) or not (self.focus is None or self.focus[word]):
             return NONE
         pixel_m = pixel_width_m(self.images.cameras, space.grid.centre_of(np.array(index)))
-        if ACROSS_VOXEL * pixel_m > space.grid.voxel_size_m:
-            return NONE
-        return free_parts(space.grid, index, self.kept)
+        return free_parts(space.grid, index, self.kept, finest_m=pixel_m)
 
     def _more_is_blocked(self, space: FreeSpace) -> bool:
         """Whether somebody blocked what the images say is free, such as a zone to keep out of; asked again and again of
