@@ -12,7 +12,7 @@ from elbowroom.machine import Explained
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.carve import carve_images
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.parts import LATERAL_PX, PARTS
+from elbowroom.reconstruct.parts import LATERAL_PX, PARTS, free_parts
 from elbowroom.reconstruct.resolve import decide
 from elbowroom.reconstruct.source import ImageSource
 from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG, Terms
@@ -78,8 +78,12 @@ def blocked(space):
 
 def parts_free(space, index):
     """Which parts of a voxel are free, bool, shape (4, 4, 4)."""
-    word = np.array([space.free_parts(tuple(index))])
-    return np.unpackbits(word.view(np.uint8), bitorder="little").view(bool).reshape((PARTS,) * 3)
+    return unpacked(space.free_parts(tuple(index)))
+
+
+def unpacked(word):
+    """The bits of a word, bool, shape (4, 4, 4)."""
+    return np.unpackbits(np.array([word]).view(np.uint8), bitorder="little").view(bool).reshape((PARTS,) * 3)
 
 
 def whole(space):
@@ -106,7 +110,8 @@ def test_parts_are_free_as_smaller_voxels_are(seed, angle_deg):
         through, disputes = (says & THROUGH).astype(bool), (says & DISPUTES).astype(bool).any(axis=0)
         seen = sum(through[list(group)].any(axis=0).astype(int) for group in groups)
         free = (seen >= 3) | ((seen >= 1) & ~disputes)
-        np.testing.assert_array_equal(parts_free(space, index), free)
+        found = free_parts(grid, tuple(index), space.source.kept)
+        np.testing.assert_array_equal(unpacked(found), free)
 
 
 @pytest.mark.parametrize("seed", range(1, 60, 2))
@@ -145,6 +150,38 @@ def test_an_explained_pixel_is_free_up_to_the_model_in_parts_too():
         assert parts_free(space, (0, 0, 0)).all() == free
 
 
+@pytest.mark.parametrize("seed", range(2))
+def test_parts_are_no_finer_than_is_asked_for(seed):
+    """Where quarters are too fine, parts are free by eights, as voxels of half the edge; where halves are, none is."""
+    rng, grid, cameras, frames, _, model = a_room(seed)
+    margin, edge = Margin(), grid.voxel_size_m
+    space = space_of(grid, cameras, frames, margin, model)
+    images, some = images_of(grid, cameras, frames, margin, model), 0
+    for index in rng.permutation(blocked(space))[:12]:
+        half = VoxelGrid(tuple(grid.lower_m + index * edge), (2, 2, 2), edge / 2)
+        says = says_of(half, images, say_of_voxel)
+        seen, disputes = ((says & what) > 0 for what in (THROUGH, DISPUTES))
+        free = (seen.sum(axis=0) >= 3) | (seen.any(axis=0) & ~disputes.any(axis=0))
+        found = [
+            free_parts(grid, tuple(index), space.source.kept, finest) for finest in (0.3 * edge, 0.6 * edge)
+        ]
+        np.testing.assert_array_equal(unpacked(found[0]), free.repeat(2, 0).repeat(2, 1).repeat(2, 2))
+        assert not found[1]
+        some += free.any()
+    assert some
+
+
+def test_parts_are_no_finer_than_pixels():
+    grid = VoxelGrid((1.0, -0.1, -0.1), (1, 1, 1), 0.2)
+    eye, ahead, shares = (0, 0, 0), (1, 0, 0), []
+    for focal in (40.0, 15.0, 8.0):
+        camera = scenes.camera_at("c", eye, ahead, focal=focal)
+        depth = np.full((camera.height, camera.width), 1.19, dtype=np.float32)
+        space = space_of(grid, [camera], [scenes.DepthFrame("c", NOW, depth)], Margin(), {})
+        shares.append(parts_free(space, (0, 0, 0)).mean())
+    assert shares[0] > shares[1] > shares[2] == 0
+
+
 def test_parts_beside_a_surface_are_free():
     """A voxel that a wall stands in is blocked, and so are the parts that the wall is in: those before it are free."""
     grid = VoxelGrid((1.0, -0.1, -0.1), (1, 1, 1), 0.2)
@@ -167,7 +204,8 @@ def test_a_camera_without_a_frame_disputes_the_parts_that_it_looks_at():
             says = says_of(parts_of(grid, index), images, say_of_voxel)
             seen, disputes = ((says & what) > 0 for what in (THROUGH, DISPUTES))
             free = (seen.sum(axis=0) >= 3) | (seen.any(axis=0) & ~disputes.any(axis=0))
-            np.testing.assert_array_equal(parts_free(space, index), free)
+            found = free_parts(grid, tuple(index), space.source.kept)
+            np.testing.assert_array_equal(unpacked(found), free)
 
 
 def test_what_no_camera_was_asked_of_is_not_free_in_parts():
