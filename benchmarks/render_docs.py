@@ -182,6 +182,15 @@ margins without a lateral error.
         tables.poses_tables,
     ),
     Section(
+        "evaluate_poses_noise.json",
+        "Verdicts beside exact geometry, with noise",
+        """
+The same moments and poses, seen by time-of-flight cameras with noise and flying pixels.
+""",
+        "elbowroom evaluate poses --noise",
+        tables.poses_tables,
+    ),
+    Section(
         "evaluate_travel.json",
         "Free travel beside exact geometry",
         """
