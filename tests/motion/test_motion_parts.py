@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from elbowroom.geometry import VoxelGrid, bits
+from elbowroom.machine import Zone
 from elbowroom.motion import Cause, check_motions, joint_motions
 from elbowroom.motion.check import MOST_LOOKS
 from elbowroom.reconstruct import FreeSpace, reconstruct
@@ -97,3 +98,17 @@ def test_only_so_many_voxels_are_asked_for_each_motion(arm):
     )
     assert len(source.asked) == MOST_LOOKS
     assert verdict.cause is Cause.UNSEEN
+
+
+def test_no_part_of_a_zone_kept_out_is_free(arm):
+    """Cameras see that it is empty; a person said that links are kept out of it."""
+    space, way = (
+        space_among_balls(arm, 3),
+        joint_motions(arm, {"slide": 0.4, "turn": 1.0, "nod": 1.0}, 0.5)[:1],
+    )
+    guarded = arm.with_zones(Zone.box("door", "kept_out", (0.81, -1, 0.3), (0.99, 1, 0.8)))
+    (found,) = check_motions(space, guarded, HOME, way)
+    (from_the_volume,) = check_motions(space.released(), guarded, HOME, way)
+    (without,) = check_motions(space, arm, HOME, way)
+    assert (found.cause, found.zone) == (Cause.KEPT_OUT, "door")
+    assert found.free_travel == from_the_volume.free_travel < without.free_travel

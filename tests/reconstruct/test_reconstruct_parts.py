@@ -57,9 +57,9 @@ def with_specks(rng, frame):
     return scenes.DepthFrame(frame.camera, NOW, depth)
 
 
-def space_of(grid, cameras, frames, margin, model, angle_deg=WITNESS_ANGLE_DEG):
+def space_of(grid, cameras, frames, margin, model, angle_deg=WITNESS_ANGLE_DEG, aged_m=None):
     terms = Terms(margin=margin, witness_angle_deg=angle_deg)
-    images = room_images(cameras, frames)
+    images = room_images(cameras, frames, aged_m)
     kept = []
     evidence = carve_images(grid, images, Explained(model, None), terms, kept=kept)
     space = decide(evidence, cameras, None, None, terms)
@@ -79,6 +79,11 @@ def blocked(space):
 def parts_free(space, index):
     """Which parts of a voxel are free, bool, shape (4, 4, 4)."""
     return unpacked(space.free_parts(tuple(index)))
+
+
+def parts_free_as_seen(space, index):
+    """The same, however wide pixels are."""
+    return unpacked(free_parts(space.grid, tuple(index), space.source.kept))
 
 
 def unpacked(word):
@@ -246,6 +251,32 @@ def test_no_part_that_a_ball_touches_is_free():
             asked += touched.any()
             assert not (parts_free(space, index) & touched).any()
     assert asked > 100
+
+
+def test_no_part_is_free_that_a_ball_may_have_come_to_since():
+    """Each ball has moved by no more than anything may have since the images; older images leave fewer parts free."""
+    asked = lost = 0
+    for seed in range(0, 24, 4):
+        rng, grid, cameras, frames, scene, _ = a_room(seed)
+        far = 0.06
+        newer, older = (
+            space_of(grid, cameras, frames, Margin(), {}, aged_m={c.name: each for c in cameras})
+            for each in (far / 2, far)
+        )
+        steps = rng.normal(size=(len(scene.balls), 3))
+        steps *= far / np.linalg.norm(steps, axis=1, keepdims=True)
+        balls = scene.balls + np.column_stack([steps, np.zeros(len(steps))])
+        now = scenes.Scene(balls=balls, boxes=scene.boxes, walls=scene.walls)
+        for index in blocked(older)[::9]:
+            free = parts_free_as_seen(older, index)
+            touched = scenes.touched(parts_of(grid, index), now)
+            asked += touched.any() and not touched.all()
+            assert not (free & touched).any()
+            if not newer.free[tuple(index)]:
+                before = parts_free_as_seen(newer, index)
+                assert not (free & ~before).any()
+                lost += (before & ~free).any()
+    assert asked > 50 and lost > 10
 
 
 @pytest.mark.parametrize("seed", range(40))
