@@ -3,15 +3,11 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from rich.console import Console
-
 from elbowroom.cli.check_run import by_the_sites_word
-from elbowroom.cli.progress import Steps
+from elbowroom.cli.checked_space import checked_space, said_of
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
-from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.motion import Blocked, PathVerdict, check_path, read_path
-from elbowroom.reconstruct import warm_up
 from elbowroom.sources import Room
 from elbowroom.view.screen.words import NOT_CERTIFIED
 
@@ -31,28 +27,14 @@ def ask_path(room: Room, asked: tuple[Path, float | None], moment: int, json_fil
     machine, _ = room.machine_and_motions()
     path, braking = read_path(asked[0]), room.site.braking(machine)
     with json_rows(json_file) as add:
-        console = Console(stderr=True)
-        compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
-        with Steps(console, 4) as steps:
-            steps.begin("loading kernels")
-            warm_up(machine, [room.terms.detail])
-            steps.begin("reading images")
-            snapshot = room.snapshot(moment)
-            steps.begin("reconstructing")
-            space = room.space_of(snapshot)
-            steps.begin("checking the path")
+        with checked_space(room, machine, moment, "checking the path") as (space, snapshot):
             try:
                 verdict = check_path(space, machine, path, snapshot.joints or {}, braking, asked[1])
             except InputError as error:
                 raise type(error)(f"{asked[0]}: {error}") from None
         add(
             {
-                "site": room.site.name,
-                "moment": moment,
-                "voxel_size_m": room.grid.voxel_size_m,
-                "rule": room.terms.rule,
-                "detail": room.terms.detail,
-                "joints": snapshot.joints,
+                **said_of(room, moment, snapshot),
                 "path": str(asked[0]),
                 **verdict.row(),
                 "reaction_time_s": braking.reaction_time_s,

@@ -3,16 +3,13 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from rich.console import Console
-
-from elbowroom.cli.progress import Steps
+from elbowroom.cli.checked_space import checked_space, said_of
 from elbowroom.errors import InputError
 from elbowroom.files.json_rows import json_rows
 from elbowroom.machine import Machine
-from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.monitor.why.why import Why, why
 from elbowroom.motion import Cause, Creep, Motion, Verdict, check_motions, with_creep
-from elbowroom.reconstruct import FreeSpace, warm_up
+from elbowroom.reconstruct import FreeSpace
 from elbowroom.reconstruct.point_report import Sight
 from elbowroom.reconstruct.source import ImageSource
 from elbowroom.sources import Room
@@ -42,16 +39,7 @@ def ask(
         known = ", ".join(dict.fromkeys(m.joint for m in motions))
         raise InputError(f"{room.site.path}: joints.{joint}: no speed; joints with a speed are {known}")
     with json_rows(json_file) as add:
-        console = Console(stderr=True)
-        compile_kernels(console, machine=True, motion=True, simulator=room.site.simulated is not None)
-        with Steps(console, 4) as steps:
-            steps.begin("loading kernels")
-            warm_up(machine, [room.terms.detail])
-            steps.begin("reading images")
-            snapshot = room.snapshot(moment)
-            steps.begin("reconstructing")
-            space = room.space_of(snapshot)
-            steps.begin("checking the motion")
+        with checked_space(room, machine, moment, "checking the motion") as (space, snapshot):
             checked = check_motions(space, machine, snapshot.joints or {}, [motion])
             override = room.site.override(machine)
             (verdict,) = with_creep(space, machine, snapshot.joints or {}, checked, override)
@@ -60,12 +48,7 @@ def ask(
         pictures = _pictures(space, found, out)
         add(
             {
-                "site": room.site.name,
-                "moment": moment,
-                "voxel_size_m": room.grid.voxel_size_m,
-                "rule": room.terms.rule,
-                "detail": room.terms.detail,
-                "joints": snapshot.joints,
+                **said_of(room, moment, snapshot),
                 **verdict.row(),
                 "explanation": reasons,
                 "seen": [] if found.report is None else [seen.row() for seen in found.report.cameras],
