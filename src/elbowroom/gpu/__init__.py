@@ -1,4 +1,4 @@
-"""The same arithmetic on a GPU: carve and sweep by numba-cuda, with the processor's bits. Prepared, not yet measured."""
+"""The same arithmetic on a GPU: carve and sweep by numba-cuda, bits as the processor has them; not yet measured."""
 
 from elbowroom.gpu.carve import carve_on_gpu
 from elbowroom.gpu.sweep import find_block_on_gpu

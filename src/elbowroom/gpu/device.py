@@ -65,8 +65,7 @@ def _kernel(thread: Callable[..., None]) -> Any:
 def _teach(numba_cuda: Any) -> None:
     """Adds what our kernels use and numba-cuda lacks, and takes fusing away."""
     import numba.cuda.cudadrv.nvvm as nvvm
-    from numba.cuda import ufuncs
-    from numba.cuda import extending
+    from numba.cuda import extending, ufuncs
     from numba.cuda.np import npyfuncs
 
     @extending.overload(lowest_bit, target="cuda")  # type: ignore[attr-defined]
