@@ -14,7 +14,7 @@ from elbowroom.reconstruct.kernels.aged import still_through
 from elbowroom.reconstruct.kernels.box import ALL, LANES
 from elbowroom.reconstruct.kernels.cone import VOXEL
 from elbowroom.reconstruct.kernels.look import Look, ask, contested, measured_at_centre, sort_out
-from elbowroom.reconstruct.kernels.pixel import settle_word
+from elbowroom.reconstruct.kernels.outline import OUTLINES, settle_block
 from elbowroom.reconstruct.kernels.place import blocks_of, cube_at, voxels_of
 from elbowroom.reconstruct.kernels.planes import (
     DISPUTED,
@@ -31,8 +31,8 @@ from elbowroom.reconstruct.kernels.planes import (
 class Scratch(NamedTuple):
     """Memory of one kernel.
 
-    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.cone`; in arrays, or nothing would hold their
-    memory. By camera of a cube: through, mixed (n,): blocks that it sees through, and those that must be asked voxel by
+    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.cone`, outlines (1,): one of `kernels.outline`; in
+    arrays, or nothing would hold their memory. By camera of a cube: through, mixed (n,): blocks that it sees through, and those that must be asked voxel by
     voxel; past (n,): blocks that it saw through when it was exposed, of which it is asked whether that still holds;
     undecided (n,): blocks with voxels left for the pixel test; unsettled, stopped (n, 64): which voxels, and which of
     these it surely does not see through; ageing (n, 64): voxels that it saw through, of which it must be asked as well.
@@ -40,6 +40,7 @@ class Scratch(NamedTuple):
 
     lanes: np.ndarray
     voxel: np.ndarray
+    outlines: np.ndarray
     through: np.ndarray
     mixed: np.ndarray
     past: np.ndarray
@@ -63,6 +64,7 @@ def carve_cubes(cubes, lattice, views, answers):
     scratch = Scratch(
         np.empty(1, LANES),
         np.empty(1, VOXEL),
+        np.empty(1, OUTLINES),
         np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
@@ -227,7 +229,8 @@ def _ask_pixels(cube, c, turn, views, answers, scratch):
             continue
         boxes, seen = voxels_of(cube, lane), rest
         if turn > 0:
-            seen, disputed, surface, blind = settle_word(camera, views.texels, rest, boxes, scratch.voxel[0])
+            memory = scratch.outlines[0], scratch.voxel[0]
+            seen, disputed, surface, blind = settle_block(camera, views.texels, rest, turn == 2, boxes, memory)
             note_disputed(answers, word, disputed, surface, blind)
         if camera.aged_m > 0.0:
             seen = still_through(camera, views.texels, seen, boxes, scratch.voxel[0])

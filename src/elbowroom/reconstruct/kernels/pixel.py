@@ -368,6 +368,18 @@ def settle_voxel(camera, texels, box, voxel):
     return answer & ~BLOCKED if answer else free
 
 
+@njit(inline="always")
+def add_answer(answers, bit, answer):
+    """Words (through, disputed, surface, blind) with what is said of one voxel added to them."""
+    nothing = np.uint64(0)
+    return (
+        answers[0] | (bit if answer & THROUGH else nothing),
+        answers[1] | (bit if answer & DISPUTES else nothing),
+        answers[2] | (bit if answer & IS_SURFACE else nothing),
+        answers[3] | (bit if answer & IS_BLIND else nothing),
+    )
+
+
 @uncounted(cache=True, error_model="numpy")
 def settle_word(camera, texels, voxels, boxes, voxel):
     """What a camera says of the set voxels of a block: words (through, disputed, surface, blind).
@@ -377,19 +389,10 @@ def settle_word(camera, texels, voxels, boxes, voxel):
         voxels: those that are asked, a word.
         boxes: all voxels of the block.
     """
-    through, disputed, surface, blind = np.uint64(0), np.uint64(0), np.uint64(0), np.uint64(0)
-    rest = voxels
+    answers, rest = (np.uint64(0), np.uint64(0), np.uint64(0), np.uint64(0)), voxels
     while rest:
         lane = lowest_bit(rest)
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
-        answer = settle_voxel(camera, texels, box_in(boxes, lane), voxel)
-        if answer & THROUGH:
-            through |= bit
-        if answer & DISPUTES:
-            disputed |= bit
-        if answer & IS_SURFACE:
-            surface |= bit
-        if answer & IS_BLIND:
-            blind |= bit
-    return through, disputed, surface, blind
+        answers = add_answer(answers, bit, settle_voxel(camera, texels, box_in(boxes, lane), voxel))
+    return answers
