@@ -73,13 +73,13 @@ def spread_of(view, sigmas, beside):
     )
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def is_return(view, d):
     """Whether a depth was measured at all."""
     return d > 0.0 and d >= view.min_depth and d <= view.max_depth and d <= MOST_M
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def has_support(view, depth, model, u, v):
     """Whether at least `SUPPORT` of eight neighbours are like an unexplained return: a surface, not a flying pixel.
 

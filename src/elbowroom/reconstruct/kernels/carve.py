@@ -31,11 +31,12 @@ from elbowroom.reconstruct.kernels.planes import (
 class Scratch(NamedTuple):
     """Memory of one kernel.
 
-    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.cone`, outlines (1,): one of `kernels.outline`; in
-    arrays, or nothing would hold their memory. By camera of a cube: through, mixed (n,): blocks that it sees through, and those that must be asked voxel by
-    voxel; past (n,): blocks that it saw through when it was exposed, of which it is asked whether that still holds;
-    undecided (n,): blocks with voxels left for the pixel test; unsettled, stopped (n, 64): which voxels, and which of
-    these it surely does not see through; ageing (n, 64): voxels that it saw through, of which it must be asked as well.
+    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.cone`, outlines (1,): one of `kernels.outline`;
+    in arrays, or nothing would hold their memory. By camera of a cube: through, mixed (n,): blocks that it sees
+    through, and those that must be asked voxel by voxel; past (n,): blocks that it saw through when it was exposed, of
+    which it is asked whether that still holds; undecided (n,): blocks with voxels left for the pixel test; unsettled,
+    stopped (n, 64): which voxels, and which of these it surely does not see through; ageing (n, 64): voxels that it saw
+    through, of which it must be asked as well.
     """
 
     lanes: np.ndarray
@@ -230,7 +231,9 @@ def _ask_pixels(cube, c, turn, views, answers, scratch):
         boxes, seen = voxels_of(cube, lane), rest
         if turn > 0:
             memory = scratch.outlines[0], scratch.voxel[0]
-            seen, disputed, surface, blind = settle_block(camera, views.texels, rest, turn == 2, boxes, memory)
+            seen, disputed, surface, blind = settle_block(
+                camera, views.texels, rest, turn == 2, boxes, memory
+            )
             note_disputed(answers, word, disputed, surface, blind)
         if camera.aged_m > 0.0:
             seen = still_through(camera, views.texels, seen, boxes, scratch.voxel[0])

@@ -148,9 +148,7 @@ def sort_out(camera, texels, edge, unsure, lanes):
         off = abs(np.float32(greatest) * quantum - at)
         lanes.marks[0, lane] = np.float32(lanes.least_quanta[lane]) * quantum < at + margin - rounding
         lanes.marks[1, lane] = (
-            (greatest != np.int32(0))
-            & (greatest != np.int32(NO_RETURN))
-            & (off < inner + margin - rounding)
+            (greatest != np.int32(0)) & (greatest != np.int32(NO_RETURN)) & (off < inner + margin - rounding)
         )
     stopped = bits_of(lanes, 0) & unsure
     surface = bits_of(lanes, 1) & stopped

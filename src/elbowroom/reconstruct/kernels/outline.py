@@ -13,7 +13,7 @@ from numba import njit
 from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
 from elbowroom.geometry.kernels.noise import in_float32, margin_at
 from elbowroom.reconstruct.kernels.box import INSIDE, SLOP_PX, SLOP_REL, place_boxes
-from elbowroom.reconstruct.kernels.pixel import ALL_PIXELS, EACH_ROW, add_answer, settle_voxel
+from elbowroom.reconstruct.kernels.pixel import add_answer, settle_voxel
 from elbowroom.reconstruct.kernels.place import box_in
 from elbowroom.reconstruct.kernels.rows import EIGHT, short_of, telling
 
@@ -34,6 +34,8 @@ see it [px]. near, far, middle: its depth [m].
 """
 SEEN, NOTHING_SAID, UNKNOWN = 0, 1, 2
 """What the rectangle about a voxel says: all is free beyond it; not that, and no pixel says anything of it; neither."""
+MOST_PIXELS = 24
+"""Wider rectangles are left to the pixel test, which passes over tiles of pixels at once."""
 SPARE = np.float32(2.0) * SLOP_PX
 """By so much rectangles are wider [px]."""
 
@@ -126,33 +128,35 @@ def _depths(camera, out):
 
 
 @njit(inline="always")
-def _run(at, reach):
-    """Which of eight pixels lie within a reach of a place, bits of a byte."""
-    first = np.int64(max(np.ceil(at - reach), np.float32(0.0)))
-    last = np.int64(min(np.floor(at + reach), np.float32(EIGHT - 1)))
+def _run(begin, first, last):
+    """Which of eight pixels of a row, from `begin` on, lie between two, ends included; bits of a byte."""
+    first, last = max(first - begin, 0), min(last - begin, EIGHT - 1)
     ones = (np.uint64(2) << np.uint64(max(last - first, 0))) - np.uint64(1)
     return ones << np.uint64(first) if first <= last else np.uint64(0)
 
 
-@njit(inline="always")
-def _rows(at, reach):
-    """All pixels of those of eight rows that lie within a reach of a place."""
-    first = np.int64(max(np.ceil(at - reach), np.float32(0.0)))
-    last = np.int64(min(np.floor(at + reach), np.float32(EIGHT - 1)))
-    ones = (ALL_PIXELS >> np.uint64(8 * (EIGHT - 1 - max(last, 0)))) & (ALL_PIXELS << np.uint64(8 * min(first, 7)))
-    return ones if first <= last else np.uint64(0)
-
-
 @uncounted(cache=True, error_model="numpy", forceinline=True)
-def _core(camera, block, lane, left, top):
-    """Pixels whose cones surely meet a voxel, of 8 x 8 from a corner on, row by row, a word.
+def _is_stopped(camera, texels, block, lane):
+    """Whether some pixel that surely meets a voxel is surely not free beyond it.
 
-    A disc about the voxel's middle, parallel to the image, lies in the voxel: pixels beside its middle, above and below.
+    A disc about the middle, parallel to the image, lies in the voxel: pixels beside its middle, above and below it.
     """
-    u, v = block.u[lane] - np.float32(left), block.v[lane] - np.float32(top)
+    u, v, stopped_to = block.u[lane], block.v[lane], block.stopped_to[lane]
     wide = np.float32(0.5 + camera.lateral_px) - SPARE
-    beside = _run(u, wide + block.inner_u[lane]) * EACH_ROW & _rows(v, wide)
-    return beside | (_run(u, wide) * EACH_ROW & _rows(v, wide + block.inner_v[lane]))
+    across, down = wide + block.inner_u[lane], wide + block.inner_v[lane]
+    top, bottom = np.int64(np.ceil(v - down)), np.int64(np.floor(v + down))
+    for row in range(max(top, 0), min(bottom, camera.height - 1) + 1):
+        reach = across if abs(np.float32(row) - v) <= wide else wide
+        left, right = (
+            max(np.int64(np.ceil(u - reach)), 0),
+            min(np.int64(np.floor(u + reach)), camera.width - 1),
+        )
+        for column in range(left, right + 1, EIGHT):
+            begin = min(column, camera.width - EIGHT)
+            at = camera.first_texel + row * camera.width + begin
+            if short_of(texels.trust_texels, at, stopped_to) & _run(begin, column, right):
+                return True
+    return False
 
 
 @uncounted(cache=True, error_model="numpy", forceinline=True)
@@ -165,31 +169,26 @@ def _settled(camera, texels, block, lane, stopped):
         lane: of the voxel.
         stopped: whether it is known that the camera does not see through it.
     """
-    left, right, top, bottom = block.left[lane], block.right[lane], block.top[lane], block.bottom[lane]
-    if right - left >= EIGHT or bottom - top >= EIGHT:
+    left, right = np.int64(block.left[lane]), np.int64(block.right[lane])
+    top, bottom = np.int64(block.top[lane]), np.int64(block.bottom[lane])
+    if right - left >= MOST_PIXELS or bottom - top >= MOST_PIXELS:
         return UNKNOWN
-    begin = min(np.int64(left), camera.width - EIGHT)
-    columns = ((np.uint64(2) << np.uint64(right - left)) - np.uint64(1)) << np.uint64(left - begin)
-    at = camera.first_texel + np.int64(top) * camera.width + begin
     clear_from, hidden_to = block.clear_from[lane], block.hidden_to[lane]
     short, tell = np.uint64(0), np.uint64(0)
-    for row in range(bottom - top + 1):
-        here = np.uint64(8 * row)
-        short |= (short_of(texels.trust_texels, at, clear_from) & columns) << here
-        tell |= (telling(texels.doubt_texels, at, clear_from, hidden_to) & columns) << here
-        at += camera.width
+    for column in range(left, right + 1, EIGHT):
+        begin = min(column, camera.width - EIGHT)
+        columns = _run(begin, column, right)
+        at = camera.first_texel + top * camera.width + begin
+        for _ in range(bottom - top + 1):
+            here = short_of(texels.trust_texels, at, clear_from) & columns
+            short |= here
+            tell |= telling(texels.doubt_texels, at, clear_from, hidden_to) & here
+            at += camera.width
     if not short:
         return SEEN
-    if short & tell:
+    if tell:
         return UNKNOWN
-    if stopped:
-        return NOTHING_SAID
-    at = camera.first_texel + np.int64(top) * camera.width + begin
-    blocked = np.uint64(0)
-    for row in range(bottom - top + 1):
-        blocked |= (short_of(texels.trust_texels, at, block.stopped_to[lane]) & columns) << np.uint64(8 * row)
-        at += camera.width
-    return NOTHING_SAID if blocked & _core(camera, block, lane, begin, top) else UNKNOWN
+    return NOTHING_SAID if stopped or _is_stopped(camera, texels, block, lane) else UNKNOWN
 
 
 @uncounted(cache=True, error_model="numpy")

@@ -254,7 +254,7 @@ def _ask_pixels(camera, texels, pixels, depths, voxel):
 def _core(camera, middle, half, corner):
     """Pixels whose cones surely meet a voxel, of 8 x 8 from a corner on, row by row, a word.
 
-    A disc about the voxel's middle, parallel to the image, lies in the voxel: pixels beside its middle, above and below.
+    A disc about the voxel's middle, parallel to the image, lies in the voxel.
     """
     px, py, pz = middle
     per_z = 1.0 / pz
@@ -268,7 +268,11 @@ def _core(camera, middle, half, corner):
 def _run(at, reach):
     """Which of eight pixels lie within a reach of a place, bits of a byte."""
     first, last = max(int(np.ceil(at - reach)), 0), min(int(np.floor(at + reach)), EIGHT - 1)
-    return np.uint64(0) if first > last else ((np.uint64(2) << np.uint64(last - first)) - np.uint64(1)) << np.uint64(first)
+    return (
+        np.uint64(0)
+        if first > last
+        else ((np.uint64(2) << np.uint64(last - first)) - np.uint64(1)) << np.uint64(first)
+    )
 
 
 @njit(inline="always")
@@ -289,7 +293,9 @@ def _settle_by_rows(camera, texels, box, seen, voxel):
     """
     middle, pixels, depths, free = seen
     left = min(pixels.left, camera.width - EIGHT)
-    columns = ((np.uint64(2) << np.uint64(pixels.right - pixels.left)) - np.uint64(1)) << np.uint64(pixels.left - left)
+    columns = ((np.uint64(2) << np.uint64(pixels.right - pixels.left)) - np.uint64(1)) << np.uint64(
+        pixels.left - left
+    )
     at = camera.first_texel + pixels.top * camera.width + left
     half = 0.5 * box.edge
     px, py, pz = middle

@@ -5,7 +5,6 @@ vectors of LLVM, which any processor can do (`numba.extending.intrinsic`). Witho
 stand here are run.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -59,9 +58,7 @@ def _eight_from(context: Any, builder: Any, array_type: Any, array: Any, at: Any
 def _all(builder: Any, number: Any) -> Any:
     """A number in all lanes."""
     one = builder.insert_element(ir.Constant(_LANES, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
-    return builder.shuffle_vector(
-        one, ir.Constant(_LANES, ir.Undefined), ir.Constant(_LANES, [0] * EIGHT)
-    )
+    return builder.shuffle_vector(one, ir.Constant(_LANES, ir.Undefined), ir.Constant(_LANES, [0] * EIGHT))
 
 
 def _as_word(builder: Any, marks: Any) -> Any:
@@ -74,7 +71,7 @@ def _upper(builder: Any, number: Any) -> Any:
 
 
 @intrinsic
-def _short_of_lanes(_: Any, texels: Any, at: Any, limit: Any) -> tuple[Any, Callable[..., Any]]:
+def _short_of_lanes(_: Any, texels: Any, at: Any, limit: Any) -> tuple[Any, Any]:
     def emit(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         eight = _eight_from(context, builder, signature.args[0], arguments[0], arguments[1])
         return _as_word(builder, builder.icmp_unsigned("<", eight, _upper(builder, arguments[2])))
@@ -83,9 +80,7 @@ def _short_of_lanes(_: Any, texels: Any, at: Any, limit: Any) -> tuple[Any, Call
 
 
 @intrinsic
-def _telling_lanes(
-    _: Any, texels: Any, at: Any, clear_from: Any, hidden_to: Any
-) -> tuple[Any, Callable[..., Any]]:
+def _telling_lanes(_: Any, texels: Any, at: Any, clear_from: Any, hidden_to: Any) -> tuple[Any, Any]:
     def emit(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         eight = _eight_from(context, builder, signature.args[0], arguments[0], arguments[1])
         lower = ir.Constant(ir.IntType(32), 0xFFFF)
