@@ -46,4 +46,3 @@ def test_curves_are_a_picture(asked):
     rows = [row_of(case, 10.0 * case.cameras) for case in all_asked()]
     picture = asked.curves(rows)
     assert picture.lstrip().startswith(b"<?xml")
-    assert asked.curves(rows) == picture

@@ -50,7 +50,8 @@ class Watch:
 
     def spent(self, stage_ms: Mapping[str, float]) -> Spent:
         """What it took, with the times of its stages [ms]."""
-        return Spent(self._ms, *(b - a for a, b in zip(self._before, self._after, strict=True)), stage_ms)
+        put_aside, pages, collections = (b - a for a, b in zip(self._before, self._after, strict=True))
+        return Spent(self._ms, put_aside, pages, collections, stage_ms)
 
 
 def _counts() -> tuple[int, int, int]:

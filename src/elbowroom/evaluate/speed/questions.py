@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from elbowroom.choices import Detail
 from elbowroom.evaluate.due import Due, where
 
 Scene = Literal["people walking", "nothing moves", "every pixel changes", "balls"]
@@ -33,7 +34,7 @@ class Asked:
 
     question: str
     voxel_size_m: float = 0.02
-    detail: str = "pixel"
+    detail: Detail = "pixel"
     noise: bool = True
     cameras: int = 21
     width: int = 640
