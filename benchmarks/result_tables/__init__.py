@@ -1,5 +1,6 @@
 """Results as Markdown tables, the figure that is due beside the measured one."""
 
+from result_tables.asked import asked_tables
 from result_tables.calibration import calibration_tables
 from result_tables.cells import Row, any_tables
 from result_tables.drift import drift_tables
@@ -28,6 +29,7 @@ __all__ = [
     "Row",
     "alone_tables",
     "any_tables",
+    "asked_tables",
     "bench_tables",
     "calibration_tables",
     "cell_tables",

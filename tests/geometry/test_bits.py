@@ -6,7 +6,7 @@ from numba import njit
 
 from elbowroom.errors import GridError
 from elbowroom.geometry import VoxelGrid, bits
-from elbowroom.geometry.kernels.bits import bit_of, word_of
+from elbowroom.geometry.kernels.bits import bit_count, bit_of, word_of
 
 sides = st.integers(1, 37)
 
@@ -84,3 +84,8 @@ def test_inside_is_every_voxel_and_nothing_beyond():
 def test_a_volume_of_another_kind_is_refused(mask):
     with pytest.raises(GridError, match=r"expected a bool array of shape \(2, 2, 2\)"):
         bits.pack(mask, grid_of((2, 2, 2)))
+
+
+@pytest.mark.parametrize("word", [0, 1, 0x8000000000000000, 0xFFFFFFFFFFFFFFFF, 0x0123456789ABCDEF])
+def test_bits_of_a_word_are_counted(word):
+    assert int(bit_count(np.uint64(word))) == word.bit_count()

@@ -152,7 +152,7 @@ def test_an_explained_pixel_is_free_up_to_the_model_and_silent():
     model = np.array([[0.0, -1e-6, np.inf, -1.5, 1.5, 3.0]], dtype=np.float32)
     before = random_texels(model.shape, 3)
     trust, doubt = before.copy(), before.copy()
-    texels.mark_explained(model, counting(margin), trust, doubt)
+    texels.mark_row(model[0], counting(margin), trust[0], doubt[0])
     np.testing.assert_array_equal(trust[0, :4], before[0, :4])
     np.testing.assert_array_equal(doubt[0, :2], before[0, :2])
     assert (doubt[0, 2:] == NEUTRAL).all()
@@ -236,3 +236,28 @@ def test_the_least_of_a_rectangle_of_tiles_is_the_least_of_all_in_it():
         got = least_of_tiles(doubt, first, shape[1], (top, bottom, left, right))
         here = (slice(top, bottom + 1), slice(left, right + 1))
         assert bounds_of(np.uint32(got)) == (least[here].min(), greatest[here].max())
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(1, 9), (3, 3), (23, 40), (24, 17), (25, 64), (77, 130)])
+def test_flying_pixels_some_rows_at_a_time_are_one_pass_after_the_other(rows, columns):
+    rng = np.random.default_rng(rows)
+    depth = (2.0 + 0.3 * rng.random((rows, columns))).astype(np.float32)
+    depth[rng.random(depth.shape) < 0.1] = 0
+    depth[:, columns // 2 :] += 1
+    model = np.where(rng.random(depth.shape) < 0.3, rng.choice([-2.5, -1e-6, 2.1, np.inf], depth.shape), 0)
+    model, margin = model.astype(np.float32), DepthMargin(0.01, 0.002, 0.0, 0.0, 0.0)
+    for image in (depth, model):
+        image.setflags(write=False)
+    trust, doubt, raw, passed = (np.zeros(depth.shape, dtype=np.uint32) for _ in range(4))
+    step = DepthMargin(0.05, 0.0, 0.0, 0.0, 0.0)
+    counted = counting(margin)
+    got = flying.fly((depth, depth), counted, model, (0.01, step), (raw, passed), (trust, doubt))
+    plain, neutral, between, lowered = (np.zeros(depth.shape, dtype=np.uint32) for _ in range(4))
+    due = texels.texels_of_frame((depth, depth), counted, model, plain, neutral)
+    flying.pass_over_specks(plain, 0.01, model, counted, between)
+    flying.lower_at_steps(between, neutral, counted.quantum, step, lowered)
+    for v in range(rows):
+        texels.mark_row(model[v], counted, lowered[v], neutral[v])
+    assert got == due
+    np.testing.assert_array_equal(trust, lowered)
+    np.testing.assert_array_equal(doubt, neutral)

@@ -13,7 +13,14 @@ _waiting: dict[int, deque[memoryview]] = {}
 
 
 def zero_image(height: int, width: int) -> NDArray[np.float32]:
-    """A float32 image of zeros, shape (height, width), perhaps in memory that an image used before.
+    """A float32 image of zeros, shape (height, width), perhaps in memory that an image used before (`spare_image`)."""
+    image = spare_image(height, width).view(np.float32)
+    image[:] = 0
+    return image
+
+
+def spare_image(height: int, width: int) -> NDArray[np.uint32]:
+    """A uint32 image of whatever is in its memory, shape (height, width), perhaps of an image used before.
 
     That memory is free again when the image and all views of it are gone, and not before: numpy lets every
     view hold the flat array below, whose own memory comes from a buffer that is no array.
@@ -22,10 +29,8 @@ def zero_image(height: int, width: int) -> NDArray[np.float32]:
     waiting = _waiting.setdefault(size, deque(maxlen=KEPT))
     try:
         memory = waiting.pop()
-        flat = np.frombuffer(memory, dtype=np.float32)
-        flat[:] = 0
     except IndexError:
-        memory = np.zeros(size, dtype=np.float32).data
-        flat = np.frombuffer(memory, dtype=np.float32)
+        memory = np.empty(size, dtype=np.uint32).data
+    flat = np.frombuffer(memory, dtype=np.uint32)
     weakref.finalize(flat, waiting.append, memory).atexit = False
     return flat.reshape(height, width)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.parallel import spread
+from elbowroom.machine.buffers import spare_image
 from elbowroom.reconstruct.images import Image, RoomImages
 from elbowroom.reconstruct.kernels import flying as flying
 from elbowroom.reconstruct.kernels import pyramid as pyramid
@@ -151,16 +152,12 @@ def texels_of(
     model = NO_IMAGE if model_m is None else model_m
     # not one array by two names: the compiler could not tell, and would do one pixel at a time
     other = NO_TEXELS if doubt is trust else doubt
-    least_m, greatest_m = map(_read_only, bounds_m)
-    apart = texels.texels_of_frame((least_m, greatest_m), counting, model, trust, other)
-    explained = apart[0] < apart[1]
-    if camera.flying_pixels:
-        if not explained:
-            model = NO_IMAGE
-        step = margin_of(camera, STEP if camera.noise is not None else STEP_WITHOUT_NOISE)
-        passed = np.empty_like(trust)
-        flying.pass_over_specks(trust, pitch_of(camera), model, counting, passed)
-        flying.lower_at_steps(passed, doubt, counting.quantum, step, trust)
-        texels.mark_explained(model, counting, trust, doubt)
-        apart = (0, trust.shape[0], 0, trust.shape[1])
-    return explained, apart
+    least_m, greatest_m = bounds_m
+    bounds_m = _read_only(least_m), _read_only(greatest_m)
+    if not camera.flying_pixels:
+        apart = texels.texels_of_frame(bounds_m, counting, model, trust, other)
+        return apart[0] < apart[1], apart
+    step = margin_of(camera, STEP if camera.noise is not None else STEP_WITHOUT_NOISE)
+    scratch = spare_image(*trust.shape), spare_image(*trust.shape)
+    apart = flying.fly(bounds_m, counting, model, (pitch_of(camera), step), scratch, own)
+    return apart[0] < apart[1], (0, trust.shape[0], 0, trust.shape[1])

@@ -10,7 +10,7 @@ from elbowroom.geometry.margin import Margin
 from elbowroom.machine import Machine
 from elbowroom.reconstruct.images import room_images
 from elbowroom.reconstruct.kernels.cone import VOXEL
-from elbowroom.reconstruct.kernels.pixel import settle_word
+from elbowroom.reconstruct.kernels.outline import OUTLINES, settle_block
 from elbowroom.reconstruct.kernels.place import Boxes
 from elbowroom.reconstruct.layout import layout_of
 from elbowroom.reconstruct.reconstruct import reconstruct
@@ -48,7 +48,8 @@ def warm_up_pixel_test() -> None:
     views, buffers = fill(layout, images, explained)
     try:
         boxes = Boxes(0.0, 0.0, 1.0, grid.voxel_size_m, 0)
-        settle_word(views.cameras[0], views.texels, np.uint64(1), boxes, np.zeros(1, VOXEL)[0])
+        voxel, outlines = np.zeros(1, VOXEL)[0], np.zeros(1, OUTLINES)[0]
+        settle_block(views.cameras[0], views.texels, np.uint64(1), False, boxes, (outlines, voxel))
     finally:
         layout.give_back(buffers)
 

@@ -18,6 +18,14 @@ def bench(
         ),
     ] = "cycle",
     quick: Annotated[bool, typer.Option(help="Few rounds: a first impression in under a minute.")] = False,
+    all_: Annotated[
+        bool,
+        typer.Option(
+            "--all",
+            help="cycle: one question a case: voxels, cameras, pixels, what moves, threads, volume and surface, and "
+            "other systems on the same images; about ten minutes.",
+        ),
+    ] = False,
     cameras: Annotated[int, typer.Option(min=1, max=255, help="How many cameras.")] = 21,
     size: Annotated[str, typer.Option(help="Of their images: vga, qqvga or thesis.")] = "vga",
     threads: Annotated[int | None, typer.Option(min=1, help="Default: all cores.")] = None,
@@ -71,6 +79,10 @@ def bench(
         from elbowroom.cli.evaluate.bench_run import run_bench_machine
 
         run_bench_machine(quick, cameras, json)
+    elif all_:
+        from elbowroom.cli.evaluate.bench_all_run import run_bench_all
+
+        run_bench_all(quick, octomap, json)
     else:
         from elbowroom.cli.evaluate.bench_run import run_bench_cycle
 

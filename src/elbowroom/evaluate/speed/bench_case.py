@@ -54,7 +54,7 @@ def run_case(
         noise: whether cameras have a noise model, hence margins and the filter of flying pixels.
         rounds: how many times each is measured.
     """
-    scene = _Scene.load(scene_file, NOISE_PRESETS["tof"] if noise else None)
+    scene = Scene.load(scene_file, NOISE_PRESETS["tof"] if noise else None)
     machine, moments = ceiling_c_arm(), scene.moments
     positions = [dict(zip(machine.joint_names, row, strict=True)) for row in scene.joints]
     grid = VoxelGrid.covering((-2.0, -2.0, 0.0), (2.0, 2.0, 2.5), voxel_size_m)
@@ -81,12 +81,12 @@ def run_case(
     peak = {"peak_rss_mb": peak_memory_mb()}
     against = float(np.median(beside))
     return [
-        {"case": case, **said, **_summary(spent), **peak, "ratio": float(np.median(spent)) / against}
+        {"case": case, **said, **summary(spent), **peak, "ratio": float(np.median(spent)) / against}
         for case, spent in measured.items()
     ]
 
 
-class _Scene(NamedTuple):
+class Scene(NamedTuple):
     """Cameras, and the frames and joint positions of some moments."""
 
     cameras: list[DepthCamera]
@@ -94,7 +94,7 @@ class _Scene(NamedTuple):
     joints: list[list[float]]
 
     @classmethod
-    def load(cls, path: Path, noise: NoiseModel | None) -> "_Scene":
+    def load(cls, path: Path, noise: NoiseModel | None) -> "Scene":
         """As `bench.save_scenes` wrote it."""
         with np.load(path, allow_pickle=False) as scenes:
             poses, lens, depths, joints = (scenes[name] for name in ("poses", "lens", "depths", "joints"))
@@ -110,7 +110,8 @@ class _Scene(NamedTuple):
         return cls(cameras, moments, joints.tolist())
 
 
-def _summary(spent: Sequence[float]) -> dict[str, float]:
+def summary(spent: Sequence[float]) -> dict[str, float]:
+    """Median, 99th percentile and the most of times [ms]."""
     return {
         "median_ms": float(np.median(spent)),
         "p99_ms": float(np.percentile(spent, 99)),

@@ -33,6 +33,19 @@ def _lowest_bit(word):
     return lambda word: np.int64(trailing_zeros(word))
 
 
+@njit(inline="always")
+def bit_count(word):
+    """How many bits of a word are set."""
+    pairs = word - ((word >> np.uint64(1)) & np.uint64(0x5555555555555555))
+    fours = (pairs & np.uint64(0x3333333333333333)) + (
+        (pairs >> np.uint64(2)) & np.uint64(0x3333333333333333)
+    )
+    bytes_ = (fours + (fours >> np.uint64(4))) & np.uint64(0x0F0F0F0F0F0F0F0F)
+    total = bytes_ + (bytes_ >> np.uint64(8))
+    total += total >> np.uint64(16)
+    return (total + (total >> np.uint64(32))) & np.uint64(0x7F)
+
+
 class Lattice(NamedTuple):
     """A voxel grid as kernels take it: counts, number of 16-voxel cubes per axis, least corner, edge [m]."""
 

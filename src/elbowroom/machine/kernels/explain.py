@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.bits import uncounted
 from elbowroom.geometry.kernels.neighbours import is_about
 from elbowroom.geometry.kernels.noise import sigma
 from elbowroom.machine.kernels.returns import (
@@ -17,6 +18,9 @@ from elbowroom.machine.kernels.returns import (
     set_run,
     spread_of,
 )
+
+RUN = 64
+"""Pixels of a row that are looked over before they are worked on."""
 
 
 class Tolerance(NamedTuple):
@@ -150,26 +154,46 @@ def _settle_edges(view, depth, canvas, model):
     """
     for turn in range(3):
         for v in range(view.height):
-            start, stop = _columns_about(canvas, v - 1, v + 2)
-            for u in range(start, stop + 1):
-                if model[v, u] >= 0.0:
-                    continue
-                if turn == 0:
-                    # with another mark first, so that all are judged by the same neighbours
-                    d = depth[v, u]
-                    past = is_return(view, d) and d > -model[v, u]
-                    if past and not has_support(view, depth, model, u, v):
-                        model[v, u] = -np.inf
-                    elif past and _is_within(canvas, u, v):
-                        model[v, u] = UNSAFE
-                elif turn == 1:
-                    if model[v, u] == -np.inf:
-                        model[v, u] = np.inf
-                elif not _is_speck(view, depth, model, u, v):
-                    model[v, u] = UNSAFE
+            first, last = _columns_about(canvas, v - 1, v + 2)
+            signs = model[v].view(np.uint32)
+            # most runs of pixels hold none that is below zero
+            for start in range(first, last + 1, RUN):
+                stop = min(start + RUN, last + 1)
+                if _any_below_zero(signs, start, stop):
+                    for u in range(start, stop):
+                        if not model[v, u] >= 0.0:
+                            _settle_edge(view, depth, canvas, model, (u, v, turn))
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted()
+def _any_below_zero(signs, start, stop):
+    """Whether any of a run of float32 numbers, as bits, has a sign."""
+    some = np.uint32(0)
+    for n in range(start, stop):
+        some |= signs[np.uint64(n)]
+    return some >> np.uint32(31) != 0
+
+
+@uncounted(error_model="numpy")
+def _settle_edge(view, depth, canvas, model, at):
+    """One turn for one pixel of `_settle_edges`; `at`: its column, its row, the turn."""
+    u, v, turn = at
+    if turn == 0:
+        # with another mark first, so that all are judged by the same neighbours
+        d = depth[v, u]
+        past = is_return(view, d) and d > -model[v, u]
+        if past and not has_support(view, depth, model, u, v):
+            model[v, u] = -np.inf
+        elif past and _is_within(canvas, u, v):
+            model[v, u] = UNSAFE
+    elif turn == 1:
+        if model[v, u] == -np.inf:
+            model[v, u] = np.inf
+    elif not _is_speck(view, depth, model, u, v):
+        model[v, u] = UNSAFE
+
+
+@uncounted(error_model="numpy")
 def _is_within(canvas, u, v):
     """Whether a pixel and all of its neighbours are drawn: it lies within the model, not at its edge."""
     height, width = canvas.inverse.shape
@@ -182,10 +206,10 @@ def _is_within(canvas, u, v):
     return True
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def _is_speck(view, depth, model, u, v):
     """Whether all neighbours of a pixel, or of it and one beside it, are explained or see past the model in it."""
-    if not (0 < v < view.height - 1 and 0 < u < view.width - 1):
+    if not (0 < v < view.height - 1 and 0 < u < view.width - 1) or _two_do_not(view, depth, model, u, v):
         return False
     for ov in range(v - 1, v + 2):
         for ou in range(u - 1, u + 2):
@@ -195,7 +219,22 @@ def _is_speck(view, depth, model, u, v):
     return False
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
+def _two_do_not(view, depth, model, u, v):
+    """Whether two of the eight pixels about one, all in the image, are neither explained nor farther: then it is no
+    speck, with none of its neighbours."""
+    least, near = -model[v, u], 0
+    for nv in range(v - 1, v + 2):
+        for nu in range(u - 1, u + 2):
+            d = depth[nv, nu]
+            if (nv != v or nu != u) and not (model[nv, nu] > 0.0 or (is_return(view, d) and d > least)):
+                near += 1
+                if near == 2:
+                    return True
+    return False
+
+
+@uncounted(error_model="numpy")
 def _sees_past_all_about(view, depth, model, u, v, ou, ov):
     """Whether all that is about a pixel (u, v) and the one beside it or itself, (ou, ov), is explained or farther."""
     least = -model[v, u]

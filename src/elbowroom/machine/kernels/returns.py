@@ -73,13 +73,13 @@ def spread_of(view, sigmas, beside):
     )
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def is_return(view, d):
     """Whether a depth was measured at all."""
     return d > 0.0 and d >= view.min_depth and d <= view.max_depth and d <= MOST_M
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def has_support(view, depth, model, u, v):
     """Whether at least `SUPPORT` of eight neighbours are like an unexplained return: a surface, not a flying pixel.
 
@@ -90,19 +90,21 @@ def has_support(view, depth, model, u, v):
     """
     d = depth[v, u]
     slack = 4.5 * sigma(view, d) + d / min(view.fx, view.fy)
-    support = 0
+    support, enough = 0, SUPPORT if view.flying else 1
     for nv in range(v - 1, v + 2):
         for nu in range(u - 1, u + 2):
             if nv == v and nu == u:
                 continue
             if nv < 0 or nv >= view.height or nu < 0 or nu >= view.width:
                 support += 1
-                continue
-            other = depth[nv, nu]
-            lost = not (other > 0.0 and other >= view.min_depth and other <= view.max_depth)
-            if lost or (model[nv, nu] <= 0.0 and abs(other - d) <= slack):
-                support += 1
-    return support >= (SUPPORT if view.flying else 1)
+            else:
+                other = depth[nv, nu]
+                lost = not (other > 0.0 and other >= view.min_depth and other <= view.max_depth)
+                if lost or (model[nv, nu] <= 0.0 and abs(other - d) <= slack):
+                    support += 1
+            if support >= enough:
+                return True
+    return False
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

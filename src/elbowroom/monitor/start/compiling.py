@@ -13,6 +13,7 @@ from rich.spinner import Spinner
 from rich.table import Table
 from rich.text import Text
 
+from elbowroom._kernel_cache import only_one
 from elbowroom.geometry.parallel import default_threads
 from elbowroom.monitor.start.kernel_jobs import JOBS, Job
 
@@ -34,6 +35,15 @@ def compile_kernels(console: Console, *, machine: bool, motion: bool, simulator:
     wanted = [job for job in JOBS if given[job.needs] and not job.is_kept]
     if not wanted:
         return
+    # of two processes that start at once one compiles, and the other one takes what that has kept
+    with only_one("compiles kernels"):
+        wanted = [job for job in wanted if not job.is_kept]
+        if wanted:
+            _compile(console, wanted)
+
+
+def _compile(console: Console, wanted: Sequence[Job]) -> None:
+    """Does jobs, and shows which."""
     board = _Board(wanted)
     if console.is_terminal:
         shown: AbstractContextManager[object] = Live(

@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
+from elbowroom.geometry.kernels.bits import bit_count, lowest_bit, uncounted
 from elbowroom.reconstruct.kernels.aged import still_through
 from elbowroom.reconstruct.kernels.box import ALL, LANES
 from elbowroom.reconstruct.kernels.cone import VOXEL
 from elbowroom.reconstruct.kernels.look import Look, ask, contested, measured_at_centre, sort_out
-from elbowroom.reconstruct.kernels.pixel import settle_word
+from elbowroom.reconstruct.kernels.outline import OUTLINES, settle_block
 from elbowroom.reconstruct.kernels.place import blocks_of, cube_at, voxels_of
 from elbowroom.reconstruct.kernels.planes import (
     DISPUTED,
@@ -31,15 +31,18 @@ from elbowroom.reconstruct.kernels.planes import (
 class Scratch(NamedTuple):
     """Memory of one kernel.
 
-    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.cone`; in arrays, or nothing would hold their
-    memory. By camera of a cube: through, mixed (n,): blocks that it sees through, and those that must be asked voxel by
-    voxel; past (n,): blocks that it saw through when it was exposed, of which it is asked whether that still holds;
-    undecided (n,): blocks with voxels left for the pixel test; unsettled, stopped (n, 64): which voxels, and which of
-    these it surely does not see through; ageing (n, 64): voxels that it saw through, of which it must be asked as well.
+    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.cone`, outlines (1,): one of `kernels.outline`;
+    in arrays, or nothing would hold their memory. order (n,): in which cameras are asked of a cube. By camera of a
+    cube: through, mixed (n,): blocks that it sees through, and those that must be asked voxel by voxel; past (n,):
+    blocks that it saw through when it was exposed, of which it is asked whether that still holds; undecided (n,):
+    blocks with voxels left for the pixel test; unsettled, stopped (n, 64): which voxels, and which of these it surely
+    does not see through; ageing (n, 64): voxels that it saw through, of which it must be asked as well.
     """
 
     lanes: np.ndarray
     voxel: np.ndarray
+    outlines: np.ndarray
+    order: np.ndarray
     through: np.ndarray
     mixed: np.ndarray
     past: np.ndarray
@@ -63,6 +66,8 @@ def carve_cubes(cubes, lattice, views, answers):
     scratch = Scratch(
         np.empty(1, LANES),
         np.empty(1, VOXEL),
+        np.empty(1, OUTLINES),
+        np.empty(cameras, dtype=np.int64),
         np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
@@ -75,19 +80,39 @@ def carve_cubes(cubes, lattice, views, answers):
     for number in cubes:
         cube = cube_at(lattice, number)
         _ask_blocks(cube, views, answers, scratch)
+        _put_in_order(views.order, scratch.through, scratch.order)
         # camera by camera, so that the part of its image that the cube covers stays in the cache
-        for c in views.order:
+        for c in scratch.order:
             _ask_voxels(cube, c, views, answers, scratch)
         # first those that saw through, if they still do, then those that may: where three do, the others need not be
         # asked, nor where there is a surface
         for turn in range(0 if is_aged else 1, 3):
-            for c in views.order:
+            for c in scratch.order:
                 _ask_pixels(cube, c, turn, views, answers, scratch)
         for word in range(cube.word, cube.word + 64):
             if not answers.complete:
                 make_canonical(answers.planes, word)
             for plane in range(PLANES):
                 answers.planes[plane, word] &= answers.asked[word]
+
+
+@uncounted(cache=True)
+def _put_in_order(order, through, best_first):
+    """Which cameras are asked of a cube first: those that see through the most of its blocks, which leaves the fewest
+    voxels to the others, and the same bits.
+
+    Args:
+        order: of all cubes; it decides among those that see through as many.
+        through: by camera, the blocks that it sees through.
+        best_first: written.
+    """
+    for n in range(order.size):
+        c, at = order[n], n
+        many = bit_count(through[c])
+        while at > 0 and bit_count(through[best_first[at - 1]]) < many:
+            best_first[at] = best_first[at - 1]
+            at -= 1
+        best_first[at] = c
 
 
 @uncounted(cache=True)
@@ -227,7 +252,10 @@ def _ask_pixels(cube, c, turn, views, answers, scratch):
             continue
         boxes, seen = voxels_of(cube, lane), rest
         if turn > 0:
-            seen, disputed, surface, blind = settle_word(camera, views.texels, rest, boxes, scratch.voxel[0])
+            memory = scratch.outlines[0], scratch.voxel[0]
+            seen, disputed, surface, blind = settle_block(
+                camera, views.texels, rest, turn == 2, boxes, memory
+            )
             note_disputed(answers, word, disputed, surface, blind)
         if camera.aged_m > 0.0:
             seen = still_through(camera, views.texels, seen, boxes, scratch.voxel[0])

@@ -128,31 +128,39 @@ def sort_out(camera, texels, edge, unsure, lanes):
     voxel for at least half an edge to both sides of it. So a return there makes the pixel test say *surface*, and one
     before the centre keeps it from saying *through*, whatever the other pixels hold. All voxels lie wholly in view.
     """
-    surface, stopped = NOTHING, NOTHING
-    quantum = camera.quantum
+    quantum = np.float32(camera.quantum)
     # how far the near and far bounds lie from the centre, and how far at least the ray runs inside
-    extent = camera.half_diagonal[0] if camera.radial else camera.half_extent[0, 2]
-    inner = 0.5 * edge * (1.0 if camera.radial else camera.least_cosine)
-    rest = unsure
+    extent = np.float32(camera.half_diagonal[0] if camera.radial else camera.half_extent[0, 2])
+    inner = np.float32(0.5 * edge * (1.0 if camera.radial else camera.least_cosine))
+    rounding, half, width = np.float32(2.0 * ROUNDING_M), np.float32(0.5), np.int32(camera.width)
+    trust, doubt = texels.trust_texels[camera.first_texel :], texels.doubt_texels[camera.first_texel :]
+    for lane in range(64):
+        lanes.texel[lane] = np.int32(lanes.v[lane]) * width + np.int32(lanes.u[lane])
+    for lane in range(64):
+        pixel = np.uint32(lanes.texel[lane])
+        lanes.least_quanta[lane] = np.int32(trust[pixel] >> np.uint32(16))
+        # of `NEUTRAL` it is 0
+        lanes.greatest_quanta[lane] = np.int32(NO_RETURN) - np.int32(doubt[pixel] & np.uint32(0xFFFF))
+    for lane in range(64):
+        near, far = lanes.near[lane], lanes.far[lane]
+        at, margin = half * (near + far), half * (far - near) - extent - rounding
+        greatest = lanes.greatest_quanta[lane]
+        off = abs(np.float32(greatest) * quantum - at)
+        lanes.marks[0, lane] = np.float32(lanes.least_quanta[lane]) * quantum < at + margin - rounding
+        lanes.marks[1, lane] = (
+            (greatest != np.int32(0)) & (greatest != np.int32(NO_RETURN)) & (off < inner + margin - rounding)
+        )
+    stopped = bits_of(lanes, 0) & unsure
+    surface = bits_of(lanes, 1) & stopped
+    rest = surface if camera.flies else NOTHING
     while rest:
         lane = lowest_bit(rest)
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
         near, far = np.float64(lanes.near[lane]), np.float64(lanes.far[lane])
-        at = 0.5 * (near + far)
-        margin = 0.5 * (far - near) - extent - ROUNDING_M
-        pixel = _centre_pixel(camera, lanes, lane)
-        if not (texels.trust_texels[pixel] >> np.uint32(16)) * quantum < at + margin - ROUNDING_M:
-            continue
-        stopped |= bit
-        texel = texels.doubt_texels[pixel]
-        greatest = np.uint32(NO_RETURN) - (texel & np.uint32(0xFFFF))
-        if texel == NEUTRAL or greatest == NO_RETURN:
-            continue
-        if abs(greatest * quantum - at) < inner + margin - ROUNDING_M and not (
-            camera.flies and _may_be_alone(camera, texels, lanes, lane, at, inner + margin - ROUNDING_M)
-        ):
-            surface |= bit
+        reach = inner + 0.5 * (far - near) - extent - 2.0 * ROUNDING_M
+        if _may_be_alone(camera, texels, lanes, lane, 0.5 * (near + far), reach):
+            surface &= ~bit
     return surface, stopped
 
 

@@ -33,7 +33,7 @@ class Counting(NamedTuple):
 def texels_of_frame(bounds_m, counting, model_m, trust, doubt):
     """Level 0: each pixel's bounds in quanta; no return where a depth is not a number within the camera's range.
 
-    Pixels that see the machine are marked (`_mark_row`). Arrays by pixel, (rows, columns).
+    Pixels that see the machine are marked (`mark_row`). Arrays by pixel, (rows, columns).
 
     Args:
         bounds_m: least and greatest depth, two arrays [m].
@@ -48,18 +48,34 @@ def texels_of_frame(bounds_m, counting, model_m, trust, doubt):
     rows, columns = least_m.shape
     top, bottom, left, right = rows, 0, columns, 0
     for v in range(rows):
-        _texels_of_row(least_m[v], greatest_m[v], counting, trust[v])
         if doubt.shape[0]:
-            doubt[v] = trust[v]
-        if model_m.shape[0]:
-            start, stop = _mark_row(model_m[v], counting, trust[v], doubt[v])
+            start, stop = texels_of_row((least_m[v], greatest_m[v]), counting, model_m, v, trust[v], doubt[v])
             if start < stop:
                 top, bottom, left, right = min(top, v), v + 1, min(left, start), max(right, stop)
+        else:
+            _bounds_of_row(least_m[v], greatest_m[v], counting, trust[v])
     return top, bottom, left, right
 
 
 @njit(nogil=True, error_model="numpy")
-def _texels_of_row(least_m, greatest_m, counting, texels):
+def texels_of_row(bounds_m, counting, model_m, v, trust, doubt):
+    """One row of `texels_of_frame`; first column and one past the last of marked pixels, none if not before it.
+
+    Args:
+        bounds_m: least and greatest depth of the row [m].
+        counting, model_m: as there.
+        v: which row.
+        trust, doubt: of the row, written.
+    """
+    _bounds_of_row(bounds_m[0], bounds_m[1], counting, trust)
+    doubt[:] = trust
+    if model_m.shape[0]:
+        return mark_row(model_m[v], counting, trust, doubt)
+    return 0, 0
+
+
+@njit(nogil=True, error_model="numpy")
+def _bounds_of_row(least_m, greatest_m, counting, texels):
     """Bounds of one row in quanta."""
     low, high = np.float32(counting.min_depth), np.float32(counting.max_depth)
     per_metre = np.float32(1.0 / counting.quantum)
@@ -88,23 +104,16 @@ def free_to_model(depth, counting):
 
 
 @njit(cache=True, nogil=True)
-def _any_of(row, start, stop):
-    """Whether any bit of a part of a row is set."""
+def any_of(row, start, stop):
+    """The bits that any number of a part of a row has."""
     some = np.uint32(0)
     for n in range(start, stop):
         some |= row[np.uint64(n)]
-    return some != 0
-
-
-@njit(cache=True, nogil=True)
-def mark_explained(model_m, counting, trust, doubt):
-    """Marks the pixels of an image that see the machine (`_mark_row`)."""
-    for v in range(model_m.shape[0]):
-        _mark_row(model_m[v], counting, trust[v], doubt[v])
+    return some
 
 
 @njit(nogil=True, error_model="numpy")
-def _mark_row(model, counting, trust, doubt):
+def mark_row(model, counting, trust, doubt):
     """Pixels of a row that see the machine, as `machine.explain` tells: `NEUTRAL` in `doubt`; in `trust`, those with a
     depth of the model are free up to it, and hidden behind it. First column and one past the last of runs with any.
     """
@@ -117,7 +126,7 @@ def _mark_row(model, counting, trust, doubt):
     left, right = columns, 0
     for start in range(0, columns, RUN):
         stop = min(start + RUN, columns)
-        if not _any_of(as_bits, start, stop):
+        if not any_of(as_bits, start, stop):
             continue
         left, right = min(left, start), stop
         # without branches, for many pixels at once

@@ -1,0 +1,220 @@
+"""Where the 64 voxels of a block lie in an image: rectangles of pixels about their outlines, and depths about them.
+
+In float32, for many voxels at once, and by more than that errs wider than `kernels.pixel` works them out for one: what
+these pixels settle, the pixel test would say as well.
+
+A corner at (dx, dy, dz) from a voxel's middle (x, y, z) is seen (dx - u dz) / (z + dz) beside it, where u = x / z. So a
+voxel reaches no farther than sum_a |dx_a - u dz_a| / (z - reach_z) to either side, over its three half edges a.
+"""
+
+import numpy as np
+from numba import njit
+
+from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
+from elbowroom.geometry.kernels.noise import in_float32, margin_at
+from elbowroom.reconstruct.kernels.box import INSIDE, SLOP_PX, SLOP_REL, place_boxes
+from elbowroom.reconstruct.kernels.pixel import add_answer, settle_voxel
+from elbowroom.reconstruct.kernels.place import box_in
+from elbowroom.reconstruct.kernels.rows import EIGHT, short_of, telling
+
+OUTLINES = np.dtype(
+    (
+        np.record,
+        [(name, "i4", 64) for name in ("left", "right", "top", "bottom")]
+        + [(name, "u4", 64) for name in ("clear_from", "hidden_to", "stopped_to")]
+        + [(name, "f4", 64) for name in ("u", "v", "inner_u", "inner_v", "near", "far", "middle")],
+    )
+)
+"""Scratch memory for 64 voxels, one in each lane.
+
+left, right, top, bottom: pixels whose cones may meet it, ends included. clear_from: what is free from there on is free
+beyond it; hidden_to: what is measured up to there is before it; stopped_to: what is free up to there and meets its
+middle is not free beyond it [quanta]. u, v: the place of its middle; inner_u, inner_v: how far from there pixels surely
+see it [px]. near, far, middle: its depth [m].
+"""
+SEEN, NOTHING_SAID, UNKNOWN = 0, 1, 2
+"""What the rectangle about a voxel says: all is free beyond it; not that, and no pixel says anything of it; neither."""
+MOST_PIXELS = 24
+"""Wider rectangles are left to the pixel test, which passes over tiles of pixels at once."""
+SPARE = np.float32(2.0) * SLOP_PX
+"""By so much rectangles are wider [px]."""
+
+
+@uncounted(cache=True, error_model="numpy")
+def outlines(camera, first, edge, out):
+    """Fills the outlines of the voxels of a block that lies wholly inside the image.
+
+    Args:
+        camera: its record.
+        first: voxel 0, as `kernels.box.place_boxes` gives it.
+        edge: of a voxel [m].
+        out: a record of `OUTLINES`, written.
+    """
+    px, py, pz = first
+    m, half = camera.camera_from_world, 0.5 * edge
+    # half edges in the camera's axes, x times fx and y times fy
+    ax, ay, az = _half_edges(m, 0, half * camera.fx)
+    bx, by, bz = _half_edges(m, 1, half * camera.fy)
+    dx, dy, dz = _half_edges(m, 2, half)
+    reach_z = abs(dx) + abs(dy) + abs(dz)
+    cx, cy = np.float32(camera.cx), np.float32(camera.cy)
+    wide = np.float32(0.5 + camera.lateral_px) + SPARE
+    disc_u, disc_v = np.float32(half * camera.fx), np.float32(half * camera.fy)
+    last_u, last_v = np.int32(camera.width - 1), np.int32(camera.height - 1)
+    one = np.float32(1.0)
+    for lane in range(64):
+        x = px + camera.offset[0, 0, lane]
+        y = py + camera.offset[0, 1, lane]
+        z = pz + camera.offset[0, 2, lane]
+        per_z, per_near = one / z, one / (z - reach_z)
+        u, v = x * per_z, y * per_z
+        wide_u = (abs(ax - u * dx) + abs(ay - u * dy) + abs(az - u * dz)) * per_near + wide
+        wide_v = (abs(bx - v * dx) + abs(by - v * dy) + abs(bz - v * dz)) * per_near + wide
+        u, v = u + cx, v + cy
+        out.left[lane] = max(np.int32(np.ceil(u - wide_u)), np.int32(0))
+        out.right[lane] = min(np.int32(np.floor(u + wide_u)), last_u)
+        out.top[lane] = max(np.int32(np.ceil(v - wide_v)), np.int32(0))
+        out.bottom[lane] = min(np.int32(np.floor(v + wide_v)), last_v)
+        out.u[lane] = u
+        out.v[lane] = v
+        out.inner_u[lane] = disc_u * per_z
+        out.inner_v[lane] = disc_v * per_z
+        out.near[lane] = z - reach_z
+        out.far[lane] = z + reach_z
+        out.middle[lane] = z
+    if camera.radial:
+        _from_centre(camera, first, edge, out)
+    _depths(camera, out)
+
+
+@njit(inline="always")
+def _half_edges(m, axis, scale):
+    """A voxel's half edges along one axis of the camera, times a scale, in float32."""
+    return np.float32(m[axis, 0] * scale), np.float32(m[axis, 1] * scale), np.float32(m[axis, 2] * scale)
+
+
+@uncounted(cache=True, error_model="numpy")
+def _from_centre(camera, first, edge, out):
+    """Rows near, far and middle as distances from the camera's centre."""
+    px, py, pz = first
+    rfx, rfy = np.float32(1.0 / camera.fx), np.float32(1.0 / camera.fy)
+    diagonal, half = np.float32(0.8660255 * edge), np.float32(0.5 * edge)
+    for lane in range(64):
+        x = (px + camera.offset[0, 0, lane]) * rfx
+        y = (py + camera.offset[0, 1, lane]) * rfy
+        z = pz + camera.offset[0, 2, lane]
+        distance = np.sqrt(x * x + y * y + z * z)
+        out.near[lane] = distance - diagonal
+        out.far[lane] = distance + diagonal
+        out.middle[lane] = distance - half
+
+
+@uncounted(cache=True, error_model="numpy")
+def _depths(camera, out):
+    """Rows clear_from, hidden_to and stopped_to, from near, far and middle."""
+    of_depth, per_quantum = in_float32(camera.margin), np.float32(1.0 / camera.quantum)
+    most, zero, two, three = np.float32(65535.0), np.float32(0.0), np.float32(2.0), np.float32(3.0)
+    for lane in range(64):
+        far = out.far[lane]
+        slop = abs(far) * SLOP_REL
+        margin = margin_at(of_depth, far)
+        # a quantum more than the pixel test allows for rounding
+        clear = (far + margin + slop) * per_quantum + three
+        hidden = (out.near[lane] - margin - slop) * per_quantum - three
+        stopped = (out.middle[lane] + margin - slop) * per_quantum - two
+        out.clear_from[lane] = np.uint32(np.int32(min(clear, most)))
+        out.hidden_to[lane] = np.uint32(np.int32(min(max(hidden, zero), most)))
+        out.stopped_to[lane] = np.uint32(np.int32(min(max(stopped, zero), most)))
+
+
+@njit(inline="always")
+def _run(begin, first, last):
+    """Which of eight pixels of a row, from `begin` on, lie between two, ends included; bits of a byte."""
+    first, last = max(first - begin, 0), min(last - begin, EIGHT - 1)
+    ones = (np.uint64(2) << np.uint64(max(last - first, 0))) - np.uint64(1)
+    return ones << np.uint64(first) if first <= last else np.uint64(0)
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _is_stopped(camera, texels, block, lane):
+    """Whether some pixel that surely meets a voxel is surely not free beyond it.
+
+    A disc about the middle, parallel to the image, lies in the voxel: pixels beside its middle, above and below it.
+    """
+    u, v, stopped_to = block.u[lane], block.v[lane], block.stopped_to[lane]
+    wide = np.float32(0.5 + camera.lateral_px) - SPARE
+    across, down = wide + block.inner_u[lane], wide + block.inner_v[lane]
+    top, bottom = np.int64(np.ceil(v - down)), np.int64(np.floor(v + down))
+    for row in range(max(top, 0), min(bottom, camera.height - 1) + 1):
+        reach = across if abs(np.float32(row) - v) <= wide else wide
+        left, right = (
+            max(np.int64(np.ceil(u - reach)), 0),
+            min(np.int64(np.floor(u + reach)), camera.width - 1),
+        )
+        for column in range(left, right + 1, EIGHT):
+            begin = min(column, camera.width - EIGHT)
+            at = camera.first_texel + row * camera.width + begin
+            if short_of(texels.trust_texels, at, stopped_to) & _run(begin, column, right):
+                return True
+    return False
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _settled(camera, texels, block, lane, stopped):
+    """What the rectangle about a voxel settles: SEEN, NOTHING_SAID, or UNKNOWN.
+
+    Args:
+        camera, texels: its record; those of all cameras.
+        block: outlines of its voxels.
+        lane: of the voxel.
+        stopped: whether it is known that the camera does not see through it.
+    """
+    left, right = np.int64(block.left[lane]), np.int64(block.right[lane])
+    top, bottom = np.int64(block.top[lane]), np.int64(block.bottom[lane])
+    if right - left >= MOST_PIXELS or bottom - top >= MOST_PIXELS:
+        return UNKNOWN
+    clear_from, hidden_to = block.clear_from[lane], block.hidden_to[lane]
+    short, tell = np.uint64(0), np.uint64(0)
+    for column in range(left, right + 1, EIGHT):
+        begin = min(column, camera.width - EIGHT)
+        columns = _run(begin, column, right)
+        at = camera.first_texel + top * camera.width + begin
+        for _ in range(bottom - top + 1):
+            here = short_of(texels.trust_texels, at, clear_from) & columns
+            short |= here
+            tell |= telling(texels.doubt_texels, at, clear_from, hidden_to) & here
+            at += camera.width
+    if not short:
+        return SEEN
+    if tell:
+        return UNKNOWN
+    return NOTHING_SAID if stopped or _is_stopped(camera, texels, block, lane) else UNKNOWN
+
+
+@uncounted(cache=True, error_model="numpy")
+def settle_block(camera, texels, asked, stopped, boxes, scratch):
+    """As `kernels.pixel.settle_word`, faster.
+
+    Args:
+        camera, texels, boxes: as there.
+        asked: voxels that are asked, a word.
+        stopped: whether it is known of all of them that the camera does not see through.
+        scratch: outlines and a voxel, records.
+    """
+    answers = (np.uint64(0), np.uint64(0), np.uint64(0), np.uint64(0))
+    first, state = place_boxes(camera, boxes)
+    by_outlines = state == INSIDE and camera.width >= EIGHT
+    lanes, voxel = scratch
+    if by_outlines:
+        outlines(camera, first, boxes.edge, lanes)
+    rest, through = asked, np.uint64(0)
+    while rest:
+        lane = lowest_bit(rest)
+        bit = np.uint64(1) << np.uint64(lane)
+        rest &= ~bit
+        known = _settled(camera, texels, lanes, lane, stopped) if by_outlines else UNKNOWN
+        if known == SEEN:
+            through |= bit
+        elif known == UNKNOWN:
+            answers = add_answer(answers, bit, settle_voxel(camera, texels, box_in(boxes, lane), voxel))
+    return answers[0] | through, answers[1], answers[2], answers[3]
