@@ -128,6 +128,13 @@ def test_the_configuration_comes_back_as_it_was(file):
     assert (site.name, said.name) == (SITE, CONFIGURATION)
 
 
+def test_a_configuration_of_the_format_before_is_read(file):
+    with Recording(file) as recording:
+        site, said = recording.configuration().attached()
+    before = json.dumps(json.loads(said.data) | {"format": 1}).encode()
+    assert Configuration.read(before, site.data, "it").attached() == [site, said]
+
+
 def value_of(said, name, value):
     """Gives a field of the cycle another value."""
     for pair in said["values"]["map"]:
@@ -139,7 +146,9 @@ def value_of(said, name, value):
     "change",
     [
         lambda said: said.pop("values"),
-        lambda said: said.update(format=2),
+        lambda said: said.update(format=3),
+        lambda said: said.update(format=0),
+        lambda said: said.update(format="1"),
         lambda said: said.update(values=[]),
         lambda said: said.update(told=[]),
         lambda said: said.update(values={"map": 3}),

@@ -23,8 +23,8 @@ from elbowroom.wire.mcap_writer import Attached
 
 CONFIGURATION, SITE = "configuration.json", "site.yaml"
 """Names of the files within a recording."""
-FORMAT = 1
-"""Of recordings; a later one is refused."""
+FORMAT = 2
+"""Of recordings that are written: since 2 some images are packed as rows. Every one before it is read, a later one refused."""
 OF_THE_RUN = ("clock_ns", "keeps_images")
 """What of a cycle does not change what a snapshot comes to."""
 
@@ -112,8 +112,10 @@ class Configuration:
         said = kept_values.parsed(content, what)
         if not isinstance(said, dict) or not isinstance(said.get("told"), dict):
             raise BagError(f"{what}: malformed")
-        if said.get("format") != FORMAT:
-            raise BagError(f"{what}: of format {said.get('format')}, this version reads format {FORMAT}")
+        if said.get("format") not in range(1, FORMAT + 1):
+            raise BagError(
+                f"{what}: of format {said.get('format')}, this version reads formats 1 to {FORMAT}"
+            )
         fields = kept_values.made_of(said.get("values"), what)
         _require_sound(fields, what)
         return cls(fields, said["told"], site_text)

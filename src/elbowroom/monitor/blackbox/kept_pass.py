@@ -18,7 +18,7 @@ from elbowroom.motion import Level, Verdict
 from elbowroom.reconstruct import FreeSpace
 from elbowroom.sensing import DepthFrame
 from elbowroom.wire import ros_messages, ros_schemas
-from elbowroom.wire.depth_codec import Units, pack_depth
+from elbowroom.wire.depth_codec import Units, packed_pieces
 from elbowroom.wire.mcap_writer import Told
 from elbowroom.wire.ros_messages import Lens, Placed, Status
 
@@ -146,7 +146,7 @@ class Keeping:
         before, made = self._frames.get(frame.camera, (None, None))
         if made is not None and before is frame:
             return made
-        packed = pack_depth(frame.depth_m, self.units.get(frame.camera))
+        packed = packed_pieces(frame.depth_m, self.units.get(frame.camera))
         number = 1 if made is None else made.number + 1
         is_radial = frame.camera in self.radial
         data = ros_messages.depth_message(frame.stamp_ns, frame.camera, packed, is_radial)
