@@ -10,10 +10,10 @@
              numbers of each row take, half a byte each, to whole bytes; then words of 16 bits, eight abreast
 
 Numbers are little-endian; what codes are is said in `kernels/depth.py`, what rows are in `kernels/rows.py`. An image of
-whose steps most are small is packed as codes, since zstd finds how rarely the others come; any other as rows, which is a
-tenth larger than codes and zstd and takes half as long. Units are what a sensor counted: depth is their
-product with the scale, in float32, plus the bias. An image that is not made of units is packed as its bits, so NaN,
-infinity and minus zero come back as they were.
+whose steps most are small is packed as codes, since zstd finds how rarely the others come; any other as rows, which
+are a tenth larger than codes and zstd, and take half as long. Units are what a sensor counted: depth is their product
+with the scale, in float32, plus the bias. An image that is not made of units is packed as its bits, so NaN, infinity
+and minus zero come back as they were.
 """
 
 import struct

@@ -170,7 +170,7 @@ class McapWriter:
         while self.length - self._sent_on >= STRETCH:
             if hasattr(os, "posix_fadvise"):  # where it is not known, the system does as it likes
                 for at in (self._sent_on, max(0, self._sent_on - BEHIND * STRETCH)):
-                    # pages that are not written yet begin to be, others are let go; what fails will fail where it is written
+                    # pages that are not on disk yet begin to go there, others are let go
                     with suppress(OSError):
                         os.posix_fadvise(self._file.fileno(), at, STRETCH, os.POSIX_FADV_DONTNEED)
             self._sent_on += STRETCH

@@ -22,6 +22,9 @@ def bench(
     size: Annotated[str, typer.Option(help="Of their images: vga, qqvga or thesis.")] = "vga",
     threads: Annotated[int | None, typer.Option(min=1, help="Default: all cores.")] = None,
     seconds: Annotated[float, typer.Option(min=1, help="decision, record: how long, of each case.")] = 30.0,
+    minutes: Annotated[
+        float | None, typer.Option(min=0.1, help="decision, record: in place of --seconds.")
+    ] = None,
     octomap: Annotated[bool, typer.Option(help="Also run OctoMap, where pyoctomap is installed.")] = True,
     against: Annotated[
         Path | None,
@@ -51,6 +54,7 @@ def bench(
     json: JsonFile = None,
 ) -> None:
     """Measure carve and whole cycles in the simulated room, each in its own process; or something else."""
+    seconds = seconds if minutes is None else 60 * minutes
     if what == "calibration":
         from elbowroom.cli.evaluate.bench_calibration_run import run_bench_calibration
 
