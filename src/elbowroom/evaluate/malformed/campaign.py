@@ -113,10 +113,9 @@ def _progress(log: Path) -> tuple[int, int]:
 
 
 def _kept(folder: Path, keep: Path | None) -> None:
+    ours = {"log", "words"}
     found = [
-        path
-        for path in folder.iterdir()
-        if path.is_file() and path.suffix == "" and path.name not in ("log", "words")
+        path for path in folder.iterdir() if path.is_file() and not path.suffix and path.name not in ours
     ]
     if keep is not None and found:
         keep.mkdir(exist_ok=True)

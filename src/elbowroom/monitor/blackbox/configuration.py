@@ -24,7 +24,7 @@ from elbowroom.wire.mcap_writer import Attached
 CONFIGURATION, SITE = "configuration.json", "site.yaml"
 """Names of the files within a recording."""
 FORMAT = 2
-"""Of recordings that are written; those before it are read, a later one is refused. Since 2 some images are rows of bits."""
+"""Of recordings that are written; those before it are read, a later one is refused. 2: images may be rows of bits."""
 OF_THE_RUN = ("clock_ns", "keeps_images")
 """What of a cycle does not change what a snapshot comes to."""
 
