@@ -20,7 +20,7 @@ PAGES = [*PROJECT.glob("*.md"), *(PROJECT / "docs").glob("*.md"), *(PROJECT / "e
 TEST_COMMAND = "python3 -m venv .venv && .venv/bin/pip install -e '.[test]' && .venv/bin/pytest"
 MAIN_COMMAND = "python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/elbowroom monitor"
 KERNELS = sorted(p for p in SOURCE.rglob("kernels/*.py") if p.stem != "__init__")
-KERNEL_LIBRARIES = {"math", "typing", "numpy", "numba"}
+KERNEL_LIBRARIES = {"math", "typing", "numpy", "numba", "llvmlite"}
 
 
 def module_name(path: Path) -> str:

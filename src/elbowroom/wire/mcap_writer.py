@@ -161,7 +161,7 @@ class McapWriter:
     def _send(self, pieces: Sequence[bytes]) -> None:
         self.length += sum(map(len, pieces))
         for begin in range(0, len(pieces), AT_ONCE):
-            self._send_all(deque(map(memoryview, pieces[begin : begin + AT_ONCE])))
+            self._send_all(deque(memoryview(piece) for piece in pieces[begin : begin + AT_ONCE]))
 
     def _send_on(self) -> None:
         """Has each stretch brought to the disk as soon as it is full, so that little is left to do at the end, and then

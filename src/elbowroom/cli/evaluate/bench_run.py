@@ -145,9 +145,9 @@ def run_bench_record(quick: bool, cameras: int, size: str, seconds: float, json:
         seconds: how long each run is.
         json: file for the rows.
     """
+    from elbowroom.evaluate.held_memory import words_of_slope
     from elbowroom.evaluate.recording.rate import DUE as RATE_DUE
     from elbowroom.evaluate.recording.rate import rate_rows
-    from elbowroom.evaluate.soak.memory import words_of_slope
     from elbowroom.simulate.cameras import SIZES
 
     show = as_table(

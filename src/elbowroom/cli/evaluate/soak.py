@@ -27,7 +27,7 @@ def soak(
     from elbowroom.cli.evaluate.measured import measured, told
     from elbowroom.cli.evaluate.shown import as_table
     from elbowroom.evaluate.due import sentence
-    from elbowroom.evaluate.soak.memory import words_of_slope
+    from elbowroom.evaluate.held_memory import words_of_slope
     from elbowroom.evaluate.soak.soak import DUE, soak_rows, words_of_worst
     from elbowroom.simulate.cameras import SIZES
 

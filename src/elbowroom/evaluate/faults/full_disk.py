@@ -1,4 +1,4 @@
-"""A disk that is full while a stop is being saved: the machine stops all the same, it is said, and what was kept opens."""
+"""A disk that is full while a stop is saved: the machine stops all the same, it is said, and what was kept opens."""
 
 import os
 import random

@@ -73,8 +73,10 @@ def place_of(error: BaseException) -> str:
         for frame in frames
         if "elbowroom" in Path(frame.filename).parts and "malformed" not in Path(frame.filename).parts
     ]
-    last = (own or frames or [None])[-1]
-    return "" if last is None else f"{'/'.join(Path(last.filename).parts[-3:])}:{last.lineno}"
+    if not frames:
+        return ""
+    last = (own or frames)[-1]
+    return f"{'/'.join(Path(last.filename).parts[-3:])}:{last.lineno}"
 
 
 def hold_memory(target: Target) -> None:

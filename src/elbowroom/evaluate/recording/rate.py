@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from elbowroom.evaluate.due import Due
+from elbowroom.evaluate.held_memory import Watched
 from elbowroom.evaluate.recording.compared import Comparing, sum_of
 from elbowroom.evaluate.recording.turns import InTurns
-from elbowroom.evaluate.soak.memory import Watched
 from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import DepthCamera
 from elbowroom.monitor import CycleResult, Pass

@@ -12,8 +12,8 @@ import numpy as np
 
 from elbowroom.errors import InputError
 from elbowroom.evaluate.due import FULL_ROOM, Due, where
+from elbowroom.evaluate.held_memory import Watched
 from elbowroom.evaluate.recording.turns import InTurns
-from elbowroom.evaluate.soak.memory import Watched
 from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import parallel
 from elbowroom.monitor import Loop, Pass
