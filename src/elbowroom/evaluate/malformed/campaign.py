@@ -24,6 +24,8 @@ DUE = (
     Due("hangs", "≤", 0, words="inputs that hang, or take more than 2 s"),
     Due("allocations", "≤", 0, words="inputs that take over twice the memory that the code says"),
 )
+IN_MEMORY = Path("/dev/shm")
+"""Where it is there, inputs are files in memory: a disk brings each to itself as it is written over."""
 DID_NOT_BEGIN = 1
 """What a process ends with that libFuzzer did not end."""
 KINDS = {"crash": "crashes", "slow": "hangs", "allocation": "allocations"}
@@ -48,7 +50,7 @@ def malformed_rows(
     package("atheris")
     for target in targets():
         if not names or target.name in names:
-            with TemporaryDirectory() as folder:
+            with TemporaryDirectory(dir=IN_MEMORY if IN_MEMORY.is_dir() else None) as folder:
                 yield _row(target, Path(folder), 60 * minutes, tell)
                 _kept(Path(folder), keep)
 

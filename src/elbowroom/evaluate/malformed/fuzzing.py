@@ -11,30 +11,32 @@ from pathlib import Path
 
 from elbowroom.extras import package
 
-FOLLOWED = (
-    "elbowroom.files",
-    "elbowroom.guard",
-    "elbowroom.monitor.blackbox",
-    "elbowroom.sensing",
-    "elbowroom.site",
-    "elbowroom.sources",
-    "elbowroom.wire",
-    "yaml",
-    "PIL",
-    "pymodbus",
-)
-COMPILED = ("elbowroom.sensing.kernels", "elbowroom.wire.kernels")
-"""Kernels are compiled from their bytecode, which is left as it is."""
+PACKAGES = ("elbowroom", "yaml", "PIL", "pymodbus")
+"""Whose branches are followed."""
+FOLLOWED = ("files", "guard", "monitor/blackbox", "sensing", "site", "sources", "wire")
+"""Folders of this package that read what comes from outside; of all others it is no matter where they go."""
 HANGS_S = 30
 """An input that takes longer is a hang [s]."""
 DONE = "done.json"
+PACKAGE = Path(__file__).parents[2]
+
+
+def left_alone() -> list[str]:
+    """Modules that are not followed; kernels are compiled from their bytecode, which has to stay as it is."""
+    found = []
+    for file in PACKAGE.rglob("*.py"):
+        parts = file.relative_to(PACKAGE).with_suffix("").parts
+        is_followed = "/".join(parts).startswith(FOLLOWED) and "kernels" not in parts
+        if not is_followed:
+            found.append(".".join([PACKAGE.name, *(part for part in parts if part != "__init__")]))
+    return found
 
 
 def main() -> None:
     """Tries until the processor time is over."""
     name, folder, seconds = sys.argv[1], Path(sys.argv[2]), float(sys.argv[3])
     atheris = package("atheris")
-    with atheris.instrument_imports(include=list(FOLLOWED), exclude=list(COMPILED)):
+    with atheris.instrument_imports(include=list(PACKAGES), exclude=left_alone()):
         from elbowroom.evaluate.malformed.targets import dictionary, target_of
         from elbowroom.evaluate.malformed.trial import Trial, hold_memory
 

@@ -5,6 +5,7 @@ import sqlite3
 import struct
 import tempfile
 from collections.abc import Sequence
+from functools import cache
 from importlib import resources
 from pathlib import Path
 
@@ -111,6 +112,7 @@ def sqlite_seeds() -> list[bytes]:
     return [base.serialize()]
 
 
+@cache
 def recording_seeds() -> list[bytes]:
     """A run that was kept: a pass of the simulated room with few small cameras."""
     from elbowroom.evaluate.recording.sample import record_sample

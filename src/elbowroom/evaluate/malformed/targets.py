@@ -212,7 +212,7 @@ def targets() -> list[Target]:
         Target("metadata", read_metadata, seeds.metadata_seeds, 1 << 12, LARGEST_MESSAGE),
         Target("recording", read_recording, seeds.recording_seeds, 1 << 18, 4 * MOST_PIXELS),
         Target("depth image", read_depth, seeds.png_seeds, 1 << 12, image, ("IHDR", "IDAT", "IEND", "P5")),
-        Target("site", read_site, seeds.yaml_seeds, 1 << 13, MAX_YAML_BYTES),
+        Target("site", read_site, seeds.yaml_seeds, 1 << 14, MAX_YAML_BYTES),
         Target("joints", read_joints, seeds.joint_seeds, 1 << 12, LEAST_LIMIT),
         Target("joint message", read_joint_message, seeds.joint_message_seeds, 1 << 12, LEAST_LIMIT),
         Target("modbus", read_modbus, seeds.modbus_seeds, 1 << 9, LEAST_LIMIT),
