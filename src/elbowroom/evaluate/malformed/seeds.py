@@ -51,6 +51,14 @@ def png_seeds() -> list[bytes]:
     return [out.getvalue(), f"P5\n{width} {height}\n65535\n".encode() + numbers().astype(">u2").tobytes()]
 
 
+def mask_seeds() -> list[bytes]:
+    """The mask of a camera, as it is written."""
+    from elbowroom.files.mask_file import write_mask
+
+    with tempfile.TemporaryDirectory() as folder:
+        return [write_mask(Path(folder) / "mask.png", numbers() == 0).read_bytes()]
+
+
 def told() -> list[list[Told]]:
     """Messages of a few moments of two cameras and a machine."""
     moments = []

@@ -77,6 +77,13 @@ def read_depth(data: bytes, folder: Path) -> None:
     read_depth_image(path, *seeds.SIZE)
 
 
+def read_mask(data: bytes, folder: Path) -> None:
+    """The mask of a camera."""
+    from elbowroom.files.mask_file import read_mask as read
+
+    read(_file(folder / "mask.png", data), *seeds.SIZE)
+
+
 def read_site(data: bytes, folder: Path) -> None:
     """A site file, with all that it says itself."""
     from elbowroom.site import Site
@@ -212,6 +219,7 @@ def targets() -> list[Target]:
         Target("metadata", read_metadata, seeds.metadata_seeds, 1 << 12, LARGEST_MESSAGE),
         Target("recording", read_recording, seeds.recording_seeds, 1 << 18, 4 * MOST_PIXELS),
         Target("depth image", read_depth, seeds.png_seeds, 1 << 12, image, ("IHDR", "IDAT", "IEND", "P5")),
+        Target("mask", read_mask, seeds.mask_seeds, 1 << 11, image, ("IHDR", "IDAT", "IEND", "tRNS")),
         Target("site", read_site, seeds.yaml_seeds, 1 << 14, MAX_YAML_BYTES),
         Target("joints", read_joints, seeds.joint_seeds, 1 << 12, LEAST_LIMIT),
         Target("joint message", read_joint_message, seeds.joint_message_seeds, 1 << 12, LEAST_LIMIT),
