@@ -9,6 +9,7 @@ from typing import Any
 from elbowroom.errors import PackageError
 
 PACKAGES = {
+    "atheris": ("looking for malformed input by coverage needs atheris", "fuzz"),
     "coal": ("exact mesh distance needs coal", "evaluate"),
     "cv2": ("calibration needs OpenCV", "calibrate"),
     "distributed": ("a cluster needs Dask", "cluster"),

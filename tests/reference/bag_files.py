@@ -100,13 +100,13 @@ def region(x, y, width, height):
     )
 
 
-def joint_state(positions, stamp_ns, names=None):
+def joint_state(positions, stamp_ns, names=None, velocities=()):
     return made(
         JOINTS,
         header=header(stamp_ns),
         name=list(positions) if names is None else names,
         position=np.array(list(positions.values()) if names is None else positions, dtype=np.float64),
-        velocity=np.zeros(0),
+        velocity=np.array(velocities, dtype=np.float64),
         effort=np.zeros(0),
     )
 

@@ -28,6 +28,23 @@ def plain_codes(zigzags: list[int], is_half: bool) -> tuple[bytes, list[int]]:
     return bytes(low | high << 4 for low, high in zip(codes[::2], codes[1::2], strict=True)), apart
 
 
+def plain_rows(zigzags: list[int]) -> bytes:
+    """Half a byte for each row of eight, and then their bits: those of a row stand in eight words of 16 abreast."""
+    zigzags = zigzags + [0] * (-len(zigzags) % 8)
+    rows = [zigzags[begin : begin + 8] for begin in range(0, len(zigzags), 8)]
+    widths = [max(number.bit_length() for number in row) for row in rows]
+    widths = [16 if width == 15 else width for width in widths]
+    halves = [min(width, 15) for width in widths] + [0] * (len(rows) % 2)
+    # all bits that one of the eight has written, the first row's lowest
+    columns, length = [0] * 8, 0
+    for row, width in zip(rows, widths, strict=True):
+        columns = [column | number << length for column, number in zip(columns, row, strict=True)]
+        length += width
+    words = [column >> 16 * at & 0xFFFF for at in range(-(-length // 16)) for column in columns]
+    begin = bytes(low | high << 4 for low, high in zip(halves[::2], halves[1::2], strict=True))
+    return begin + struct.pack(f"<{len(words)}H", *words)
+
+
 def plain_content(depth_m: np.ndarray, units: np.ndarray | None, is_half: bool) -> bytes:
     """What is compressed: of units, or of the bits of floats."""
     if units is not None:

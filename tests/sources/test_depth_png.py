@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 
 from elbowroom.errors import FrameError
-from elbowroom.sources.depth_png import check_depth_png, read_depth_png
+from elbowroom.sources.depth_png import check_depth_png, png_pixels, read_depth_png
 
 
 def raw_png(width, height, depth=16, colour=0, idat=b""):
@@ -113,3 +113,15 @@ def test_a_file_far_larger_than_its_image_is_refused(tmp_path):
     with path.open("ab") as file:
         file.truncate(2_000_000)
     assert "2,000,000 bytes, at most 1,000,192 for 8 x 6" in refusal(path)
+
+
+def test_a_png_without_pixels_is_refused(tmp_path):
+    """Found by `elbowroom evaluate malformed`: Pillow's own check runs past the end of a list."""
+    whole = raw_png(8, 6)
+    at = whole.index(b"IDAT") - 4
+    data = whole[:at] + whole[whole.index(b"IEND") - 4 :]
+    (tmp_path / "a.png").write_bytes(data)
+    with pytest.raises(FrameError, match="truncated or damaged PNG"):
+        read_depth_png(tmp_path / "a.png", 8, 6)
+    with pytest.raises(FrameError, match="truncated or damaged PNG"):
+        png_pixels(data, "it", 8, 6)

@@ -1,5 +1,7 @@
 """A bag that is played: the newest frame of each camera, on one clock, with what its age may be off."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -204,3 +206,37 @@ def test_a_room_with_a_bag_is_played_and_any_other_is_as_it_was(tmp_path):
     path = bag_room().site(tmp_path / "folder.yaml", {"layout": "folder", "folder": "images"})
     other = open_room(Site.load(path))
     assert live(other) is other
+
+
+def told_speeds(messages, speeds_of):
+    """The messages, of whose joints it is said how fast they are."""
+    return [
+        (topic, at, message if topic != "/joint_states" else replaced_speeds(message, speeds_of))
+        for topic, at, message in messages
+    ]
+
+
+def replaced_speeds(message, speeds_of):
+    object.__setattr__(message, "velocity", np.array([speeds_of(name) for name in message.name]))
+    return message
+
+
+@pytest.mark.parametrize("storage", ["sqlite3", "mcap"])
+def test_velocities_that_another_writer_wrote_are_those_of_the_snapshot(tmp_path, storage):
+    joints = next(iter(bag_room().joints.values()))
+    due = {name: 0.01 * number - 0.02 for number, name in enumerate(joints)}
+    silent = next(iter(joints))
+    for fast, known in ((due, set(due)), ({**due, silent: math.nan}, set(due) - {silent})):
+        folder = tmp_path / f"{len(known)}"
+        folder.mkdir()
+        messages = told_speeds(bag_room().messages(), fast.__getitem__)
+        bag = bags.written(folder / "bag", messages, storage)
+        site = Site.load(bag_room().site(folder / "site.yaml", bag_room().recording(bag)))
+        for snapshot in (*(one[0] for one in played(site)[0]), *moments(site)):
+            assert set(snapshot.velocities) == known
+            assert all(abs(snapshot.velocities[name] - fast[name]) < 1e-12 for name in snapshot.velocities)
+
+
+def test_without_velocities_in_a_bag_none_are_known(tmp_path):
+    site = site_of(tmp_path, bag_room().messages())
+    assert all(dict(one[0].velocities) == {} for one in played(site)[0])

@@ -8,6 +8,7 @@ from PIL import Image
 
 from elbowroom.errors import SiteError
 from elbowroom.files.atomic import whole_file
+from elbowroom.files.damaged_picture import DAMAGED
 
 
 def read_mask(path: Path, width: int, height: int) -> NDArray[np.bool_]:
@@ -35,7 +36,7 @@ def read_mask(path: Path, width: int, height: int) -> NDArray[np.bool_]:
             if mode not in ("1", "L"):
                 raise SiteError(f"mask: {path} is a picture of mode {mode}, must be 8 bits of grey")
             grey = np.asarray(image.convert("L"))
-    except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError) as error:
+    except DAMAGED as error:
         raise SiteError(f"mask: {path}: not a PNG file, or damaged ({error})") from None
     if not np.isin(grey, (0, 255)).all():
         raise SiteError(f"mask: {path} has grey values; must be black (says nothing) or white (counts)")

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from elbowroom.errors import FrameError
+from elbowroom.files.damaged_picture import DAMAGED
 from elbowroom.sources.depth_pgm import exchanged
 
 HEADER = 26
@@ -115,7 +116,7 @@ def _decoded(source: Path | io.BytesIO, name: str, size: tuple[int, int]) -> NDA
                 source.seek(0)
             with Image.open(source, formats=("PNG",)) as image:
                 pixels = np.asarray(image)
-    except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError) as error:
+    except DAMAGED as error:
         raise FrameError(f"{name}: truncated or damaged PNG ({error}); record or copy it again") from None
     if pixels.shape != (height, width) or pixels.dtype.kind not in "iu":
         raise FrameError(f"{name}: decoded to {pixels.dtype} {pixels.shape}, must be 16 bits of grey")

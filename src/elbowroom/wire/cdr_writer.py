@@ -55,9 +55,9 @@ class CdrWriter:
             self.text(value)
         return self
 
-    def done_with(self, data: bytes) -> bytes:
-        """The message, at whose end a sequence of bytes stands."""
-        return b"".join((self.whole(len(data))._bytes, data))
+    def done_with(self, data: Sequence[bytes | memoryview]) -> bytes:
+        """The message, at whose end a sequence of bytes stands, given in pieces."""
+        return b"".join((self.whole(sum(map(len, data)))._bytes, *data))
 
     def time(self, stamp_ns: int | None) -> Self:
         """A time [ns]; 0 where there is none, or none that the type holds."""

@@ -1,7 +1,9 @@
 """An MCAP file, written step by step: each step is a chunk of its own, with its link of the chain."""
 
 import os
+from collections import deque
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,6 +14,10 @@ from elbowroom.wire.mcap_tail import Tail
 from elbowroom.wire.ros_schemas import SCHEMAS
 
 LIBRARY = "elbowroom"
+AT_ONCE = 256
+"""So many pieces are written by one call; systems allow 1024 or more."""
+STRETCH, BEHIND = 1 << 25, 4
+"""What is written goes to the disk stretch by stretch [bytes], and out of memory so many stretches later."""
 
 
 class Told(NamedTuple):
@@ -57,6 +63,7 @@ class McapWriter:
         self.path = path
         self.steps = 0
         self.length = 0
+        self._sent_on = 0
         self._chain = Chain()
         self._tail = Tail()
         self._schemas: dict[str, int] = {}
@@ -111,6 +118,7 @@ class McapWriter:
         )
         self._tail.add(place, {number: len(entries) for number, entries in index.items()})
         self.steps += 1
+        self._send_on()
 
     def end(self) -> None:
         """Writes the summary, brings all to the disk and lets go of the file. Twice is as once."""
@@ -151,7 +159,27 @@ class McapWriter:
         self._send([*pieces, self._chain.link()])
 
     def _send(self, pieces: Sequence[bytes]) -> None:
-        left = memoryview(b"".join(pieces))
-        self.length += len(left)
+        self.length += sum(map(len, pieces))
+        for begin in range(0, len(pieces), AT_ONCE):
+            self._send_all(deque(memoryview(piece) for piece in pieces[begin : begin + AT_ONCE]))
+
+    def _send_on(self) -> None:
+        """Has each stretch brought to the disk as soon as it is full, so that little is left to do at the end, and then
+        let go: a long recording would fill all memory with what nobody reads, and each new page costs time.
+        """
+        while self.length - self._sent_on >= STRETCH:
+            if hasattr(os, "posix_fadvise"):  # where it is not known, the system does as it likes
+                for at in (self._sent_on, max(0, self._sent_on - BEHIND * STRETCH)):
+                    # pages that are not on disk yet begin to go there, others are let go
+                    with suppress(OSError):
+                        os.posix_fadvise(self._file.fileno(), at, STRETCH, os.POSIX_FADV_DONTNEED)
+            self._sent_on += STRETCH
+
+    def _send_all(self, left: deque[memoryview]) -> None:
+        """Writes pieces as they lie: to put them together would copy them all once more."""
         while left:
-            left = left[self._file.write(left) :]
+            written = os.writev(self._file.fileno(), left)
+            while left and written >= len(left[0]):
+                written -= len(left.popleft())
+            if left:
+                left[0] = left[0][written:]

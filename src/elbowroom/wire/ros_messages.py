@@ -62,13 +62,15 @@ def optical_frame(camera: str) -> str:
     return f"{camera}_optical"
 
 
-def depth_message(stamp_ns: int | None, camera: str, packed: bytes, is_radial: bool = False) -> bytes:
+def depth_message(
+    stamp_ns: int | None, camera: str, packed: Sequence[bytes | memoryview], is_radial: bool = False
+) -> bytes:
     """sensor_msgs/msg/CompressedImage of a packed depth image.
 
     Args:
         stamp_ns: of its exposure [ns]; None: unknown.
         camera: its name.
-        packed: as `pack_depth` gave it.
+        packed: as `packed_pieces` gave it.
         is_radial: whether depth is the distance from the camera's centre.
     """
     told = CdrWriter().header(stamp_ns, optical_frame(camera)).text(RADIAL if is_radial else PLANAR)

@@ -1,6 +1,7 @@
 """A recording judged again: identical, or the first difference is shown; cut off or damaged, it is said."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -37,22 +38,24 @@ def test_a_run_is_judged_again_to_the_last_bit(file):
 
 def test_a_verdict_that_was_another_is_shown(file, monkeypatch):
     with Recording(file) as recording:
-        cycle = recording.configuration().cycle()
+        configuration = recording.configuration()
+        cycle, figures = configuration.cycle(), configuration.figures()
         one = recording.at(3)
         first = one.judged["verdicts"][0]
         first["free_travel"] = first["free_travel"] + 2**-50
-        (difference,) = compared(one, cycle).differences
+        (difference,) = compared(one, cycle, figures).differences
     assert difference.startswith(f"{first['joint']} {first['direction']}: free_travel was ")
 
 
 def test_another_image_is_noticed_by_the_space_that_it_makes(file):
     with Recording(file) as recording:
-        cycle = recording.configuration().cycle()
+        configuration = recording.configuration()
+        cycle, figures = configuration.cycle(), configuration.figures()
         one, other = recording.at(2), recording.at(9)
         wrong = replay.RecordedPass(
             one.number, one.sequence, one.wall_ns, one.lost, other.snapshot, one.judged, one.gate
         )
-        assert any(text.startswith("space: was ") for text in compared(wrong, cycle).differences)
+        assert any(text.startswith("space: was ") for text in compared(wrong, cycle, figures).differences)
 
 
 @pytest.mark.parametrize(
@@ -67,7 +70,8 @@ def test_another_image_is_noticed_by_the_space_that_it_makes(file):
 def test_what_was_known_beside_the_images_is_taken_as_it_was_kept(file, word):
     cause = {"late": "stale", "watch": "watch", "findings": "input", "fault": "fault"}[next(iter(word))]
     with Recording(file) as recording:
-        cycle = recording.configuration().cycle()
+        configuration = recording.configuration()
+        cycle, figures = configuration.cycle(), configuration.figures()
         one = recording.at(0)
         for verdict in one.judged["verdicts"]:
             verdict |= {
@@ -88,7 +92,7 @@ def test_what_was_known_beside_the_images_is_taken_as_it_was_kept(file, word):
             }
         one.judged.update(word)
         one.judged["stopped_by"] = "why"
-        found = compared(one, cycle)
+        found = compared(one, cycle, figures)
     assert found.differences == ()
     assert found.by_word is not None
 
@@ -128,6 +132,13 @@ def test_the_configuration_comes_back_as_it_was(file):
     assert (site.name, said.name) == (SITE, CONFIGURATION)
 
 
+def test_a_configuration_of_the_format_before_is_read(file):
+    with Recording(file) as recording:
+        site, said = recording.configuration().attached()
+    before = json.dumps(json.loads(said.data) | {"format": 1}).encode()
+    assert Configuration.read(before, site.data, "it").attached() == [site, said]
+
+
 def value_of(said, name, value):
     """Gives a field of the cycle another value."""
     for pair in said["values"]["map"]:
@@ -139,7 +150,9 @@ def value_of(said, name, value):
     "change",
     [
         lambda said: said.pop("values"),
-        lambda said: said.update(format=2),
+        lambda said: said.update(format=3),
+        lambda said: said.update(format=0),
+        lambda said: said.update(format="1"),
         lambda said: said.update(values=[]),
         lambda said: said.update(told=[]),
         lambda said: said.update(values={"map": 3}),
@@ -192,11 +205,12 @@ def test_images_come_out_as_they_were_or_never_farther(file, tmp_path):
 
 def test_cameras_that_were_left_out_are_left_out_again(file):
     with Recording(file) as recording:
-        cycle = recording.configuration().cycle()
+        configuration = recording.configuration()
+        cycle, figures = configuration.cycle(), configuration.figures()
         one = recording.at(4)
-        assert compared(one, cycle).differences == ()
+        assert compared(one, cycle, figures).differences == ()
         one.judged["given"] = one.judged["given"][1:]
-        assert any(text.startswith("space: was ") for text in compared(one, cycle).differences)
+        assert any(text.startswith("space: was ") for text in compared(one, cycle, figures).differences)
 
 
 def test_a_pass_in_which_nothing_was_judged_is_stop_by_word(file):
@@ -204,12 +218,38 @@ def test_a_pass_in_which_nothing_was_judged_is_stop_by_word(file):
     empty = dict.fromkeys(("link", "place_m", "other_link", "zone", "creep"))
     empty |= {"escapes": False, "safe_speed": 0.0}
     with Recording(file) as recording:
-        cycle = recording.configuration().cycle()
+        configuration = recording.configuration()
+        cycle, figures = configuration.cycle(), configuration.figures()
         one = recording.at(4)
         one.judged.update(given=None, space=None, skew_ms=None, stopped_by="joints: not where they may be")
         for verdict in one.judged["verdicts"]:
             verdict.update(stop | empty)
-        found = compared(one, cycle)
+        found = compared(one, cycle, figures)
         assert found.differences == () and found.by_word == "joints: not where they may be"
         one.judged["verdicts"][0]["level"] = "clear"
-        assert compared(one, cycle).differences
+        assert compared(one, cycle, figures).differences
+
+
+def test_distances_and_margins_are_kept_and_compared(file):
+    with Recording(file) as recording:
+        configuration = recording.configuration()
+        cycle, figures = configuration.cycle(), configuration.figures()
+        passes = [one for one in recording.passes() if one.margins is not None]
+        assert len(passes) > PASSES // 2 and all(one.judged["distances"]["links"] for one in passes)
+        assert any(one.margins["standing_margin_m"] is not None for one in passes)
+        one = passes[-1]
+        assert compared(one, cycle, figures).differences == ()
+        assert compared(one, cycle).differences == ("margins: were kept, and cannot be computed",)
+        one.margins["person_margin_m"] += 2**-50
+        (told,) = compared(one, cycle, figures).differences
+        assert told.startswith("margins: person_margin_m was ")
+        one.judged["distances"]["links"][0]["seen"]["distance_m"] += 2**-50
+        assert compared(one, cycle, figures).differences[0].startswith("distances: was ")
+
+
+def test_a_recording_of_a_version_that_kept_no_distances_is_judged_as_before(file):
+    with Recording(file) as recording:
+        cycle = recording.configuration().cycle()
+        for one in recording.passes():
+            del one.judged["distances"]
+            assert compared(replace(one, margins=None), cycle).differences == ()

@@ -11,6 +11,7 @@ from elbowroom.cli.evaluate.hand import hand
 from elbowroom.cli.evaluate.lag import lag
 from elbowroom.cli.evaluate.latch import latch
 from elbowroom.cli.evaluate.looks import looks
+from elbowroom.cli.evaluate.malformed import malformed
 from elbowroom.cli.evaluate.own_links import own_links
 from elbowroom.cli.evaluate.paths import paths
 from elbowroom.cli.evaluate.placement import placement
@@ -19,6 +20,7 @@ from elbowroom.cli.evaluate.robots import robots
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
 from elbowroom.cli.evaluate.scale import scale_budget, scale_cameras
 from elbowroom.cli.evaluate.skew import skew
+from elbowroom.cli.evaluate.soak import soak
 from elbowroom.cli.evaluate.thesis import all_parts, calibration, more, motions, reconstruction, scale
 
 evaluate_app = typer.Typer(
@@ -66,4 +68,6 @@ evaluate_app.command(epilog=_example("skew --quick --json skew.json"))(skew)
 evaluate_app.command(epilog=_example("cell --quick --json cell.json"))(cell)
 evaluate_app.command(epilog=_example("cut --quick --json cut.json"))(cut)
 evaluate_app.command(epilog=_example("replay --quick --json replay.json"))(replay)
+evaluate_app.command(epilog=_example("malformed --quick --json malformed.json"))(malformed)
+evaluate_app.command(epilog=_example("soak --quick --json soak.json"))(soak)
 evaluate_app.command(name="all", epilog=_example("all --out report --json report.json"))(all_parts)

@@ -7,6 +7,13 @@ import typer
 
 from elbowroom.cli.options import JsonFile
 
+Seconds = Annotated[float, typer.Option(min=1, help="decision, record: how long, of each case.")]
+Minutes = Annotated[float | None, typer.Option(min=0.1, help="decision, record: in place of --seconds.")]
+Against = Annotated[
+    Path | None,
+    typer.Option(metavar="DIR", help="start: src of another checkout, measured in turns with this package."),
+]
+
 
 def bench(
     what: Annotated[
@@ -29,14 +36,10 @@ def bench(
     cameras: Annotated[int, typer.Option(min=1, max=255, help="How many cameras.")] = 21,
     size: Annotated[str, typer.Option(help="Of their images: vga, qqvga or thesis.")] = "vga",
     threads: Annotated[int | None, typer.Option(min=1, help="Default: all cores.")] = None,
-    seconds: Annotated[float, typer.Option(min=1, help="decision, record: how long, of each case.")] = 30.0,
+    seconds: Seconds = 30.0,
+    minutes: Minutes = None,
     octomap: Annotated[bool, typer.Option(help="Also run OctoMap, where pyoctomap is installed.")] = True,
-    against: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR", help="start: src of another checkout, measured in turns with this package."
-        ),
-    ] = None,
+    against: Against = None,
     captures: Annotated[
         Path | None,
         typer.Option(
@@ -59,6 +62,7 @@ def bench(
     json: JsonFile = None,
 ) -> None:
     """Measure carve and whole cycles in the simulated room, each in its own process; or something else."""
+    seconds = seconds if minutes is None else 60 * minutes
     if what == "calibration":
         from elbowroom.cli.evaluate.bench_calibration_run import run_bench_calibration
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from elbowroom.cli.evaluate.measured import measured
+from elbowroom.cli.evaluate.measured import measured, told
 from elbowroom.cli.evaluate.shown import as_table, text, voxel, yes_or_no
 from elbowroom.evaluate.due import Row, sentence
 from elbowroom.evaluate.speed.bench import CASES, bench_rows
@@ -145,6 +145,7 @@ def run_bench_record(quick: bool, cameras: int, size: str, seconds: float, json:
         seconds: how long each run is.
         json: file for the rows.
     """
+    from elbowroom.evaluate.held_memory import words_of_slope
     from elbowroom.evaluate.recording.rate import DUE as RATE_DUE
     from elbowroom.evaluate.recording.rate import rate_rows
     from elbowroom.simulate.cameras import SIZES
@@ -157,11 +158,14 @@ def run_bench_record(quick: bool, cameras: int, size: str, seconds: float, json:
             "raw": "{raw_mb_s:.0f} MB/s",
             "file": "{file_mb_s:.0f} MB/s",
             "of a core": "{core_share:.2f}",
+            "raw, a core": "{raw_mb_s_of_a_core:.0f} MB/s",
             "lost": "{lost}",
             "not as given": "{not_as_given}",
             "handed over in": "{handed_over_ms:.1f} ms",
+            "memory grows": words_of_slope,
         },
         sentence(RATE_DUE, "with 21 cameras of 640x480 at 15 images a second"),
     )
-    rows = rate_rows(10.0 if quick else seconds, cameras, SIZES[size][:2])
+    length = 10.0 if quick else seconds
+    rows = told(lambda tell: rate_rows(length, cameras, SIZES[size][:2], tell=tell))
     measured("runs", rows, None, json, show)

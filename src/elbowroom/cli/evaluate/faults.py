@@ -1,11 +1,14 @@
 """`elbowroom evaluate faults`: whether any fault passes silently."""
 
+from itertools import chain
 from typing import Annotated
 
 import typer
 
 from elbowroom.cli.options import JsonFile
 
+DISKS = 5
+"""So often a disk is full: each time is a start of the monitor."""
 QUICK, QUICK_DEADLINE_MS = 1, 400.0
 
 
@@ -35,6 +38,7 @@ def faults(
     from elbowroom.cli.evaluate.shown import as_table, text
     from elbowroom.evaluate.due import sentence
     from elbowroom.evaluate.faults.faults import DUE, fault_rows, fault_summary
+    from elbowroom.evaluate.faults.full_disk import full_disk_rows
     from elbowroom.evaluate.faults.kinds import KINDS
     from elbowroom.files.json_rows import json_rows
 
@@ -55,8 +59,9 @@ def faults(
         sentence(DUE),
     )
     with json_rows(json) as add:  # a folder that is not there is said at once
-        found = fault_rows(many, seed, QUICK_DEADLINE_MS if quick else deadline)
-        rows = list(watched("faults", found, many * len(KINDS)))
+        deadline_ms, disks = QUICK_DEADLINE_MS if quick else deadline, min(many, DISKS)
+        found = chain(fault_rows(many, seed, deadline_ms), full_disk_rows(disks, seed, deadline_ms))
+        rows = list(watched("faults", found, many * len(KINDS) + disks))
         summary = fault_summary(rows)
         for row in (
             *[row for row in rows if not (row["stopped"] and row["named"]) and row["shown"]],

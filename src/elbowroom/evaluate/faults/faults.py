@@ -59,10 +59,13 @@ class Cell:
         self.deadline_ns = round(deadline_ms * 1e6)
         self.site = written_site(folder, port, deadline_ms)
         self.gate = folder / "gate"
+        self.black_box: Sequence[str] = ()
         self.receiver = Receiver(port, 2)
         self.process: subprocess.Popen[str] | None = None
         self.watchdog: int | None = None
         self.said: queue.Queue[dict[str, Any]] = queue.Queue()
+        self.troubles: list[str] = []
+        """What the monitor last said that it could not keep."""
 
     def start(self) -> None:
         """Starts the monitor, or another one.
@@ -72,6 +75,7 @@ class Cell:
         """
         self.stop()
         words = [sys.executable, "-m", "elbowroom.evaluate.faults.monitored", str(self.site), str(self.gate)]
+        words += self.black_box
         self.process = subprocess.Popen(
             words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
@@ -102,6 +106,7 @@ class Cell:
         while (left_s := until_s - time.monotonic()) > 0:
             with suppress(queue.Empty):
                 line = self.said.get(timeout=left_s)
+                self.troubles = line.get("troubles", self.troubles)
                 if key in line:
                     return line
         return None
@@ -172,13 +177,22 @@ def fault_rows(
         try:
             cell.start()
             for kind in turns:
-                yield _thrown(cell, kind, chance)
+                yield thrown(cell, kind, chance)
         finally:
             cell.end()
 
 
-def _thrown(cell: Cell, kind: Kind, chance: random.Random) -> dict[str, Any]:
-    """What one fault comes to."""
+def thrown(cell: Cell, kind: Kind, chance: random.Random) -> dict[str, Any]:
+    """What one fault comes to.
+
+    Args:
+        cell: that runs.
+        kind: of the fault.
+        chance: when, and at which camera.
+
+    Raises:
+        ElbowroomError: the machine does not move though nothing is wrong.
+    """
     if not cell.guards():
         cell.start()  # what the watch found stays until then
     if not cell.guards():

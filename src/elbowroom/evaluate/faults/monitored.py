@@ -1,10 +1,11 @@
 """The monitor that faults are thrown at, in a process of its own.
 
-    python -m elbowroom.evaluate.faults.monitored SITE GATE
+    python -m elbowroom.evaluate.faults.monitored SITE GATE [BLACK_BOX [BYTES]]
 
 It takes a line of JSON on its standard input for each thing to do: {"begin": NAME, "of": INPUT, "camera": NAME, "seed":
 N}, {"end": true}, {"hang": S}, {"memory": true}. It says a line of JSON when it is ready, when a fault shows (in ns of
-`time.monotonic_ns`), and for each cause when it comes.
+`time.monotonic_ns`), for each cause when it comes, and when the black box cannot keep a stop. No file of this process
+grows beyond BYTES.
 """
 
 import json
@@ -20,6 +21,8 @@ from typing import Any
 
 from elbowroom.evaluate.faults.kinds import kind_named
 from elbowroom.evaluate.faults.live import Live
+from elbowroom.monitor.blackbox.made import recorder_of
+from elbowroom.monitor.blackbox.recorder import Recorder
 from elbowroom.monitor.face import Pass
 from elbowroom.monitor.gate.gate import Gate
 from elbowroom.monitor.gate.made import gate_of
@@ -34,8 +37,9 @@ SPARE_BYTES = 2_000_000
 class Reporter:
     """The face that says which causes are there, where they change."""
 
-    def __init__(self, gate: Gate) -> None:
+    def __init__(self, gate: Gate, recorder: Recorder | None = None) -> None:
         self._gate, self._said, self._is_ready = gate, [[""]], False
+        self._recorder, self._troubles = recorder, list[str]()
 
     def begin(self, room: Room) -> None:
         """Nothing has been judged."""
@@ -50,6 +54,11 @@ class Reporter:
         if sick != self._said:
             self._said = sick
             say({"sick": sick, "at_ns": time.monotonic_ns(), "sequence": done.result.sequence})
+
+        troubles = [] if self._recorder is None else self._recorder.troubles
+        if troubles != self._troubles:
+            self._troubles = troubles
+            say({"troubles": troubles})
 
     def end(self) -> None:
         """The run has ended."""
@@ -107,7 +116,9 @@ def listen(live: Live) -> None:
 
 def main() -> None:
     """Runs the monitor until it is killed."""
-    path, folder = map(Path, sys.argv[1:])
+    path, folder, *box = map(Path, sys.argv[1:4])
+    if sys.argv[4:]:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[4]), resource.RLIM_INFINITY))
     room = open_room(Site.load(path))
     live = Live(room.cameras)
     live.on_shown = lambda at_ns: say({"shows_ns": at_ns})
@@ -116,7 +127,10 @@ def main() -> None:
     assert gate is not None
     loop = replace(started(room, lambda told: None), gate=gate)
     threading.Thread(target=listen, args=(live,), daemon=True).start()
-    loop.run([Reporter(gate)])
+    recorder = recorder_of(room, folder=box[0]) if box else None
+    if recorder is not None:
+        recorder.cycle = loop.cycle
+    loop.run([Reporter(gate, recorder), *([] if recorder is None else [recorder])])
 
 
 if __name__ == "__main__":

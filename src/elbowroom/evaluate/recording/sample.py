@@ -10,6 +10,8 @@ from elbowroom.monitor import Checks, Loop
 from elbowroom.monitor.blackbox.configuration import plain_cycle
 from elbowroom.monitor.blackbox.recorder import Recorder
 from elbowroom.monitor.blackbox.sinks import WholeRun
+from elbowroom.monitor.cycle import Cycle
+from elbowroom.monitor.separation.separating import Separating
 from elbowroom.sensing import Snapshot
 from elbowroom.site import Site
 from elbowroom.sources import Room, open_room
@@ -80,13 +82,17 @@ def record_sample(path: Path, passes: int, seed: int = 1, exact: bool = False) -
     assert isinstance(room.source, Simulated)
     source = Troubled(replace(room.source, seed=seed), passes, seed)
     recorder = Recorder([WholeRun(path)])
-    loop_of(replace(room, source=source)).run([recorder])
+    loop = loop_of(replace(room, source=source))
+    recorder.cycle = loop.cycle
+    loop.run([recorder])
     assert not recorder.troubles, recorder.troubles
     return path
 
 
 def loop_of(room: Room) -> Loop:
     """The loop of a room, without a watch, and without a clock: how fast a computer is changes no verdict."""
+    separating = replace(Separating.of(room), clock_ns=lambda: 0)
     cycle = plain_cycle(room)
-    cycle.clock_ns = lambda: 0
-    return Loop(room, Checks(), cycle)
+    assert isinstance(cycle, Cycle)
+    cycle = replace(cycle, look_m=separating.figures.look_m, clock_ns=lambda: 0)
+    return Loop(room, Checks(), cycle, separating=separating)

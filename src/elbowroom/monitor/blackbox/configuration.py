@@ -15,16 +15,19 @@ from elbowroom.geometry.parallel import thread_count
 from elbowroom.machine import Machine
 from elbowroom.monitor.blackbox import kept_values
 from elbowroom.monitor.cycle import Cycle
+from elbowroom.monitor.separation.figures import Figures, figures_of
 from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.motion import Motion
+from elbowroom.motion.separation import Separation
 from elbowroom.reconstruct import Terms
+from elbowroom.site.separation_entry import SeparationEntry
 from elbowroom.sources import Room
 from elbowroom.wire.mcap_writer import Attached
 
 CONFIGURATION, SITE = "configuration.json", "site.yaml"
 """Names of the files within a recording."""
-FORMAT = 1
-"""Of recordings; a later one is refused."""
+FORMAT = 2
+"""Of recordings that are written; those before it are read, a later one is refused. 2: images may be rows of bits."""
 OF_THE_RUN = ("clock_ns", "keeps_images")
 """What of a cycle does not change what a snapshot comes to."""
 
@@ -35,7 +38,7 @@ class Configuration:
 
     Args:
         fields: of the cycle, by name; those of `Cycle`, or of `SpaceCycle` where no motion is asked.
-        told: what is said of the run beside that: site, version, processor, threads.
+        told: what is said of the run beside that: site, version, processor, threads, and the figures of its margins.
         site_text: the site file, as it was.
     """
 
@@ -57,6 +60,7 @@ class Configuration:
             "site_sha256": hashlib.sha256(text).hexdigest(),
             "threads": thread_count(),
             "allowances": list(room.allowances),
+            "separation": None if room.unasked is not None else _told_figures(figures_of(room)),
             **meta(),
         }
         return cls({name: getattr(cycle, name) for name in _names(type(cycle))}, told, text)
@@ -76,6 +80,24 @@ class Configuration:
     def motions(self) -> tuple[Motion, ...]:
         """That are asked; none: what is free is seen, and no motion judged."""
         return tuple(self.fields.get("motions", ()))
+
+    def figures(self) -> Figures | None:
+        """By which margins were said; None: nobody asked, or it is not told.
+
+        Raises:
+            BagError: malformed.
+        """
+        said = self.told.get("separation")
+        if said is None:
+            return None
+        try:
+            separation = kept_values.made_of(said["separation"], CONFIGURATION)
+            entry = SeparationEntry(**said["entry"])
+            if not isinstance(separation, Separation):
+                raise TypeError("separation")
+            return Figures(separation, float(said["look_m"]), entry, float(said["capability_m"]))
+        except (KeyError, TypeError, ValueError) as error:
+            raise BagError(f"{CONFIGURATION}: malformed: separation ({type(error).__name__})") from None
 
     def cycle(self, keeps_images: bool = False) -> Cycle | SpaceCycle:
         """The pass that judges by it; no time goes by in it, since when it was judged is not judged again.
@@ -112,11 +134,23 @@ class Configuration:
         said = kept_values.parsed(content, what)
         if not isinstance(said, dict) or not isinstance(said.get("told"), dict):
             raise BagError(f"{what}: malformed")
-        if said.get("format") != FORMAT:
-            raise BagError(f"{what}: of format {said.get('format')}, this version reads format {FORMAT}")
+        if said.get("format") not in range(1, FORMAT + 1):
+            raise BagError(
+                f"{what}: of format {said.get('format')}, this version reads formats 1 to {FORMAT}"
+            )
         fields = kept_values.made_of(said.get("values"), what)
         _require_sound(fields, what)
         return cls(fields, said["told"], site_text)
+
+
+def _told_figures(figures: Figures) -> dict[str, Any]:
+    """As `Configuration.figures` reads them."""
+    return {
+        "separation": kept_values.kept(figures.separation),
+        "look_m": figures.look_m,
+        "entry": figures.entry.model_dump(),
+        "capability_m": figures.capability_m,
+    }
 
 
 def plain_cycle(room: Room) -> Cycle | SpaceCycle:

@@ -14,11 +14,11 @@ from elbowroom.monitor.gate.state import Decision
 from elbowroom.monitor.gate.told import decision_row
 from elbowroom.monitor.health.streams.told import sick_row
 from elbowroom.monitor.result import CycleResult
-from elbowroom.motion import Level, Verdict
+from elbowroom.motion import Distances, Level, Verdict
 from elbowroom.reconstruct import FreeSpace
 from elbowroom.sensing import DepthFrame
 from elbowroom.wire import ros_messages, ros_schemas
-from elbowroom.wire.depth_codec import Units, pack_depth
+from elbowroom.wire.depth_codec import Units, packed_pieces
 from elbowroom.wire.mcap_writer import Told
 from elbowroom.wire.ros_messages import Lens, Placed, Status
 
@@ -146,7 +146,7 @@ class Keeping:
         before, made = self._frames.get(frame.camera, (None, None))
         if made is not None and before is frame:
             return made
-        packed = pack_depth(frame.depth_m, self.units.get(frame.camera))
+        packed = packed_pieces(frame.depth_m, self.units.get(frame.camera))
         number = 1 if made is None else made.number + 1
         is_radial = frame.camera in self.radial
         data = ros_messages.depth_message(frame.stamp_ns, frame.camera, packed, is_radial)
@@ -180,6 +180,7 @@ def pass_record(moment: Moment, frames: Sequence[tuple[str, int]]) -> dict[str, 
         "lost": moment.lost,
         "given": given,
         "judged": judged(result),
+        "margins": None if moment.done.margins is None else plain(moment.done.margins.row()),
         "gate": None if decision is None else _gate(decision),
     }
 
@@ -197,9 +198,19 @@ def judged(result: CycleResult) -> dict[str, Any]:
         "sick": [plain(sick_row(each)) for each in result.sick],
         "findings": [asdict(finding) for finding in result.findings],
         "stage_ms": plain(dict(result.stage_ms)),
+        "distances": None if result.distances is None else _distances(result.distances),
         "oldest_age_ms": plain(result.oldest_age_ms),
         "skew_ms": plain(result.skew_ms),
     }
+
+
+def _distances(distances: Distances) -> dict[str, Any]:
+    """Of each link, to what was seen and to what nobody saw."""
+    links = [
+        {"link": each.link, "seen": plain(each.seen.row()), "unseen": plain(each.unseen.row())}
+        for each in distances.links
+    ]
+    return {"up_to_m": plain(distances.up_to_m), "slack_m": plain(distances.slack_m), "links": links}
 
 
 def space_sum(space: FreeSpace) -> str:

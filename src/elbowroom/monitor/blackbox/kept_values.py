@@ -27,6 +27,7 @@ from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.stand import Stand
 from elbowroom.machine.zone import Zone
 from elbowroom.motion import Braking, Motion, Override
+from elbowroom.motion.separation import Separation
 from elbowroom.reconstruct import Terms
 
 KINDS = {
@@ -47,6 +48,7 @@ KINDS = {
         NoiseModel,
         Override,
         OwnLinks,
+        Separation,
         Stand,
         Surface,
         Terms,

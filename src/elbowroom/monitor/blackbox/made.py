@@ -11,7 +11,7 @@ from elbowroom.site.memory import physical_memory_bytes
 from elbowroom.sources import Room
 
 SECOND_NS = 1_000_000_000
-MOST_BYTES = 4_000_000_000
+MOST_BYTES = 6_000_000_000
 """Of memory for the black box, where the site does not say [bytes]."""
 
 

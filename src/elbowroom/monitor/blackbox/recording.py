@@ -36,6 +36,7 @@ class RecordedPass:
         snapshot: what was given.
         judged: what came of it, as `kept_pass.judged` says it.
         gate: what the gate decided; None: there was none.
+        margins: how far the machine was from what it may hit; None: nobody asked, or it was not kept.
     """
 
     number: int
@@ -45,6 +46,7 @@ class RecordedPass:
     snapshot: Snapshot
     judged: Mapping[str, Any]
     gate: Mapping[str, Any] | None
+    margins: Mapping[str, Any] | None = None
 
 
 class Recording:
@@ -170,7 +172,7 @@ class Recording:
                 _positions(given["velocities"]),
             )
             numbers = int(told["sequence"]), int(told["wall_ns"]), int(told["lost"])
-            return RecordedPass(number, *numbers, snapshot, told["judged"], told["gate"])
+            return RecordedPass(number, *numbers, snapshot, told["judged"], told["gate"], told.get("margins"))
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             if isinstance(error, ElbowroomError):
                 raise BagError(f"{what}: {error}") from None

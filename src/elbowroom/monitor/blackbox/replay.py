@@ -5,15 +5,19 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from elbowroom.monitor.blackbox.kept_pass import judged
+from elbowroom.monitor.blackbox.kept_pass import judged, plain
 from elbowroom.monitor.blackbox.recording import RecordedPass, Recording
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.result import CycleResult
+from elbowroom.monitor.separation.figures import Figures
+from elbowroom.monitor.separation.margins import Margins
 from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.motion import Cause, Verdict
 
-COMPARED = ("space", "fault", "skew_ms", "oldest_age_ms")
-"""What is compared besides verdicts."""
+COMPARED = ("space", "fault", "skew_ms", "oldest_age_ms", "distances")
+"""What is compared besides verdicts, as far as it was kept: earlier versions kept no distances."""
+MEASURED = "reaction_ms"
+"""Of margins what was measured, and is taken as it was kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,23 +52,38 @@ def replayed(recording: Recording, begin: int = 0) -> Iterator[Compared]:
     Raises:
         BagError: the recording is malformed.
     """
-    cycle = recording.configuration().cycle()
+    configuration = recording.configuration()
+    cycle, figures = configuration.cycle(), configuration.figures()
     for one in recording.passes(begin):
-        yield compared(one, cycle)
+        yield compared(one, cycle, figures)
 
 
-def compared(one: RecordedPass, cycle: Cycle | SpaceCycle) -> Compared:
+def compared(one: RecordedPass, cycle: Cycle | SpaceCycle, figures: Figures | None = None) -> Compared:
     """Judges a pass again, and compares.
 
     Args:
         one: the pass.
         cycle: of its configuration.
+        figures: of its margins; None: there are none.
     """
     found, word = _again(one, cycle)
     now = _plain(judged(found))
-    return Compared(
-        one.number, one.sequence, len(found.verdicts), one.lost, word, tuple(_differences(one.judged, now))
-    )
+    differences = [*_differences(one.judged, now), *_margins(one, found, figures)]
+    return Compared(one.number, one.sequence, len(found.verdicts), one.lost, word, tuple(differences))
+
+
+def _margins(one: RecordedPass, found: CycleResult, figures: Figures | None) -> Iterator[str]:
+    """What is not the same of the margins, by the reaction time that was known."""
+    if one.margins is None:
+        return
+    if figures is None or found.distances is None:
+        yield "margins: were kept, and cannot be computed"
+        return
+    kept = one.margins
+    now = _plain(plain(Margins(found.distances, figures, None, kept["worst_reaction_ms"]).row()))
+    for key in (key for key in now if key != MEASURED):
+        if kept.get(key) != now[key]:
+            yield f"margins: {key} was {kept.get(key)!r}, is {now[key]!r}"
 
 
 def _again(one: RecordedPass, cycle: Cycle | SpaceCycle) -> tuple[CycleResult, str | None]:
@@ -86,7 +105,7 @@ def _again(one: RecordedPass, cycle: Cycle | SpaceCycle) -> tuple[CycleResult, s
     is_elsewhere = cause is Cause.FAULT or kept["given"] is None
     verdicts = tuple(_stopped(verdict, cause, is_elsewhere) for verdict in result.verdicts)
     result = replace(result, verdicts=verdicts, fault=kept["fault"] if is_elsewhere else result.fault)
-    return (replace(result, space=None) if kept["space"] is None else result), word
+    return (replace(result, space=None, distances=None) if kept["space"] is None else result), word
 
 
 def _word(kept: Mapping[str, Any], result: CycleResult) -> tuple[str | None, Cause | None]:
@@ -127,7 +146,7 @@ def _differences(kept: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[st
             if before.get(key) != after.get(key):
                 yield f"{of}: {key} was {before.get(key)!r}, is {after.get(key)!r}"
     for key in COMPARED:
-        if kept.get(key) != now.get(key):
+        if key in kept and kept[key] != now.get(key):
             yield f"{key}: was {kept.get(key)!r}, is {now.get(key)!r}"
 
 

@@ -5,6 +5,8 @@ A difference is written as its zigzag (0, -1, 1, -2, ... as 0, 1, 2, 3, ...). Th
 apart, in their order.
 """
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from numba import njit
 
@@ -16,6 +18,21 @@ SAMPLED = 32
 """Of so many pieces one is looked at to choose the code."""
 PIECE = 2048
 """Pixels that are worked on while they are in the nearest cache."""
+
+
+class Scratch(NamedTuple):
+    """What is known of a piece while it is worked on.
+
+    Args:
+        metres, bits: the same memory as float32 and int32, shape (PIECE,).
+        units: uint16, shape (PIECE + 1,): the last one of the piece before, and its own.
+        zigzag: uint16, shape (PIECE,): of what each is more than the one before.
+    """
+
+    metres: Any
+    bits: Any
+    units: Any
+    zigzag: Any
 
 
 @njit(cache=True, nogil=True)
@@ -48,33 +65,12 @@ def pack_units(depth, bits, scale, bias, is_half, codes, apart):
         codes: uint8, shape (n,), or ((n + 1) // 2,) of halves; written.
         apart: uint16, shape (n,); its begin is written.
     """
-    inverse = np.float32(1.0) / scale
-    some = np.empty(PIECE, np.float32)
-    some_bits = some.view(np.int32)
-    units = np.zeros(PIECE + 1, np.uint16)
-    zigzag = np.zeros(PIECE, np.uint16)
+    near = scratch()
     wrong, many = np.int32(0), 0
     for begin in range(0, depth.size, PIECE):
         end = min(depth.size, begin + PIECE)
-        given, given_bits = depth[begin:end], bits[begin:end]
-        here, small = units[1 : 1 + given.size], zigzag[: given.size]
-        # loops of one step each: the compiler turns each into vectors
-        for x in range(given.size):
-            some[x] = (given[x] - bias) * inverse + ROUNDS
-        for x in range(given.size):
-            here[x] = np.uint16(0) if given_bits[x] == 0 else np.uint16(some_bits[x])
-        if bias == np.float32(0):
-            for x in range(given.size):
-                some[x] = np.float32(here[x]) * scale
-        else:
-            for x in range(given.size):
-                some[x] = _metres(here[x], scale, bias)
-        for x in range(given.size):
-            wrong |= some_bits[x] ^ given_bits[x]
-        for x in range(given.size):
-            more = np.int16(here[x] - units[x])
-            small[x] = np.uint16((more << 1) ^ (more >> 15))
-        units[0] = here[given.size - 1]
+        wrong |= zigzags(depth[begin:end], bits[begin:end], scale, bias, near)
+        small = near.zigzag[: end - begin]
         if is_half:
             _halves(small, codes[begin // 2 : (end + 1) // 2])
             many = _set_apart(small, HALF, apart, many)
@@ -84,6 +80,48 @@ def pack_units(depth, bits, scale, bias, is_half, codes, apart):
                 out[x] = np.uint8(min(small[x], np.uint16(BYTE)))
             many = _set_apart(small, BYTE, apart, many)
     return many if wrong == 0 else -1
+
+
+@njit(inline="always")
+def scratch():
+    """Memory for a piece."""
+    metres = np.empty(PIECE, np.float32)
+    return Scratch(
+        metres, metres.view(np.int32), np.zeros(PIECE + 1, np.uint16), zigzag=np.zeros(PIECE, np.uint16)
+    )
+
+
+@njit(inline="always")
+def zigzags(given, given_bits, scale, bias, near):
+    """A piece as zigzags of whole units; not 0 where these would not give back its bits.
+
+    Args:
+        given: float32, shape (n,) [m], at most `PIECE`.
+        given_bits: the same memory as int32.
+        scale, bias: float32: metres per unit, and what was added after that [m].
+        near: written; its first unit is the last one of the piece before.
+    """
+    inverse, wrong = np.float32(1.0) / scale, np.int32(0)
+    some, some_bits = near.metres, near.bits
+    here, small = near.units[1 : 1 + given.size], near.zigzag[: given.size]
+    # loops of one step each: the compiler turns each into vectors
+    for x in range(given.size):
+        some[x] = (given[x] - bias) * inverse + ROUNDS
+    for x in range(given.size):
+        here[x] = np.uint16(0) if given_bits[x] == 0 else np.uint16(some_bits[x])
+    if bias == np.float32(0):
+        for x in range(given.size):
+            some[x] = np.float32(here[x]) * scale
+    else:
+        for x in range(given.size):
+            some[x] = _metres(here[x], scale, bias)
+    for x in range(given.size):
+        wrong |= some_bits[x] ^ given_bits[x]
+    for x in range(given.size):
+        more = np.int16(here[x] - near.units[x])
+        small[x] = np.uint16((more << 1) ^ (more >> 15))
+    near.units[0] = here[given.size - 1]
+    return wrong
 
 
 @njit(inline="always")
