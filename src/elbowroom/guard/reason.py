@@ -24,6 +24,7 @@ class Reason(IntEnum):
     RESET_DUE = 18
     ENDED = 19
     JOINTS_STARTING = 20
+    CAMERA_DOUBTED = 21
     FAULT = 32
     STALE = 33
     INPUT = 34
@@ -99,6 +100,7 @@ _SENTENCES = {
     Reason.UNCLEAN_END: "the monitor ended last time without being asked to",
     Reason.CLOCK: "the monitor's clock went back",
     Reason.JOINTS_STARTING: "where the machine is has not been said yet",
+    Reason.CAMERA_DOUBTED: "a camera may be elsewhere than where it was commissioned",
     Reason.CAMERA_DISCONNECTED: "a camera gives no images any more",
     Reason.CAMERA_GAPS: "a camera loses images",
     Reason.CAMERA_DAMAGED: "a camera's images cannot be read",

@@ -10,7 +10,14 @@ QUICK, QUICK_DEADLINE_MS = 1, 400.0
 
 
 def faults(
-    times: Annotated[int, typer.Option(min=1, metavar="COUNT", help="How often each kind is thrown.")] = 26,
+    times: Annotated[
+        int,
+        typer.Option(
+            min=1,
+            metavar="COUNT",
+            help="How often each kind is thrown; half as often one after which the monitor is started again.",
+        ),
+    ] = 26,
     quick: Annotated[
         bool,
         typer.Option("--quick", help="Each kind once, on a computer that may be busy: times say nothing."),
@@ -30,12 +37,16 @@ def faults(
     moment. After it has stopped it ends, its cause has to clear, and a reset lets
     the machine move again. Times are from when the first wrong thing was handed
     to the monitor to when the reader reads stop.
+
+    The whole of it throws about 1,000 faults in some 20 minutes, and wants a
+    computer that does nothing else. After Ctrl-C the fault at hand comes to its
+    end, and what was measured is shown and written.
     """
     from elbowroom.cli.evaluate.measured import watched
-    from elbowroom.cli.evaluate.shown import as_table, text
+    from elbowroom.cli.evaluate.shown import as_table, print_, text
+    from elbowroom.cli.interrupt import asked_to_end
     from elbowroom.evaluate.due import sentence
-    from elbowroom.evaluate.faults.faults import DUE, fault_rows, fault_summary
-    from elbowroom.evaluate.faults.kinds import KINDS
+    from elbowroom.evaluate.faults.faults import DUE, fault_rows, fault_summary, turns_of
     from elbowroom.files.json_rows import json_rows
 
     many = QUICK if quick else times
@@ -54,9 +65,15 @@ def faults(
         },
         sentence(DUE),
     )
-    with json_rows(json) as add:  # a folder that is not there is said at once
-        found = fault_rows(many, seed, QUICK_DEADLINE_MS if quick else deadline)
-        rows = list(watched("faults", found, many * len(KINDS)))
+    total, rows = len(turns_of(many)), []
+    with (
+        json_rows(json) as add,  # a folder that is not there is said at once
+        asked_to_end("what was measured until now is shown and written") as is_over,
+    ):
+        for row in watched("faults", fault_rows(many, seed, QUICK_DEADLINE_MS if quick else deadline), total):
+            rows.append(row)
+            if is_over():
+                break
         summary = fault_summary(rows)
         for row in (
             *[row for row in rows if not (row["stopped"] and row["named"]) and row["shown"]],
@@ -64,3 +81,5 @@ def faults(
         ):
             add(row)
     show(summary)
+    if len(rows) < total:
+        print_(f"Ended after {len(rows)} of {total} faults.")
