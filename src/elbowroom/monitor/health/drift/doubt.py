@@ -19,7 +19,7 @@ THROUGH = 0.12
 OFF = 0.30
 """and so many are not where they were, an image contradicts what was commissioned. People alone never brought the first
 above 0.05 in the simulated room."""
-GONE = 0.40
+GONE = 0.36
 """Where so many are off while it sees through, and it lasts, the camera no longer sees what it was commissioned on."""
 WORTH_A_FIT = 0.10
 """From so many on a motion is fitted to this image alone."""
@@ -92,5 +92,5 @@ class Doubt:
         if not self._held.is_there:
             self.text, self._lasted = None, 0
             return
-        self._lasted += 1
+        self._lasted += found is not None
         self.text = (found or self.text) if self._lasted <= DECIDES else None
