@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
@@ -23,6 +23,7 @@ from elbowroom.errors import InputError
 if TYPE_CHECKING:
     from elbowroom.monitor import Gate
     from elbowroom.monitor.blackbox.recorder import Recorder
+    from elbowroom.sensing import MeantPaths
     from elbowroom.site import Site
     from elbowroom.sources import Room
 
@@ -61,6 +62,14 @@ BlackBoxFolder = Annotated[
     Path | None,
     typer.Option(
         metavar="DIR", help="Keep the minute before each stop, and 10 s after it, as a file in this folder."
+    ),
+]
+PathFile = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE[:TOPIC]",
+        help="What the machine means to do: a path (.csv, .yaml, .json), or a bag with JointTrajectory or "
+        "DisplayTrajectory. Its times count from the beginning, unless they are dates.",
     ),
 ]
 SkewMs = Annotated[
@@ -104,6 +113,7 @@ def monitor(
     callback: Callback = None,
     record: RecordFile = None,
     black_box: BlackBoxFolder = None,
+    path: PathFile = None,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
@@ -129,6 +139,11 @@ def monitor(
     With --record, or --black-box (or a key `black_box` of the site), it is kept what
     came in and what was decided; `elbowroom replay FILE` judges it again. A full disk
     is told, and stops nothing.
+
+    With --path it is judged in each pass how far the machine may go on with what it
+    means to do, so that it can stop at any moment and rest in free space; where
+    that is not far, the motions that the path makes slow down or stop. A machine
+    that is not on its path stops.
 
     Not a certified safety function.
     """
@@ -158,7 +173,8 @@ def monitor(
         )
         shown = live(_skewed(room, skew_ms) if skew_ms else room)
         recorder = recorder_of(room, record, black_box)
-        _watch(shown, seconds, json, out, gate_of(room, gate, callback), recorder)
+        run = Run(gate_of(room, gate, callback), recorder, _paths(path))
+        _watch(shown, seconds, (json, out), run)
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -191,15 +207,26 @@ def _skewed(room: "Room", skew_ms: float) -> "Room":
     return replace(room, source=replace(room.source, skew_ms=skew_ms))
 
 
-def _watch(
-    room: "Room",
-    seconds: float | None,
-    json_file: Path | None,
-    out_dir: Path | None,
-    gate: "Gate | None",
-    recorder: "Recorder | None",
-) -> None:
-    """Runs the loop over a room, with the faces that were asked for."""
+class Run(NamedTuple):
+    """What takes part in a run beside the room."""
+
+    gate: "Gate | None"
+    recorder: "Recorder | None"
+    paths: "MeantPaths | None"
+
+
+def _paths(given: str | None) -> "MeantPaths | None":
+    """What the machine means to do, of a file, or of a topic of one."""
+    if given is None:
+        return None
+    from elbowroom.sources.meant import meant_paths
+
+    file, _, topic = given.partition(":") if not Path(given).exists() else (given, "", "")
+    return meant_paths(Path(file), topic or None)
+
+
+def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path | None], run: Run) -> None:
+    """Runs the loop over a room, with the faces that were asked for; files: of rows, and of pictures."""
     from rich.console import Console
 
     from elbowroom.cli.progress import Steps
@@ -213,6 +240,7 @@ def _watch(
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
+    (json_file, out_dir), recorder = files, run.recorder
     unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
@@ -228,7 +256,7 @@ def _watch(
             simulator=room.site.simulated is not None,
         )
         with Steps(console, 4) as steps:
-            loop = replace(started(room, steps.begin), gate=gate)
+            loop = replace(started(room, steps.begin), gate=run.gate, paths=run.paths)
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]

@@ -19,6 +19,7 @@ class Reason(IntEnum):
     OUTSIDE_GRID = 5
     UNSEEN = 6
     KEPT_OUT = 7
+    OFF_PATH = 8
     STARTING = 16
     RISING = 17
     RESET_DUE = 18
@@ -85,6 +86,7 @@ _SENTENCES = {
     Reason.OUTSIDE_GRID: "the way leaves the watched space",
     Reason.UNSEEN: "nobody sees the way",
     Reason.KEPT_OUT: "a zone that the machine is kept out of is in the way",
+    Reason.OFF_PATH: "the machine is not where the path that it means to take begins",
     Reason.STARTING: "nothing has been judged yet",
     Reason.RISING: "speed rises slowly",
     Reason.RESET_DUE: "a fault is over and waits for a person to reset",

@@ -12,7 +12,7 @@ from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.motion import Cause, Verdict
 
-COMPARED = ("space", "fault", "skew_ms", "oldest_age_ms")
+COMPARED = ("space", "fault", "skew_ms", "oldest_age_ms", "path", "off_path")
 """What is compared besides verdicts."""
 
 
