@@ -1,5 +1,6 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
@@ -23,6 +24,7 @@ from elbowroom.errors import InputError
 if TYPE_CHECKING:
     from elbowroom.monitor import Gate
     from elbowroom.monitor.blackbox.recorder import Recorder
+    from elbowroom.monitor.serving import Serving
     from elbowroom.sensing import MeantPaths
     from elbowroom.site import Site
     from elbowroom.sources import Room
@@ -72,6 +74,26 @@ PathFile = Annotated[
         "DisplayTrajectory. Its times count from the beginning, unless they are dates.",
     ),
 ]
+ServicePort = Annotated[
+    int | None,
+    typer.Option(
+        min=1024,
+        max=65535,
+        metavar="PORT",
+        help="Serve resets, the held signal, health and metrics by HTTP on this computer (docs/service.md).",
+    ),
+]
+TokenFile = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Of the service; made if it is not there. Its owner alone may be able to read it.",
+    ),
+]
+ServiceOrigin = Annotated[
+    list[str] | None,
+    typer.Option(metavar="ORIGIN", help="A page that may ask the service, such as http://127.0.0.1:8080."),
+]
 SkewMs = Annotated[
     float,
     typer.Option(
@@ -114,6 +136,9 @@ def monitor(
     record: RecordFile = None,
     black_box: BlackBoxFolder = None,
     path: PathFile = None,
+    service: ServicePort = None,
+    token: TokenFile = None,
+    service_origin: ServiceOrigin = None,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
@@ -139,6 +164,9 @@ def monitor(
     With --record, or --black-box (or a key `black_box` of the site), it is kept what
     came in and what was decided; `elbowroom replay FILE` judges it again. A full disk
     is told, and stops nothing.
+
+    With --service PORT whoever knows the token in --token FILE may reset and hold on
+    by HTTP, on this computer alone, and programs may ask how the monitor is.
 
     With --path it is judged in each pass how far the machine may go on with what it
     means to do, so that it can stop at any moment and rest in free space; where
@@ -173,7 +201,9 @@ def monitor(
         )
         shown = live(_skewed(room, skew_ms) if skew_ms else room)
         recorder = recorder_of(room, record, black_box)
-        run = Run(gate_of(room, gate, callback), recorder, _paths(path))
+        decides = gate_of(room, gate, callback)
+        serving = None if service is None else _serving(decides, service, token, service_origin or ())
+        run = Run(decides, recorder, _paths(path), serving)
         _watch(shown, seconds, (json, out), run)
 
 
@@ -213,6 +243,35 @@ class Run(NamedTuple):
     gate: "Gate | None"
     recorder: "Recorder | None"
     paths: "MeantPaths | None"
+    serving: "Serving | None"
+
+
+def _serving(gate: "Gate | None", port: int, token: Path | None, origins: Sequence[str]) -> "Serving":
+    """The control service of a gate; its token is made if it is not there.
+
+    Args:
+        gate: that it asks.
+        port: where it listens.
+        token: file of its token.
+        origins: of pages that may ask it.
+
+    Raises:
+        InputError: there is no gate or no token's file, or the token cannot be used.
+        PackageError: h11 is not installed.
+    """
+    from elbowroom.extras import package
+    from elbowroom.monitor.serving import Serving
+    from elbowroom.service.token import made_token, read_token
+
+    if gate is None:
+        raise InputError("service: there is no gate that it could ask; give --gate")
+    if token is None:
+        raise InputError("service: no token; give --token FILE, which is made if it is not there")
+    package("h11")
+    if not token.exists():
+        made_token(token)
+    read_token(token)
+    return Serving(gate, port, token, origins)
 
 
 def _paths(given: str | None) -> "MeantPaths | None":
@@ -264,6 +323,9 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
             recorder.cycle = loop.cycle
             faces.append(recorder)
             loop = replace(loop, checks=replace(loop.checks, looks=(*loop.checks.looks, recorder)))
+        if run.serving is not None:
+            run.serving.start()
+            faces.append(run.serving)
         with asked_to_end() as is_over:
             loop.run(faces, seconds, is_over)
         add(view.log.row())
