@@ -60,8 +60,17 @@ COLUMNS: Mapping[str, Mapping[str, Cell]] = {
         "passes": of("passes"),
         "camera frames": of("camera_frames", due=DUE["false alarms"]),
         "false alarms": of("false_alarms", due=DUE["false alarms"]),
+        "frames in doubt": of("frames_in_doubt", due=DUE["false alarms"]),
         "frames that said moved %": of("frames_that_said_moved_pct", 3),
         "frames that could not tell %": of("frames_that_could_not_tell_pct", 2),
+    },
+    "doubt": {
+        "knock": of("knock"),
+        **NOISE,
+        "cameras": of("runs"),
+        "in doubt at the first image": of("in_doubt_at_once", due=DUE["doubt"]),
+        "images without a doubt, after it": of("undoubted_frames", due=DUE["doubt"]),
+        "named": of("named", due=DUE["doubt"]),
     },
     "recorded": {
         "recording": of("site"),

@@ -13,6 +13,7 @@ PACKAGES = {
     "coal": ("exact mesh distance needs coal", "evaluate"),
     "cv2": ("calibration needs OpenCV", "calibrate"),
     "distributed": ("a cluster needs Dask", "cluster"),
+    "h11": ("the control service needs h11", "service"),
     "lz4": ("reading this bag, whose chunks are compressed with lz4, needs lz4", "bag"),
     "matplotlib": ("charts need Matplotlib", "evaluate"),
     "numba_cuda": ("running on a GPU needs numba-cuda", "cuda"),

@@ -148,7 +148,8 @@ def test_every_reason_says_something_and_keeps_its_number() -> None:
     assert all(reason.sentence for reason in Reason)
     assert {reason.name: reason.value for reason in Reason} == {
         "UNSAID": 0, "NONE": 1, "SURFACE": 2, "MACHINE": 3, "BLIND": 4, "OUTSIDE_GRID": 5, "UNSEEN": 6, "KEPT_OUT": 7,
-        "STARTING": 16, "RISING": 17, "RESET_DUE": 18, "ENDED": 19, "JOINTS_STARTING": 20,
+        "OFF_PATH": 8,
+        "STARTING": 16, "RISING": 17, "RESET_DUE": 18, "ENDED": 19, "JOINTS_STARTING": 20, "CAMERA_DOUBTED": 21,
         "FAULT": 32, "STALE": 33, "INPUT": 34, "WATCH": 35, "SILENCE": 36, "WATCHDOG": 37, "OUTPUT": 38,
         "LATCH_FILE": 39, "UNCLEAN_END": 40, "CLOCK": 41,
         "CAMERA_DISCONNECTED": 48, "CAMERA_GAPS": 49, "CAMERA_DAMAGED": 50, "CAMERA_WRONG_SIZE": 51, "CAMERA_CLOCK": 52,

@@ -14,6 +14,7 @@ from elbowroom.machine import Contact, Zone
 from elbowroom.motion import (
     Braking,
     Cause,
+    JointPath,
     Level,
     MachineState,
     Motion,
@@ -23,6 +24,7 @@ from elbowroom.motion import (
     check_stop,
     longest_safe_prefix,
 )
+from elbowroom.motion.course import way_of
 from elbowroom.reconstruct.free_space import FreeSpace
 from reference import motion_machines as machines
 from reference.motion_machines import HOME, nothing_in, room, touched_by_ball, touched_by_box
@@ -269,3 +271,12 @@ def test_laws_of_single_motions_hold_for_paths(arm):
     near = arm.near(Contact.box("bar", ("hand",), (0.80, -0.5, 0.5), (0.82, 0.5, 0.7)))
     declared = check_path(space_with(near), near, sliding(), HOME, FULL)
     assert (declared.cause, declared.first.other_link) == (Cause.SURFACE, "bar")
+
+
+def test_points_nearer_than_rounding_make_no_joint_endlessly_fast(arm):
+    steps = [0.4, 0.4 + 6e-17, 0.4 + 1.2e-16, 0.45]
+    path = JointPath([{"slide": at} for at in steps], 0.02)
+    way = way_of(arm, arm.positions(HOME), path)
+    assert np.isfinite(way.rates).all() and way.rates.max() <= 2 and way.length == pytest.approx(0.45)
+    tiny = JointPath([{"slide": 0.4}, {"turn": 1e-18}, {"turn": 2e-18}, {"slide": 0.45}], 0.02)
+    assert np.isfinite(way_of(arm, arm.positions(HOME), tiny).rates).all()

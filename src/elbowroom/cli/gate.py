@@ -49,6 +49,20 @@ def reset(folder: Folder, json: JsonFile = None) -> None:
         raise typer.Exit(1)
 
 
+@gate_app.command(epilog="Example: elbowroom gate token my_token")
+def token(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A new file, which its owner alone can read.")],
+) -> None:
+    """Make a token for the control service of a monitor (`monitor --service`).
+
+    Who can read the file may reset the gate and hold on, on this computer.
+    """
+    from elbowroom.service.token import made_token
+
+    made_token(file)
+    print(f"{file} written; whoever can read it may reset the gate")
+
+
 def _print(told: "Mapping[str, Any]") -> None:
     """What the monitor answered, in lines."""
     print(f"{told['site']}: {told['phase']}, {told['level']}, {100 * told['speed']:.0f} % of full speed")

@@ -1,8 +1,9 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
@@ -23,6 +24,8 @@ from elbowroom.errors import InputError
 if TYPE_CHECKING:
     from elbowroom.monitor import Gate
     from elbowroom.monitor.blackbox.recorder import Recorder
+    from elbowroom.monitor.serving import Serving
+    from elbowroom.sensing import MeantPaths
     from elbowroom.site import Site
     from elbowroom.sources import Room
 
@@ -62,6 +65,34 @@ BlackBoxFolder = Annotated[
     typer.Option(
         metavar="DIR", help="Keep the minute before each stop, and 10 s after it, as a file in this folder."
     ),
+]
+PathFile = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FILE[:TOPIC]",
+        help="What the machine means to do: a path (.csv, .yaml, .json), or a bag with JointTrajectory or "
+        "DisplayTrajectory. Its times count from the beginning, unless they are dates.",
+    ),
+]
+ServicePort = Annotated[
+    int | None,
+    typer.Option(
+        min=1024,
+        max=65535,
+        metavar="PORT",
+        help="Serve resets, the held signal, health and metrics by HTTP on this computer (docs/service.md).",
+    ),
+]
+TokenFile = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Of the service; made if it is not there. Its owner alone may be able to read it.",
+    ),
+]
+ServiceOrigin = Annotated[
+    list[str] | None,
+    typer.Option(metavar="ORIGIN", help="A page that may ask the service, such as http://127.0.0.1:8080."),
 ]
 SkewMs = Annotated[
     float,
@@ -104,6 +135,10 @@ def monitor(
     callback: Callback = None,
     record: RecordFile = None,
     black_box: BlackBoxFolder = None,
+    path: PathFile = None,
+    service: ServicePort = None,
+    token: TokenFile = None,
+    service_origin: ServiceOrigin = None,
     json: JsonFile = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
@@ -129,6 +164,14 @@ def monitor(
     With --record, or --black-box (or a key `black_box` of the site), it is kept what
     came in and what was decided; `elbowroom replay FILE` judges it again. A full disk
     is told, and stops nothing.
+
+    With --service PORT whoever knows the token in --token FILE may reset and hold on
+    by HTTP, on this computer alone, and programs may ask how the monitor is.
+
+    With --path it is judged in each pass how far the machine may go on with what it
+    means to do, so that it can stop at any moment and rest in free space; where
+    that is not far, the motions that the path makes slow down or stop. A machine
+    that is not on its path stops.
 
     Not a certified safety function.
     """
@@ -158,7 +201,10 @@ def monitor(
         )
         shown = live(_skewed(room, skew_ms) if skew_ms else room)
         recorder = recorder_of(room, record, black_box)
-        _watch(shown, seconds, json, out, gate_of(room, gate, callback), recorder)
+        decides = gate_of(room, gate, callback)
+        serving = None if service is None else _serving(decides, service, token, service_origin or ())
+        run = Run(decides, recorder, _paths(path), serving)
+        _watch(shown, seconds, (json, out), run)
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -191,15 +237,55 @@ def _skewed(room: "Room", skew_ms: float) -> "Room":
     return replace(room, source=replace(room.source, skew_ms=skew_ms))
 
 
-def _watch(
-    room: "Room",
-    seconds: float | None,
-    json_file: Path | None,
-    out_dir: Path | None,
-    gate: "Gate | None",
-    recorder: "Recorder | None",
-) -> None:
-    """Runs the loop over a room, with the faces that were asked for."""
+class Run(NamedTuple):
+    """What takes part in a run beside the room."""
+
+    gate: "Gate | None"
+    recorder: "Recorder | None"
+    paths: "MeantPaths | None"
+    serving: "Serving | None"
+
+
+def _serving(gate: "Gate | None", port: int, token: Path | None, origins: Sequence[str]) -> "Serving":
+    """The control service of a gate; its token is made if it is not there.
+
+    Args:
+        gate: that it asks.
+        port: where it listens.
+        token: file of its token.
+        origins: of pages that may ask it.
+
+    Raises:
+        InputError: there is no gate or no token's file, or the token cannot be used.
+        PackageError: h11 is not installed.
+    """
+    from elbowroom.extras import package
+    from elbowroom.monitor.serving import Serving
+    from elbowroom.service.token import made_token, read_token
+
+    if gate is None:
+        raise InputError("service: there is no gate that it could ask; give --gate")
+    if token is None:
+        raise InputError("service: no token; give --token FILE, which is made if it is not there")
+    package("h11")
+    if not token.exists():
+        made_token(token)
+    read_token(token)
+    return Serving(gate, port, token, origins)
+
+
+def _paths(given: str | None) -> "MeantPaths | None":
+    """What the machine means to do, of a file, or of a topic of one."""
+    if given is None:
+        return None
+    from elbowroom.sources.meant import meant_paths
+
+    file, _, topic = given.partition(":") if not Path(given).exists() else (given, "", "")
+    return meant_paths(Path(file), topic or None)
+
+
+def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path | None], run: Run) -> None:
+    """Runs the loop over a room, with the faces that were asked for; files: of rows, and of pictures."""
     from rich.console import Console
 
     from elbowroom.cli.progress import Steps
@@ -213,6 +299,7 @@ def _watch(
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
+    (json_file, out_dir), recorder = files, run.recorder
     unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
@@ -228,7 +315,7 @@ def _watch(
             simulator=room.site.simulated is not None,
         )
         with Steps(console, 4) as steps:
-            loop = replace(started(room, steps.begin), gate=gate)
+            loop = replace(started(room, steps.begin), gate=run.gate, paths=run.paths)
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]
@@ -236,6 +323,9 @@ def _watch(
             recorder.cycle = loop.cycle
             faces.append(recorder)
             loop = replace(loop, checks=replace(loop.checks, looks=(*loop.checks.looks, recorder)))
+        if run.serving is not None:
+            run.serving.start()
+            faces.append(run.serving)
         with asked_to_end() as is_over:
             loop.run(faces, seconds, is_over)
         add(view.log.row())

@@ -19,11 +19,13 @@ class Reason(IntEnum):
     OUTSIDE_GRID = 5
     UNSEEN = 6
     KEPT_OUT = 7
+    OFF_PATH = 8
     STARTING = 16
     RISING = 17
     RESET_DUE = 18
     ENDED = 19
     JOINTS_STARTING = 20
+    CAMERA_DOUBTED = 21
     FAULT = 32
     STALE = 33
     INPUT = 34
@@ -84,6 +86,7 @@ _SENTENCES = {
     Reason.OUTSIDE_GRID: "the way leaves the watched space",
     Reason.UNSEEN: "nobody sees the way",
     Reason.KEPT_OUT: "a zone that the machine is kept out of is in the way",
+    Reason.OFF_PATH: "the machine is not where the path that it means to take begins",
     Reason.STARTING: "nothing has been judged yet",
     Reason.RISING: "speed rises slowly",
     Reason.RESET_DUE: "a fault is over and waits for a person to reset",
@@ -99,6 +102,7 @@ _SENTENCES = {
     Reason.UNCLEAN_END: "the monitor ended last time without being asked to",
     Reason.CLOCK: "the monitor's clock went back",
     Reason.JOINTS_STARTING: "where the machine is has not been said yet",
+    Reason.CAMERA_DOUBTED: "a camera may be elsewhere than where it was commissioned",
     Reason.CAMERA_DISCONNECTED: "a camera gives no images any more",
     Reason.CAMERA_GAPS: "a camera loses images",
     Reason.CAMERA_DAMAGED: "a camera's images cannot be read",

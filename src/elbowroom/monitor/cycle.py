@@ -2,11 +2,13 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from elbowroom.errors import InputError
+from elbowroom.errors import ElbowroomError, InputError, JointsError, MachineError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.monitor.result import CycleResult
@@ -15,20 +17,40 @@ from elbowroom.motion import (
     Braking,
     Cause,
     Distances,
+    JointPath,
     Level,
     MachineState,
     Motion,
     Override,
     PathVerdict,
+    Trajectory,
     Verdict,
+    asked_of,
     blocks_in_reach,
     check_motions,
     check_moving,
+    check_rest,
     link_distances,
+    rest_of,
     with_creep,
+    with_path,
 )
+from elbowroom.motion.meant import Rest
 from elbowroom.reconstruct import FreeSpace, Terms, free_space_of
 from elbowroom.sensing import Snapshot
+
+
+class Meant(NamedTuple):
+    """What a path leaves of verdicts.
+
+    Fields:
+        verdicts: no milder than before.
+        path, off_path: as of `CycleResult`.
+    """
+
+    verdicts: Sequence[Verdict]
+    path: PathVerdict | None = None
+    off_path: str | None = None
 
 
 @dataclass(slots=True, eq=False)
@@ -88,7 +110,8 @@ class Cycle:
             space = self._space_of(snapshot, stage_ms)
             with timed("motion", stage_ms):
                 checked, stopping = self._checked(space, snapshot)
-                given = _usable(checked)
+            meant = self._meant(space, snapshot, checked, stage_ms)
+            given = _usable(meant.verdicts)
             distances = self._distances(space, snapshot, stage_ms)
             late = self._late(snapshot, begun_ns)
         except Exception as error:  # at this border a fault becomes a decision: stop
@@ -110,6 +133,8 @@ class Cycle:
             distances=distances,
             stopping=stopping,
             velocities=snapshot.velocities or None,
+            path=meant.path,
+            off_path=meant.off_path,
         )
 
     def failed(
@@ -138,7 +163,8 @@ class Cycle:
         reach = None
         if self.focused:
             joints, around_m = snapshot.joints or {}, self.look_m or 0.0
-            reach = blocks_in_reach(self.grid, self.machine, joints, self.motions, around_m)
+            motions: tuple[Motion | JointPath, ...] = (*self.motions, *self._path_asked(snapshot))
+            reach = blocks_in_reach(self.grid, self.machine, joints, motions, around_m)
         return free_space_of(
             self.grid,
             self.cameras,
@@ -160,6 +186,47 @@ class Cycle:
         if self.override is None:
             return verdicts, stopping
         return with_creep(space, self.machine, joints, verdicts, self.override), stopping
+
+    def _rest(self, snapshot: Snapshot) -> Rest | None:
+        """What is left of the path that the machine means to take; None: none is said, or it is over.
+
+        Raises:
+            JointsError: it is no path of this machine.
+        """
+        at_ns = snapshot.moment_ns if snapshot.joints_ns is None else snapshot.joints_ns
+        if snapshot.path is None or at_ns is None:
+            return None
+        if self.braking is None:
+            raise JointsError("path: it is not known how the machine comes to rest")
+        meant = snapshot.path
+        times_s = (meant.stamps_ns - at_ns) / 1e9
+        whole = Trajectory(meant.joint_names, times_s, meant.positions, meant.velocities)
+        return rest_of(whole, snapshot.joints or {})
+
+    def _path_asked(self, snapshot: Snapshot) -> tuple[JointPath, ...]:
+        """The path as a motion, so that space is looked at where it leads; what is wrong with it is said later."""
+        with suppress(ElbowroomError):
+            rest = self._rest(snapshot)
+            if rest is not None and self.braking is not None:
+                return (asked_of(self.machine, snapshot.joints or {}, rest, self.braking),)
+        return ()
+
+    def _meant(
+        self, space: FreeSpace, snapshot: Snapshot, verdicts: Sequence[Verdict], stage_ms: dict[str, float]
+    ) -> Meant:
+        """What is left of the verdicts by the path that the machine means to take."""
+        if snapshot.path is None:
+            return Meant(verdicts)
+        with timed("path", stage_ms):
+            try:
+                rest = self._rest(snapshot)
+                if rest is None or self.braking is None:
+                    return Meant(verdicts)
+                path = check_rest(space, self.machine, snapshot.joints or {}, rest, self.braking)
+            except (JointsError, MachineError) as error:
+                stops = [self._stop(motion, Cause.OFF_PATH) for motion in self.motions]
+                return Meant(stops, None, str(error))
+        return Meant(with_path(verdicts, path, rest), path)
 
     def _speeds(self, velocities: Mapping[str, float]) -> Mapping[str, float] | None:
         """Of the joints that have a speed; None: of one of them it is not known."""

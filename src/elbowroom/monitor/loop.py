@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.face import Face, Pass
@@ -15,7 +15,7 @@ from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.separation.margins import Margins
 from elbowroom.monitor.separation.separating import Separating
 from elbowroom.monitor.space_cycle import SpaceCycle
-from elbowroom.sensing import Snapshot
+from elbowroom.sensing import MeantPaths, Snapshot
 from elbowroom.sources import Room, Source
 from elbowroom.sources.pace import SLACK_S
 
@@ -35,6 +35,7 @@ class Loop:
             waits, unless the run ends before; None: nobody waits.
         gate: decides after each pass, before any face is told, and stops the machine at the end; None: nobody does.
         separating: measures reaction times and says how far the machine is from what it may hit; None: nobody does.
+        paths: what the machine means to do; None: nobody says, or the source does.
     """
 
     room: Room
@@ -43,6 +44,7 @@ class Loop:
     pace: Callable[[Snapshot], float | None] | None = None
     gate: Gate | None = None
     separating: Separating | None = None
+    paths: MeantPaths | None = None
 
     def run(
         self,
@@ -74,7 +76,7 @@ class Loop:
             try:
                 for face in faces:
                     face.begin(self.room)
-                for snapshot, source_ms in timed_source(self.room.source):
+                for snapshot, source_ms in timed_source(self._meaning()):
                     if not self._waited(snapshot, until, is_over):
                         break
                     begun_ns = self._time_ns()
@@ -98,6 +100,17 @@ class Loop:
         if not known.is_placed:
             return self.cycle.unplaced(snapshot).knowing(known)
         return self.cycle.run(without_sick(snapshot, known.sick), begun_ns).knowing(known)
+
+    def _meaning(self) -> Iterator[Snapshot]:
+        """What the source gives, each with what the machine means to do."""
+        first_ns = None
+        for snapshot in self.room.source:
+            now_ns = snapshot.moment_ns
+            first_ns = now_ns if first_ns is None else first_ns
+            if self.paths is None or now_ns is None or first_ns is None:
+                yield snapshot
+            else:
+                yield replace(snapshot, path=self.paths.at(now_ns, first_ns))
 
     def _decision(self, result: CycleResult) -> Decision | None:
         """What the gate makes of a pass."""

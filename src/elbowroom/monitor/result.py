@@ -35,6 +35,8 @@ class CycleResult:
         blind: that no camera gave anything that counts, so that every verdict is stop, one sentence; None: one did.
         stopping: whether the machine, as fast as it is, would come to rest in free space; None: that is not known.
         velocities: how fast its joints are, by name [m/s or rad/s]; None: that is not known.
+        path: how far it may follow the path that it means to take; its time 0 is the pass's. None: none was said.
+        off_path: why that path is none from where it is, so that every verdict is stop, one sentence; None: it is one.
         given: names of the cameras whose frames were judged; None: nothing was.
     """
 
@@ -55,6 +57,8 @@ class CycleResult:
     distances: Distances | None = None
     stopping: PathVerdict | None = None
     velocities: Mapping[str, float] | None = None
+    path: PathVerdict | None = None
+    off_path: str | None = None
 
     def knowing(self, known: Known) -> Self:
         """The same pass with what is known of cameras and machine: every verdict is stop if that failed, or says so."""

@@ -106,6 +106,10 @@ def cycle_rows(result: CycleResult, source_ms: float) -> list[dict[str, Any]]:
         "findings": [asdict(finding) for finding in result.findings],
         "sick": [sick_row(each) for each in result.sick],
     }
+    if result.path is not None:
+        cycle["path"] = result.path.row()
+    if result.off_path is not None:
+        cycle["off_path"] = result.off_path
     if not result.verdicts and result.space is not None:
         cycle |= shares_pct(result.space)
     return [cycle, *({"kind": "verdict", **shared, **verdict.row()} for verdict in result.verdicts)]

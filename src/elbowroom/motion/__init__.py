@@ -6,6 +6,7 @@ from elbowroom.motion.check import check_motion, check_motions, joint_motions
 from elbowroom.motion.creep import Override, with_creep
 from elbowroom.motion.distances import Distances, LinkDistances, Nearest, link_distances
 from elbowroom.motion.focus import blocks_in_reach
+from elbowroom.motion.meant import asked_of, check_rest, rest_of, with_path
 from elbowroom.motion.motion import JointPath, Motion
 from elbowroom.motion.path import Blocked, PathVerdict, check_path, longest_safe_prefix
 from elbowroom.motion.path_file import read_path
@@ -29,12 +30,14 @@ __all__ = [
     "PathVerdict",
     "Trajectory",
     "Verdict",
+    "asked_of",
     "blocks_in_reach",
     "braking_distance",
     "check_motion",
     "check_motions",
     "check_moving",
     "check_path",
+    "check_rest",
     "check_stop",
     "joint_motions",
     "link_distances",
@@ -42,5 +45,7 @@ __all__ = [
     "machine_speed",
     "most_cautious",
     "read_path",
+    "rest_of",
     "with_creep",
+    "with_path",
 ]

@@ -74,7 +74,7 @@ def _of_path(machine: Machine, start: NDArray[np.float64], path: JointPath) -> W
         here |= waypoint
         knot = machine.positions(here)
         step = float(np.abs(knot - knots[-1]).max(initial=0.0))
-        if step > 0:
+        if travel[-1] + step > travel[-1]:  # a step that is lost in rounding goes with the next one
             knots.append(knot)
             travel.append(travel[-1] + step)
     units = {machine.joint(name).unit for point in path.waypoints for name in point}

@@ -19,6 +19,7 @@ then the first. No verdict at all is an error, since nothing seen means stop.
 | STALE              | no: what is known is of a while ago                        |
 | INPUT              | no: what came in cannot be meant so                        |
 | WATCH              | no: what is known comes from a camera that is elsewhere    |
+| OFF_PATH           | no: what the machine means to do is not known              |
 | SURFACE            | no                                                         |
 | MACHINE            | no                                                         |
 | KEPT_OUT           | no: a person said so                                       |
@@ -78,11 +79,14 @@ class Cause(Enum):
     STALE = "what was seen is too old by now"
     INPUT = "what came in cannot be right"
     WATCH = "a camera or the machine is not where it should be"
+    OFF_PATH = "the machine is not where the path that it means to take begins"
 
     @property
     def rank(self) -> int:
         """0 for a fault, rising to 4 for what was seen: the lower, the more cautious."""
-        return {Cause.FAULT: 0, Cause.STALE: 1, Cause.INPUT: 2, Cause.WATCH: 3}.get(self, 4)
+        return {Cause.FAULT: 0, Cause.STALE: 1, Cause.INPUT: 2, Cause.WATCH: 3, Cause.OFF_PATH: 3}.get(
+            self, 4
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.noise import NOISE_PRESETS, NoiseModel
 from elbowroom.sensing.frame import DepthFrame
 from elbowroom.sensing.joints import JointRecord
+from elbowroom.sensing.meant import MeantPath, MeantPaths
 from elbowroom.sensing.rectify import rectified, rectify
 from elbowroom.sensing.snapshot import Snapshot
 
@@ -12,6 +13,8 @@ __all__ = [
     "DepthFrame",
     "JointRecord",
     "Margin",
+    "MeantPath",
+    "MeantPaths",
     "NoiseModel",
     "Snapshot",
     "rectified",

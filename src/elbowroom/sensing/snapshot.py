@@ -7,6 +7,7 @@ from typing import Self
 from elbowroom.errors import InputError
 from elbowroom.sensing.frame import DepthFrame
 from elbowroom.sensing.joints import JointRecord
+from elbowroom.sensing.meant import MeantPath
 
 Positions = Mapping[str, float]
 """Joint positions by name [m or rad]."""
@@ -27,6 +28,7 @@ class Snapshot:
         joints_ns: when `joints` were so [ns, the clock of the frames]; None: nobody says.
         commanded: at which speeds the machine is commanded to move, by joint [m/s or rad/s]; None: nobody says.
         velocities: how fast joints are now, by name [m/s or rad/s]; of a joint that is missing nobody knows.
+        path: what the machine means to do, as far as it is said; None: nothing is, or nothing is left of it.
     """
 
     frames: tuple[DepthFrame, ...]
@@ -37,6 +39,7 @@ class Snapshot:
     joints_ns: int | None = None
     commanded: Positions | None = None
     velocities: Positions = field(default_factory=dict)
+    path: MeantPath | None = None
 
     @classmethod
     def taken(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from elbowroom.evaluate.faults import faults
+from elbowroom.evaluate.faults import faults, outside
 from elbowroom.evaluate.faults.kinds import KINDS, kind_named
 from elbowroom.evaluate.faults.receiver import Receiver
 from elbowroom.guard.reason import Reason
@@ -20,7 +20,7 @@ def test_every_kind_that_is_asked_for_is_there_and_names_reasons_that_are():
     known = {reason.name.lower() for reason in Reason if reason.is_fault}
     for kind in KINDS:
         assert {cause.split()[0] for cause in kind.causes} <= known, kind.name
-        assert (kind.make is None) == (kind.name in faults.FROM_OUTSIDE), kind.name
+        assert (kind.make is None) == (kind.name in outside.FROM_OUTSIDE), kind.name
 
 
 def test_what_passes_silently_or_is_misnamed_is_counted():

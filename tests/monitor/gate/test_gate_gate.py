@@ -471,3 +471,12 @@ def test_nothing_moves_while_a_camera_has_not_given_its_first_image(run: Run) ->
     decision = run.passes(5, sick=(awaited,))
     assert decision.level is Level.STOP and decision.reason is Reason.STARTING and not decision.latched
     assert run.passes(5).speed > 0
+
+
+def test_nothing_moves_while_a_camera_may_be_elsewhere_and_nothing_latches(run: Run) -> None:
+    assert run.passes(5).speed > 0
+    doubted = Sick(HealthCause.CAMERA_DOUBTED, "cam1", "camera cam1 may be elsewhere", "the next images")
+    decision = run.passes(1, sick=(doubted,))
+    assert decision.speed == 0 and decision.reason is Reason.CAMERA_DOUBTED and not decision.latched
+    assert doubted.leaves_out and not doubted.stops and not doubted.latches
+    assert run.passes(5).speed > 0

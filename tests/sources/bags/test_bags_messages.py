@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap_ros2.writer import Writer as Ros2Writer
 
-from elbowroom.errors import FrameError
-from elbowroom.sources.bags import messages
+from elbowroom.errors import BagError, FrameError
+from elbowroom.sources.bags import messages, trajectories
 from elbowroom.sources.bags.bag import Bag
 from elbowroom.sources.bags.cdr import Cdr
 from elbowroom.sources.bags.depth import depth_of
@@ -129,3 +129,43 @@ def test_lengths_are_checked_before_anything_is_made_of_them():
     for read in (Cdr.reals, Cdr.texts, Cdr.octets, Cdr.text):
         with pytest.raises(messages.BagError, match=r"4,294,967,295 values follow"):
             read(Cdr(huge, "m"))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.data(), st.lists(names, min_size=1, max_size=4), st.booleans(), st.booleans())
+def test_trajectories_of_every_alignment_beside_rosbags(data, joints, with_velocities, shown):
+    row = st.lists(reals, min_size=len(joints), max_size=len(joints)).map(np.array)
+    points = [
+        bags.made(
+            "trajectory_msgs/msg/JointTrajectoryPoint",
+            positions=data.draw(row),
+            velocities=data.draw(row) if with_velocities else np.zeros(0),
+            accelerations=data.draw(row),
+            effort=np.zeros(0),
+            time_from_start=bags.made("builtin_interfaces/msg/Duration", sec=n, nanosec=n * 7),
+        )
+        for n in range(data.draw(st.integers(1, 4)))
+    ]
+    sent = bags.made(
+        trajectories.JOINT_TRAJECTORY, header=bags.header(5, "base"), joint_names=joints, points=points
+    )
+    raw, type_ = (
+        bytes(bags.STORE.serialize_cdr(sent, trajectories.JOINT_TRAJECTORY)),
+        trajectories.JOINT_TRAJECTORY,
+    )
+    if (
+        shown
+    ):  # MoveIt's message begins with a model's name and how many paths there are; here both fill eight bytes
+        raw, type_ = (
+            raw[:4] + struct.pack("<I4sII", 4, b"arm\0", 1, 0)[:12] + raw[4:],
+            trajectories.DISPLAY_TRAJECTORY,
+        )
+    if shown and len(raw[4:16]) % 8:
+        return
+    found = trajectories.planned_of(type_, raw, "m")
+    assert found.stamp_ns == 5 and list(found.names) == joints
+    assert found.since_ns == [n * 1_000_000_007 for n in range(len(points))]
+    assert found.positions.tolist() == [point.positions.tolist() for point in points]
+    assert (found.velocities is None) is not with_velocities
+    with pytest.raises(BagError):
+        trajectories.planned_of(type_, raw[:-5], "m")

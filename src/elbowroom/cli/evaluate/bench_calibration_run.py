@@ -35,6 +35,8 @@ SHOWN = (
     "runs",
     "named",
     "others_named",
+    "in_doubt_at_once",
+    "frames_in_doubt",
     "found",
     "frames_max",
     "cameras_named",

@@ -13,7 +13,14 @@ QUICK, QUICK_DEADLINE_MS = 1, 400.0
 
 
 def faults(
-    times: Annotated[int, typer.Option(min=1, metavar="COUNT", help="How often each kind is thrown.")] = 26,
+    times: Annotated[
+        int,
+        typer.Option(
+            min=1,
+            metavar="COUNT",
+            help="How often each kind is thrown; half as often one after which the monitor is started again.",
+        ),
+    ] = 26,
     quick: Annotated[
         bool,
         typer.Option("--quick", help="Each kind once, on a computer that may be busy: times say nothing."),
@@ -33,13 +40,17 @@ def faults(
     moment. After it has stopped it ends, its cause has to clear, and a reset lets
     the machine move again. Times are from when the first wrong thing was handed
     to the monitor to when the reader reads stop.
+
+    The whole of it throws about 1,000 faults in some 20 minutes, and wants a
+    computer that does nothing else. After Ctrl-C the fault at hand comes to its
+    end, and what was measured is shown and written.
     """
     from elbowroom.cli.evaluate.measured import watched
-    from elbowroom.cli.evaluate.shown import as_table, text
+    from elbowroom.cli.evaluate.shown import as_table, print_, text
+    from elbowroom.cli.interrupt import asked_to_end
     from elbowroom.evaluate.due import sentence
-    from elbowroom.evaluate.faults.faults import DUE, fault_rows, fault_summary
+    from elbowroom.evaluate.faults.faults import DUE, fault_rows, fault_summary, turns_of
     from elbowroom.evaluate.faults.full_disk import full_disk_rows
-    from elbowroom.evaluate.faults.kinds import KINDS
     from elbowroom.files.json_rows import json_rows
 
     many = QUICK if quick else times
@@ -58,10 +69,17 @@ def faults(
         },
         sentence(DUE),
     )
-    with json_rows(json) as add:  # a folder that is not there is said at once
-        deadline_ms, disks = QUICK_DEADLINE_MS if quick else deadline, min(many, DISKS)
+    deadline_ms, disks = QUICK_DEADLINE_MS if quick else deadline, min(many, DISKS)
+    total, rows = len(turns_of(many)) + disks, []
+    with (
+        json_rows(json) as add,  # a folder that is not there is said at once
+        asked_to_end("what was measured until now is shown and written") as is_over,
+    ):
         found = chain(fault_rows(many, seed, deadline_ms), full_disk_rows(disks, seed, deadline_ms))
-        rows = list(watched("faults", found, many * len(KINDS) + disks))
+        for row in watched("faults", found, total):
+            rows.append(row)
+            if is_over():
+                break
         summary = fault_summary(rows)
         for row in (
             *[row for row in rows if not (row["stopped"] and row["named"]) and row["shown"]],
@@ -69,3 +87,5 @@ def faults(
         ):
             add(row)
     show(summary)
+    if len(rows) < total:
+        print_(f"Ended after {len(rows)} of {total} faults.")

@@ -18,7 +18,12 @@ DUE: Mapping[str, tuple[Due, ...]] = {
     ),
     "wrong joint": (Due("cameras_named", "≤", 0),),
     "furniture": (Due("cameras_named", "≤", 0),),
-    "false alarms": (Due("camera_frames", "≥", 10_000), Due("false_alarms", "≤", 0)),
+    "false alarms": (
+        Due("camera_frames", "≥", 10_000),
+        Due("false_alarms", "≤", 0),
+        Due("frames_in_doubt", "≤", 0),
+    ),
+    "doubt": (Due("in_doubt_at_once", "≥", _runs), Due("undoubted_frames", "≤", 0), Due("named", "≥", _runs)),
     "recorded": (Due("others_named", "≤", 0),),
     "watch time": (Due("median_ms", "≤", 3.0),),
 }

@@ -57,7 +57,7 @@ def false_alarm_row(scene: Commissioned, passes: int, tell: Tell) -> dict[str, A
         tell: what is being done.
     """
     alarms: list[str] = []
-    watch, listened, said_moved, unsure = scene.watch(), 0, 0, 0
+    watch, listened, said_moved, unsure, doubts = scene.watch(), 0, 0, 0, 0
     frames = frames_of(scene.cameras, scene.room.at(400.0), 0)
     for k in range(passes):
         if k % 50 == 0:
@@ -70,6 +70,7 @@ def false_alarm_row(scene: Commissioned, passes: int, tell: Tell) -> dict[str, A
         listened += len(heard)
         said_moved += sum(condition is Condition.MOVED for condition in heard)
         unsure += sum(condition not in (Condition.MOVED, Condition.STILL) for condition in heard)
+        doubts += sum(camera.doubt is not None for camera in health.cameras[turn])
         if health.stops:
             alarms.extend(health.stops.values())
             watch = scene.watch()
@@ -81,6 +82,7 @@ def false_alarm_row(scene: Commissioned, passes: int, tell: Tell) -> dict[str, A
         "people": len(scene.room.staff),
         "camera_frames": listened,
         "false_alarms": len(alarms),
+        "frames_in_doubt": doubts,
         "reasons": alarms,
         "frames_that_said_moved_pct": 100 * said_moved / listened,
         "frames_that_could_not_tell_pct": 100 * unsure / listened,

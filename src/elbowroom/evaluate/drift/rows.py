@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from elbowroom.errors import InputError
+from elbowroom.evaluate.drift.doubts import doubt_rows
 from elbowroom.evaluate.drift.false_alarms import false_alarm_row, furniture_row
 from elbowroom.evaluate.drift.knocks import knock_rows, not_shown_rows
 from elbowroom.evaluate.drift.pass_time import time_row
@@ -31,6 +32,7 @@ def drift_rows(tell: Tell, *, passes: int = 1000, examples: Path = EXAMPLES) -> 
         tell(f"commissioning, noise {noise}")
         scene = commissioned(noise)
         yield from knock_rows(scene, tell)
+        yield from doubt_rows(scene, tell)
         yield from not_shown_rows(scene)
         yield from joint_rows(scene, tell)
         yield furniture_row(scene, tell)

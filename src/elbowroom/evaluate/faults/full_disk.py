@@ -10,7 +10,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from elbowroom.errors import ElbowroomError
-from elbowroom.evaluate.faults.faults import Cell, thrown
+from elbowroom.evaluate.faults.cell import Cell
+from elbowroom.evaluate.faults.faults import thrown
 from elbowroom.evaluate.faults.kinds import kind_named
 from elbowroom.monitor.blackbox.recording import Recording
 

@@ -17,6 +17,7 @@ from elbowroom.sensing import DepthFrame, Snapshot
 Depth = NDArray[np.float32]
 GAPS = ("camera_gaps", "camera_disconnected")
 LATE = (*GAPS, "camera_too_old")
+PUSHED_M = 0.06
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,8 +156,17 @@ def _swapped(camera: str, chance: standard.Random) -> Wrong:
 
 
 def _turned(camera: str, chance: standard.Random) -> Wrong:
+    """About one of its axes, to one side or the other."""
+    pose, turn = np.eye(4), [0.0, 0.0, 0.0]
+    turn[chance.randrange(3)] = math.radians(chance.choice([-4, 4]))
+    pose[:3, :3] = Rotation.from_rotvec(turn).as_matrix()
+    return OfPlace(camera, pose)
+
+
+def _pushed(camera: str, chance: standard.Random) -> Wrong:
+    """Along one of its axes, to one side or the other."""
     pose = np.eye(4)
-    pose[:3, :3] = Rotation.from_rotvec([0.0, math.radians(chance.choice([-4, 4])), 0.0]).as_matrix()
+    pose[chance.randrange(3), 3] = chance.choice([-PUSHED_M, PUSHED_M])
     return OfPlace(camera, pose)
 
 
@@ -264,6 +274,7 @@ KINDS: Sequence[Kind] = (
     Kind("delayed by 0.4 s", "camera", LATE, _images(_delayed)),
     Kind("intermittent", "camera", LATE, _images(_intermittent)),
     Kind("decalibrated: turned by 4 degrees", "camera", ("camera_moved", "watch"), _turned, True, 10.0),
+    Kind("decalibrated: pushed by 6 cm", "camera", ("camera_moved", "watch"), _pushed, True, 10.0),
     Kind("covered", "camera", ("camera_covered",), _depth(_taken(1.0))),
     Kind("covered by half", "camera", ("camera_partly_covered",), _depth(_taken(0.5))),
     Kind("swapped", "camera", ("camera_swapped",), _swapped),

@@ -9,8 +9,10 @@ grows beyond BYTES.
 """
 
 import json
+import os
 import random
 import resource
+import signal
 import sys
 import threading
 import time
@@ -109,9 +111,10 @@ HELD: list[Any] = []
 
 
 def listen(live: Live) -> None:
-    """Does what is asked, line by line, in a thread of its own."""
+    """Does what is asked, line by line, in a thread of its own; ends with whoever asks."""
     for line in sys.stdin:
         do(json.loads(line), live)
+    os.kill(os.getpid(), signal.SIGKILL)
 
 
 def main() -> None:

@@ -16,7 +16,7 @@ from elbowroom.monitor.health.streams.told import sick_row
 from elbowroom.monitor.result import CycleResult
 from elbowroom.motion import Distances, Level, Verdict
 from elbowroom.reconstruct import FreeSpace
-from elbowroom.sensing import DepthFrame
+from elbowroom.sensing import DepthFrame, MeantPath
 from elbowroom.wire import ros_messages, ros_schemas
 from elbowroom.wire.depth_codec import Units, packed_pieces
 from elbowroom.wire.mcap_writer import Told
@@ -173,6 +173,7 @@ def pass_record(moment: Moment, frames: Sequence[tuple[str, int]]) -> dict[str, 
         "joints_ns": snapshot.joints_ns,
         "commanded": None if snapshot.commanded is None else _positions(snapshot.commanded),
         "velocities": _positions(snapshot.velocities),
+        **({} if snapshot.path is None else {"path": _path(snapshot.path)}),
     }
     return {
         "sequence": result.sequence,
@@ -185,9 +186,23 @@ def pass_record(moment: Moment, frames: Sequence[tuple[str, int]]) -> dict[str, 
     }
 
 
+def _path(path: MeantPath) -> dict[str, Any]:
+    """What the machine means to do, numbers to the last bit."""
+    return {
+        "joint_names": list(path.joint_names),
+        "stamps_ns": path.stamps_ns.tolist(),
+        "positions": path.positions.tolist(),
+        "velocities": None if path.velocities is None else path.velocities.tolist(),
+        "said_ns": path.said_ns,
+    }
+
+
 def judged(result: CycleResult) -> dict[str, Any]:
     """What a pass came to, in what JSON knows, numbers to the last bit."""
+    path = {} if result.path is None else {"path": plain(result.path.row())}
     return {
+        **path,
+        **({} if result.off_path is None else {"off_path": result.off_path}),
         "verdicts": [plain(verdict.row()) for verdict in result.verdicts],
         "stopping": None if result.stopping is None else plain(result.stopping.row()),
         "space": None if result.space is None else space_sum(result.space),

@@ -14,7 +14,7 @@ from elbowroom.errors import BagError, ElbowroomError
 from elbowroom.monitor.blackbox.configuration import CONFIGURATION, SITE, Configuration
 from elbowroom.monitor.blackbox.kept_pass import PASS, depth_topic
 from elbowroom.monitor.blackbox.kept_values import made
-from elbowroom.sensing import DepthFrame, Snapshot
+from elbowroom.sensing import DepthFrame, MeantPath, Snapshot
 from elbowroom.wire.cdr_reader import packed_image_of
 from elbowroom.wire.chained_file import ChainedFile, Read
 from elbowroom.wire.depth_codec import head_of, unpack_depth, unpack_units
@@ -170,6 +170,7 @@ class Recording:
                 given["joints_ns"],
                 None if given["commanded"] is None else _positions(given["commanded"]),
                 _positions(given["velocities"]),
+                MeantPath(**given["path"]) if given.get("path") is not None else None,
             )
             numbers = int(told["sequence"]), int(told["wall_ns"]), int(told["lost"])
             return RecordedPass(number, *numbers, snapshot, told["judged"], told["gate"], told.get("margins"))

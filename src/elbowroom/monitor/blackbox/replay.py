@@ -14,7 +14,7 @@ from elbowroom.monitor.separation.margins import Margins
 from elbowroom.monitor.space_cycle import SpaceCycle
 from elbowroom.motion import Cause, Verdict
 
-COMPARED = ("space", "fault", "skew_ms", "oldest_age_ms", "distances")
+COMPARED = ("space", "fault", "skew_ms", "oldest_age_ms", "path", "off_path", "distances")
 """What is compared besides verdicts, as far as it was kept: earlier versions kept no distances."""
 MEASURED = "reaction_ms"
 """Of margins what was measured, and is taken as it was kept."""

@@ -3,11 +3,12 @@
 import math
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 from elbowroom.errors import InputError
 from elbowroom.guard.reason import Reason
+from elbowroom.monitor.health.streams.cause import HealthCause, Sick
 from elbowroom.motion import Level, Verdict
 
 
@@ -106,3 +107,23 @@ def claims_of(verdicts: Sequence[Verdict], low_speed: float) -> tuple[Claim, ...
         with suppress(InputError):
             claims.append(Claim.of(verdict, low_speed))
     return tuple(claims)
+
+
+def held_back(claims: Sequence[Claim], sick: Sequence[Sick]) -> tuple[Claim, ...]:
+    """The same, or stop: while a camera is awaited, and while one may be elsewhere, nothing moves and nothing latches.
+
+    What leads out of what the machine stands in is judged without a camera in doubt, and stays.
+
+    Args:
+        claims: of a pass.
+        sick: what is wrong with which source.
+    """
+    causes = {each.cause for each in sick}
+    if HealthCause.CAMERA_STARTING in causes:
+        return tuple(Claim(each.motion, Level.STOP, 0.0, Reason.STARTING) for each in claims)
+    if HealthCause.CAMERA_DOUBTED not in causes:
+        return tuple(claims)
+    return tuple(
+        replace(each, level=Level.STOP, speed=0.0, reason=Reason.CAMERA_DOUBTED, overridable=False)
+        for each in claims
+    )

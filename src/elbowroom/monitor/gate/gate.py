@@ -16,7 +16,7 @@ from elbowroom.guard.fault import Fault
 from elbowroom.guard.latch_file import LatchFile
 from elbowroom.guard.link import WatchdogLink
 from elbowroom.guard.reason import Reason
-from elbowroom.monitor.gate.claim import Claim, claims_of
+from elbowroom.monitor.gate.claim import claims_of, held_back
 from elbowroom.monitor.gate.faults import faults_of
 from elbowroom.monitor.gate.state import (
     Decision,
@@ -31,9 +31,7 @@ from elbowroom.monitor.gate.state import (
 )
 from elbowroom.monitor.gate.step import step
 from elbowroom.monitor.gate.told import decision_row, heartbeat_of
-from elbowroom.monitor.health.streams.cause import HealthCause
 from elbowroom.monitor.result import CycleResult
-from elbowroom.motion import Level
 
 
 @dataclass(slots=True, eq=False)
@@ -86,9 +84,7 @@ class Gate:
         self._sequence = max(result.sequence, self._sequence + 1)
         asked = self._asked()
         try:
-            claims = claims_of(result.verdicts, self.rules.low_speed)
-            if any(sick.cause is HealthCause.CAMERA_STARTING for sick in result.sick):
-                claims = tuple(Claim(each.motion, Level.STOP, 0.0, Reason.STARTING) for each in claims)
+            claims = held_back(claims_of(result.verdicts, self.rules.low_speed), result.sick)
             self._pass(Judged(claims, faults_of(result)))
         except Exception as error:  # whatever fails here is a stop
             self._is_broken = True  # until that stop is latched, this run cannot have ended well

@@ -49,6 +49,7 @@ class CameraHealth:
         shift: by how much it seems to have moved; None: its reference is not in view.
         share_seen: of its reference, how much is in view and near where it should be.
         share_hidden: of its reference, before how much there is something nearer, or no return; 1 where it is silent.
+        doubt: why it may be elsewhere, after its name, though no test has decided that; None: nothing says so.
     """
 
     camera: str
@@ -56,6 +57,7 @@ class CameraHealth:
     shift: Shift | None
     share_seen: float
     share_hidden: float
+    doubt: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

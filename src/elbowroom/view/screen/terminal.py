@@ -278,7 +278,22 @@ def _stops(result: CycleResult) -> list[str]:
     if result.stopping is not None and result.stopping.first is not None:
         first = result.stopping.first
         lines.append(f"Stop: as fast as it is, it does not rest before {first.cause.value} ({first.link})")
+    lines += _path(result)
     return lines if result.fault is None else [*lines, f"Stop, since the cycle failed: {result.fault}"]
+
+
+def _path(result: CycleResult) -> list[str]:
+    """What is in the way of the path that the machine means to take, with time and place."""
+    if result.off_path is not None:
+        return [f"Stop: {result.off_path}"]
+    first = None if result.path is None else result.path.first
+    if result.path is None or first is None:
+        return []
+    met = first.other_link or first.zone
+    where = "" if first.place_in_world is None else " at {:.2f} {:.2f} {:.2f} m".format(*first.place_in_world)
+    word = "Stop" if result.path.level is Level.STOP else "Path"
+    what = f"{first.cause.value}{f', {met}' if met else ''}"
+    return [f"{word}: in {max(first.time_s, 0.0):.2f} s the path meets {what} ({first.link}{where})"]
 
 
 def _looked_at(verdict: Verdict) -> float:

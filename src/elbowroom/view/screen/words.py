@@ -30,6 +30,7 @@ CAUSE_WORDS: dict[Cause, str] = {
     Cause.STALE: "too old",
     Cause.INPUT: "input",
     Cause.WATCH: "watch",
+    Cause.OFF_PATH: "off its path",
 }
 
 

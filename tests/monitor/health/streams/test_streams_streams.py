@@ -216,6 +216,20 @@ def test_a_camera_that_was_moved_is_named_as_the_watch_says_it():
     assert words(room.streams.knowing((), health)) == {("c0", "moved")}
 
 
+def test_a_camera_that_may_be_elsewhere_is_left_out_until_the_watch_has_decided():
+    room, still = Room(), Condition.STILL
+    cameras = (
+        CameraHealth("c0", still, None, 0.5, 0.0, "may be elsewhere"),
+        CameraHealth("c1", still, None, 1, 0),
+    )
+    (sick,) = room.streams.knowing((), Health(cameras))
+    assert (sick.source, sick.cause.word, sick.leaves_out, sick.latches) == ("c0", "doubted", True, False)
+    decided = Health(cameras, (), {"c0": "camera c0 has turned"})
+    assert (
+        words(room.streams.knowing((), decided)) == set()
+    )  # it stops as the watch says it, and is said once
+
+
 JOINT_FAULTS = {
     "missing": lambda n: {"joints": None, "joints_ns": None},
     "beyond": lambda n: {"joints": {"slide": 99.0}},

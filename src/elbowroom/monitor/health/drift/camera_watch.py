@@ -1,11 +1,12 @@
 """Watches whether one camera stands where it was commissioned."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
+from elbowroom.monitor.health.drift.doubt import WORTH_A_FIT, Doubt, Shares, shares_of
 from elbowroom.monitor.health.drift.fit import MOVE_PRIOR_M, TURN_PRIOR_RAD, convinces
 from elbowroom.monitor.health.drift.kernels.watch import Counts, Fit, Gate, Memory, Spots, judge_image
 from elbowroom.monitor.health.drift.lasting import Lasting
@@ -57,6 +58,8 @@ class CameraWatch:
     _moved: Tally = field(default_factory=lambda: Tally(FRAMES), init=False)
     _changed: Tally = field(default_factory=lambda: Tally(CHANGED_FRAMES), init=False)
     _lasting: Lasting = field(default_factory=Lasting, init=False)
+    _doubt: Doubt = field(default_factory=Doubt, init=False)
+    _is_gone: bool = field(default=False, init=False)
     _newest: tuple[int | None, CameraHealth] | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
@@ -81,7 +84,11 @@ class CameraWatch:
             self._stop_if_too_long()
             return self._silent if frame is None else self.newest
         now = self._judge(frame)
+        shares = shares_of(frame.depth_m.ravel(), self._spots, self._gate)
+        self._doubt.hear(*self._contradiction(frame, now, shares))
+        now = replace(now, doubt=self._doubt.text)
         self._newest = frame.stamp_ns, now
+        self._is_gone = now.condition is Condition.CHANGED or (shares.gone and self._can_tell(shares))
         self._count(frame, now, frame.stamp_ns if frame.stamp_ns is not None else now_ns)
         return now
 
@@ -131,6 +138,31 @@ class CameraWatch:
             condition = Condition.MOVED if moved else still
         return CameraHealth(self.camera.name, condition, shift, seen, hidden)
 
+    def _can_tell(self, shares: Shares) -> bool:
+        return shares.shown >= max(LEAST_SEEN, LEAST_SEEN_SHARE * len(self.reference.pixel))
+
+    def _contradiction(self, frame: DepthFrame, now: CameraHealth, shares: Shares) -> tuple[str | None, bool]:
+        """What this image alone says against where the camera is said to be, and whether it can tell at all."""
+        if now.condition in (Condition.MOVED, Condition.CHANGED):
+            return f"may be elsewhere: it {now.condition.value}", True
+        if not self._can_tell(shares):
+            return None, False
+        if shares.contradict:
+            text = f"may be elsewhere: it sees through {shares.through:.0%} of what stood still before it"
+            return text, True
+        if shares.off < WORTH_A_FIT:
+            return None, True
+        fit = self._listen(frame, _nothing_heard(self._spots))[1]
+        shift = self._shift(fit)
+        if not (convinces(fit) and shift.exceeds(self._least.turn_rad, self._least.move_m, SIGMAS)):
+            return None, True
+        words = shift.words(self._least.turn_rad, self._least.move_m)
+        return f"may be elsewhere: its image fits one that has {words}", True
+
+    @property
+    def _gate(self) -> Gate:
+        return Gate(float(self.camera.min_depth_m), float(self.camera.deepest_m), GATE_M)
+
     def _require_size(self, frame: DepthFrame) -> None:
         height, width = frame.depth_m.shape
         if (height, width) != (self.reference.height, self.reference.width):
@@ -141,9 +173,8 @@ class CameraWatch:
 
     def _listen(self, frame: DepthFrame, memory: Memory) -> tuple[Counts, Fit]:
         """Adds a frame to a memory: numbers of spots, and the motion that fits them."""
-        gate = Gate(float(self.camera.min_depth_m), float(self.camera.deepest_m), GATE_M)
         counts, fit = judge_image(
-            frame.depth_m.ravel(), self._spots, gate, TURN_PRIOR_RAD, MOVE_PRIOR_M, memory
+            frame.depth_m.ravel(), self._spots, self._gate, TURN_PRIOR_RAD, MOVE_PRIOR_M, memory
         )
         return counts, fit
 
@@ -158,7 +189,7 @@ class CameraWatch:
         condition = now.condition
         can_tell = now.shift is not None
         moved = self._moved.add(condition is Condition.MOVED if can_tell else None)
-        changed = self._changed.add(condition is Condition.CHANGED)
+        changed = self._changed.add(self._is_gone)
         self._lasting.seen(_hidden_as(now), stamp_ns)
         if self.stop is not None:
             return

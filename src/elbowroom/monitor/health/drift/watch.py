@@ -76,7 +76,7 @@ class Watch:
             still = {
                 health.camera
                 for health, watch in zip(cameras, self._watches, strict=True)
-                if health.condition is Condition.STILL and watch.stop is None
+                if health.condition is Condition.STILL and watch.stop is None and health.doubt is None
             }
             joints_of = {name: snapshot.joints_at(name) or {} for name in still}
             self._body.hear(newest, joints_of, still)

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import DepthCamera
+from elbowroom.monitor.health.held import Held
 from elbowroom.monitor.health.streams.arrivals import MOST_A_PASS_NS, Arrivals
 from elbowroom.monitor.health.streams.cause import HealthCause
 from elbowroom.monitor.health.streams.cover import COVERED, NOTHING, PARTLY, Cover
-from elbowroom.monitor.health.streams.held import Held
 from elbowroom.monitor.health.streams.picture import (
     EQUAL_TILES,
     Odd,
@@ -47,6 +47,7 @@ CLEARS = {
     C.CAMERA_PARTLY_COVERED: "5 images in a row with returns where it usually has them",
     C.CAMERA_TOO_OLD: "3 images in a row that are young enough",
     C.CAMERA_MOVED: "a monitor that is started again",
+    C.CAMERA_DOUBTED: "3 images in a row that go with what it was commissioned on, or the watch, which decides soon",
 }
 
 

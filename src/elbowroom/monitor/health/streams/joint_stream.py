@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from elbowroom.errors import MachineError
 from elbowroom.machine import Machine
 from elbowroom.machine.joint import Joint
+from elbowroom.monitor.health.held import Held
 from elbowroom.monitor.health.streams.arrivals import Arrivals
 from elbowroom.monitor.health.streams.cause import HealthCause
-from elbowroom.monitor.health.streams.held import Held
 
 C = HealthCause
 START_NS = 5_000_000_000

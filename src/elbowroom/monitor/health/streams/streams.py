@@ -105,14 +105,14 @@ class Streams:
         return self._lasting(tuple(self._sick()))
 
     def knowing(self, sick: Sequence[Sick], health: Health) -> tuple[Sick, ...]:
-        """The same with the cameras that the watch found elsewhere; joints are heard with it at the next pass.
+        """The same with cameras that the watch found elsewhere, or doubts; joints are heard with it at the next pass.
 
         Args:
             sick: what is wrong otherwise.
             health: what the watch says of this pass.
         """
         self._health = health
-        return (*sick, *_moved(health))
+        return (*sick, *_elsewhere(health))
 
     def usable(self, snapshot: Snapshot) -> Snapshot:
         """What can be looked at: images of the right size, and joints where the machine can be."""
@@ -193,12 +193,13 @@ def _about(found: Sequence[Finding], camera: str, kinds: Sequence[str]) -> str |
     return texts[0] if texts else None
 
 
-def _moved(health: Health | None) -> Iterator[Sick]:
-    """Cameras for which the watch stops since they are elsewhere; what it says of others is said already."""
-    if health is None:
-        return
-    cause = HealthCause.CAMERA_MOVED
+def _elsewhere(health: Health) -> Iterator[Sick]:
+    """Cameras for which the watch stops since they are elsewhere, or that may be; of others all is said already."""
+    cause, doubted = HealthCause.CAMERA_MOVED, HealthCause.CAMERA_DOUBTED
     for camera in health.cameras:
+        if camera.doubt is not None and camera.camera not in health.stops:
+            text = f"camera {camera.camera} {camera.doubt}"
+            yield Sick(doubted, camera.camera, text, CAMERA_CLEARS[doubted])
         if camera.camera in health.stops and camera.condition in (Condition.MOVED, Condition.CHANGED):
             yield Sick(cause, camera.camera, health.stops[camera.camera], CAMERA_CLEARS[cause])
 

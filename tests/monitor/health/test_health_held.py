@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from elbowroom.monitor.health.streams.held import Held
+from elbowroom.monitor.health.held import Held
 
 SIGNS = st.lists(st.sampled_from([True, False, None]), max_size=60)
 COUNTS = st.integers(1, 5)
