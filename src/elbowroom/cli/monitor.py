@@ -70,7 +70,9 @@ NoPage = Annotated[
 ]
 PagePort = Annotated[
     int | None,
-    typer.Option(min=0, max=65535, help="Port of the page, at 127.0.0.1. Default: 8137, or any that is free."),
+    typer.Option(
+        min=0, max=65535, help="Port of the page, at 127.0.0.1. Default: 8137, or any that is free."
+    ),
 ]
 Language = Annotated[str, typer.Option(help="Words of the page: en, de.")]
 SkewMs = Annotated[
@@ -227,6 +229,7 @@ def _watch(
     """Runs the loop over a room, with the faces that were asked for."""
     from rich.console import Console
 
+    from elbowroom.cli.page_note import PageNote
     from elbowroom.cli.progress import Steps
     from elbowroom.files.json_rows import json_rows
     from elbowroom.monitor import Face
@@ -247,6 +250,7 @@ def _watch(
             view.note(note)
         if unasked is not None:
             view.note(unasked)
+        noted = PageNote(view.note, page)
         compile_kernels(
             console,
             machine=room.machine is not None,
@@ -258,8 +262,7 @@ def _watch(
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]
-        if page is not None:
-            view.note(page if isinstance(page, str) else page.said())
+        noted.wait()
         if opened is not None:
             faces.append(opened.face)
         if recorder is not None:

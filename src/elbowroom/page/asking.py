@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.monitor.blackbox.configuration import Configuration
@@ -87,16 +88,16 @@ def _creep(row: Mapping[str, Any] | None) -> Creep | None:
     if row is None:
         return None
     place = None if row["place_m"] is None else _three(row["place_m"])
-    numbers = (float(row[name]) for name in ("speed", "braking_distance", "travel"))
-    return Creep(*numbers, Cause[row["cause"].upper()], row["link"], place)
+    speed, brakes, travel = (float(row[name]) for name in ("speed", "braking_distance", "travel"))
+    return Creep(speed, brakes, travel, Cause[row["cause"].upper()], row["link"], place)
 
 
 def _three(place: Sequence[float]) -> tuple[float, float, float]:
     return float(place[0]), float(place[1]), float(place[2])
 
 
-def _about(grid: VoxelGrid, place: Sequence[float]) -> "np.ndarray[Any, np.dtype[np.bool_]] | None":
-    """The block of the voxel at a place; None: it lies outside."""
+def _about(grid: VoxelGrid, place: Sequence[float]) -> NDArray[np.bool_]:
+    """The block of the voxel at a place; none: it lies outside."""
     focus = np.zeros(bits.word_count(grid), dtype=np.bool_)
     if not grid.contains(place):
         return focus

@@ -15,7 +15,8 @@ from elbowroom.sources import Room
 
 TEXT_EVERY_S, PLANES_EVERY_S = 1 / 30, 0.1
 """The page is told no more often than so [s]."""
-LISTENS_S = 0.25
+LISTENS_S = 0.02
+"""While nothing comes it looks so often whether images are asked for [s]."""
 
 
 @dataclass(slots=True, eq=False)
@@ -33,6 +34,7 @@ class PageFace:
     _waits: threading.Condition = field(default_factory=threading.Condition, init=False)
     _is_over: bool = field(default=False, init=False)
     _shown_s: float = field(default=float("-inf"), init=False)
+    _last: tuple[Pass, int] | None = field(default=None, init=False)
     _answered: int = field(default=0, init=False)
     _thread: threading.Thread | None = field(default=None, init=False)
 
@@ -62,25 +64,33 @@ class PageFace:
                 if self._newest is None:
                     self._waits.wait(LISTENS_S)
                 given, self._newest = self._newest, None
-            if given is None:
-                continue
             begun_s = time.monotonic()
             try:
+                if given is None:
+                    self._answer()
+                    continue
                 self._write(*given)
+                self._answer()
             except Exception as error:  # the monitor goes on, whatever the page is told
                 self.fault = f"{type(error).__name__}: {error}"
             time.sleep(max(0.0, TEXT_EVERY_S - (time.monotonic() - begun_s)))
 
     def _write(self, done: Pass, wall_ns: int) -> None:
+        self._last = done, wall_ns
         told, space = told_of(done, wall_ns), done.result.space
         self.board.tell(told)
-        now_s, asked = time.monotonic(), self.board.asked
+        now_s = time.monotonic()
         if space is not None and now_s - self._shown_s >= PLANES_EVERY_S - TEXT_EVERY_S / 2:
             self._shown_s = now_s
             self.board.show(done.result.sequence, planes_of(space))
-        if asked != self._answered:
+
+    def _answer(self) -> None:
+        """Hands out the images of the newest pass, if they are asked for."""
+        asked = self.board.asked
+        if asked != self._answered and self._last is not None:
             self._answered = asked
-            self.board.answer(asked, told, done.snapshot)
+            done, wall_ns = self._last
+            self.board.answer(asked, told_of(done, wall_ns), done.snapshot)
 
 
 def planes_of(space: FreeSpace) -> Planes:

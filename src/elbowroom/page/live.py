@@ -31,11 +31,13 @@ class Live:
         page: that is open.
         board: that the monitor writes.
         is_over: whether to end.
+        on_first: called when the first moment comes.
     """
 
     page: Page
     board: Board
     is_over: Callable[[], bool]
+    on_first: Callable[[], None] = lambda: None
     _text: int = field(default=0, init=False)
     _planes: int = field(default=0, init=False)
     _said_s: float = field(default=0.0, init=False)
@@ -73,6 +75,8 @@ class Live:
             self._is_ended = True
             self.page.talk.tell({"type": "ended"})
             return
+        if self.page.newest is None:
+            self.on_first()
         self.page.hear(told)
         now_s = time.monotonic()
         if now_s - self._said_s >= TEXT_EVERY_S * 0.9:
@@ -117,7 +121,7 @@ class Live:
                     self.page.talk.answer(viewer, depth_message(name, frame.depth_m))
 
     def _images(self) -> Answered | None:
-        """The images of a pass that is judged after now; None: the monitor gave none."""
+        """The images of the newest pass; None: the monitor gave none."""
         number, until_s = self.board.ask(), time.monotonic() + WAITS_S
         while time.monotonic() < until_s and not self.is_over():
             found = self.board.images.get()

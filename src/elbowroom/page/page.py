@@ -113,14 +113,28 @@ class Page:
             "word": self.words(f"level.{level}"),
             "sentence": said.sentence,
             "motion": said.motion,
+            "why": self._why(told, said.motion),
             "motions": motions,
             "cameras": cameras,
             "cycle_ms": cycle_ms,
             "age_ms": None if oldest_ms is None else float(oldest_ms) + cycle_ms,
         }
 
+    def _why(self, told: Told, motion: int | None) -> dict[str, Any] | None:
+        """The worst verdict explained, without asking the cameras; None: nothing is to be explained."""
+        rows = told["judged"]["verdicts"]
+        if not rows or (motion is None and told["judged"]["stopped_by"] is None):
+            return None
+        row = with_reach(rows[motion or 0], self._looked_at)
+        return why_text(told, row, self.words)
+
     def explain(
-        self, viewer: Viewer, told: Told, number: int, changes: tuple[Change, ...] | None, is_final: bool = True
+        self,
+        viewer: Viewer,
+        told: Told,
+        number: int,
+        changes: tuple[Change, ...] | None,
+        is_final: bool = True,
     ) -> None:
         """Tells a browser why a motion ends where it does.
 
@@ -168,6 +182,6 @@ def _look_from_aside(server: Any, stage: Stage) -> None:
     lower, upper = stage.grid.lower_m, stage.grid.upper_m
     middle = (lower + upper) / 2
     size = float(np.linalg.norm(upper - lower))
-    server.initial_camera.position = tuple(middle + size * np.array([0.62, -0.62, 0.28]))
+    server.initial_camera.position = tuple(middle + size * np.array([0.5, -0.5, 0.2]))
     server.initial_camera.look_at = tuple(middle - np.array([0.0, 0.0, 0.08 * size]))
     server.initial_camera.up = (0.0, 0.0, 1.0)

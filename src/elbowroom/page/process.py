@@ -22,14 +22,12 @@ STAYS_S = 3.0
 PORT = 8137
 """At which the page is, if nobody says otherwise and it is free."""
 NICE = 10
-"""The monitor comes first."""
+"""The monitor comes first, once it judges."""
 
 
 def main() -> None:
     """Serves the page until standard input ends."""
     os.environ.setdefault("NUMBA_NUM_THREADS", "1")
-    if hasattr(os, "nice"):
-        os.nice(NICE)
     said = json.loads(sys.stdin.readline())
     try:
         serve(said)
@@ -57,7 +55,7 @@ def serve(said: Mapping[str, Any]) -> None:
     _say({"url": page.server.url})
     over = threading.Event()
     threading.Thread(target=_wait_for_end, args=(over,), daemon=True).start()
-    Live(page, board, over.is_set).run()
+    Live(page, board, over.is_set, _step_back).run()
     page.talk.tell({"type": "ended"})
     time.sleep(STAYS_S)
     page.server.stop()
@@ -83,6 +81,12 @@ def _wait_for_end(over: threading.Event) -> None:
     while sys.stdin.readline():
         pass
     over.set()
+
+
+def _step_back() -> None:
+    """Lets the monitor go first."""
+    if hasattr(os, "nice"):
+        os.nice(NICE)
 
 
 def _say(what: Mapping[str, Any]) -> None:

@@ -73,14 +73,14 @@ def _of_surface(found: Why, source: ImageSource) -> Iterator[Change]:
         return
     widest = max(found.measuring, key=lambda camera: camera.margin_m)
     names = ", ".join(camera.camera for camera in found.measuring)
-    margin = {"distance_m": found.outside_m, "margin_m": widest.margin_m, "link": link, "cameras": names}
-    yield Change("margin", margin)
+    yield Change(
+        "margin",
+        {"distance_m": found.outside_m, "margin_m": widest.margin_m, "link": link, "cameras": names},
+    )
     camera = next(one for one in source.images.cameras if one.name == widest.camera)
     nearer = near_enough_m(camera, found.outside_m, source)
     if nearer is not None:
-        yield Change(
-            "nearer", {"distance_m": nearer, "camera": widest.camera, "now_m": widest.distance_m}
-        )
+        yield Change("nearer", {"distance_m": nearer, "camera": widest.camera, "now_m": widest.distance_m})
 
 
 def _of_sight(found: Why, source: ImageSource, edge_m: float) -> Iterator[Change]:

@@ -116,13 +116,13 @@ def _explained(source: ImageSource, camera: str, window: _Window, inside: NDArra
 def _aside(before: NDArray[np.bool_], window: _Window) -> tuple[str | None, int]:
     """The side to which what is before the window goes least far until it is clear, and how far [px]; people and things go
     aside before they go up or down."""
-    across = before[window.top : window.bottom + 1].any(axis=0)
+    across = np.asarray(before[window.top : window.bottom + 1].any(axis=0))
     ways = {
         "left": _clear_of(across, window.left, window.right),
         "right": _clear_of(across[::-1], len(across) - 1 - window.right, len(across) - 1 - window.left),
     }
     if not any(ways.values()):
-        down = before[:, window.left : window.right + 1].any(axis=1)
+        down = np.asarray(before[:, window.left : window.right + 1].any(axis=1))
         ways = {
             "up": _clear_of(down, window.top, window.bottom),
             "down": _clear_of(down[::-1], len(down) - 1 - window.bottom, len(down) - 1 - window.top),

@@ -76,6 +76,10 @@ const Panel = (() => {
     setText(at("word"), said.word);
     setText(at("sentence"), said.sentence);
     setText(at("at"), `${hello.site} · ${word("mode." + hello.mode)} · ${said.at}`);
+    if (chosen === null) {
+      at("why").hidden = !said.why;
+      if (said.why) because(said.why);
+    }
     const rows = at("motions").tBodies[0].rows;
     said.motions.forEach((one, number) => {
       const cells = rows[number].cells, chip = cells[1].firstChild;
@@ -99,11 +103,16 @@ const Panel = (() => {
     at("why").hidden = false;
     chosen = said.number;
     mark();
-    setText(at("whysentence"), said.sentence);
-    const changes = said.changes.map(text => element("li", text));
-    at("changes").replaceChildren(...changes);
-    at("changehead").hidden = changes.length === 0;
+    because(said);
     at("why").dataset.final = said.is_final;
+  }
+
+  function because(said) {
+    setText(at("whysentence"), said.sentence);
+    const list = at("changes");
+    if ([...list.children].map(one => one.textContent).join("\n") !== said.changes.join("\n"))
+      list.replaceChildren(...said.changes.map(text => element("li", text)));
+    at("changehead").hidden = said.changes.length === 0;
   }
 
   function depth(said) {

@@ -28,7 +28,7 @@ def light_mesh(
         Corners and triangles.
     """
     size = 0.002
-    light, kept = vertices, np.asarray(faces)
+    light, kept = vertices, np.asarray(faces, dtype=np.int64)
     while len(kept) > most:
         cells = np.floor(vertices / size).astype(np.int64)
         _, first, of = np.unique(cells, axis=0, return_index=True, return_inverse=True)
@@ -80,5 +80,3 @@ def wxyz_of(rotation: NDArray[np.float64]) -> tuple[float, float, float, float]:
 
     x, y, z, w = Rotation.from_matrix(rotation).as_quat()
     return float(w), float(x), float(y), float(z)
-
-

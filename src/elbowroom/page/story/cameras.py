@@ -40,8 +40,8 @@ class Rates:
 
     def of(self, camera: str) -> float | None:
         """Images a second; None: fewer than two came."""
-        kept = self._stamps.get(camera, ())
-        if len(kept) < 2 or kept[-1] == kept[0]:
+        kept = self._stamps.get(camera)
+        if kept is None or len(kept) < 2 or kept[-1] == kept[0]:
             return None
         return 1e9 * (len(kept) - 1) / (kept[-1] - kept[0])
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from elbowroom.motion import Motion
 from elbowroom.page.colours import MARKS
-from elbowroom.page.story.phrases import EVERYTHING, level_of, meets, name_of, travel
+from elbowroom.page.story.phrases import in_short, level_of, name_of, travel
 from elbowroom.page.story.told import Told
 from elbowroom.page.words import Words
 
@@ -42,7 +42,6 @@ def _row(given: Mapping[str, Any], words: Words, looked_at: Mapping[str, float])
     far = travel(words, row["free_travel"], unit)
     if row["free_travel"] >= row["looked_at"] * (1 - 1e-9):
         far = words("free.at_least", travel=far)
-    clause = words(f"cause.{row['cause']}") if row["cause"] in EVERYTHING else meets(words, row)
     return {
         "name": name_of(row),
         "level": level.name.lower(),
@@ -52,5 +51,5 @@ def _row(given: Mapping[str, Any], words: Words, looked_at: Mapping[str, float])
         "share": min(1.0, row["free_travel"] / row["looked_at"]),
         "brakes": row["free_travel"] / row["braking_distance"],
         "speed": words("percent", value=f"{100 * row['safe_speed']:.0f}"),
-        "cause": clause[0].upper() + clause[1:],
+        "cause": in_short(words, row),
     }

@@ -49,9 +49,24 @@ def meets(words: Words, row: Mapping[str, Any]) -> str:
         words: of the language.
         row: of a verdict.
     """
-    values = {"link": row["link"] or "?", "other": row.get("other_link") or "?"}
-    text = words(f"cause.{'limit' if _is_limit(row) else row['cause']}", **values, zone=row.get("zone") or "?")
-    return words("cause.escapes", cause=text) if row.get("escapes") and row["cause"] != "none" else text
+    return _filled(words, row, "cause")
+
+
+def in_short(words: Words, row: Mapping[str, Any]) -> str:
+    """What ends a motion, for a table: "detector: nobody sees it".
+
+    Args:
+        words: of the language.
+        row: of a verdict.
+    """
+    return _filled(words, row, "short")
+
+
+def _filled(words: Words, row: Mapping[str, Any], kind: str) -> str:
+    values = {"link": row["link"] or "?", "other": row.get("other_link") or "?", "zone": row.get("zone") or "?"}
+    text = words(f"{kind}.{'limit' if _is_limit(row) else row['cause']}", **values)
+    is_way_out = row.get("escapes") and row["cause"] != "none"
+    return words(f"{kind}.escapes", cause=text) if is_way_out else text
 
 
 def says(words: Words, row: Mapping[str, Any]) -> str:
