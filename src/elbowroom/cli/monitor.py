@@ -12,6 +12,8 @@ from elbowroom.cli.options import (
     Detail,
     JointsText,
     JsonFile,
+    Language,
+    PagePort,
     Rule,
     VoxelSize,
     options_named,
@@ -68,13 +70,6 @@ BlackBoxFolder = Annotated[
 NoPage = Annotated[
     bool, typer.Option("--no-page", envvar="ELBOWROOM_NO_PAGE", help="Open no page for a browser.")
 ]
-PagePort = Annotated[
-    int | None,
-    typer.Option(
-        min=0, max=65535, help="Port of the page, at 127.0.0.1. Default: 8137, or any that is free."
-    ),
-]
-Language = Annotated[str, typer.Option(help="Words of the page: en, de.")]
 SkewMs = Annotated[
     float,
     typer.Option(

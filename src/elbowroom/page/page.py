@@ -84,14 +84,18 @@ class Page:
         shown = None if near.thinned is None else {"all": near.thinned, "shown": near.count}
         self._thinned = None if shown is None else self.words("thinned", **shown)
 
-    def say(self) -> None:
-        """Tells browsers of the newest moment."""
+    def say(self, **besides: Any) -> None:
+        """Tells browsers of the newest moment.
+
+        Args:
+            besides: what is said of it besides, such as its place in a recording.
+        """
         told = self.newest
         if told is None:
             return
         cameras = camera_rows(told, self.words, self._camera_names(), self.rates)
         self.stage.colour(cameras)
-        self.talk.tell({"type": "moment", **self.moment(told, cameras), "thinned": self._thinned})
+        self.talk.tell({"type": "moment", **self.moment(told, cameras), "thinned": self._thinned, **besides})
 
     def moment(self, told: Told, cameras: list[dict[str, Any]]) -> dict[str, Any]:
         """A moment as browsers are told of it.
@@ -112,6 +116,7 @@ class Page:
             "level": level,
             "word": self.words(f"level.{level}"),
             "sentence": said.sentence,
+            "detail": said.detail,
             "motion": said.motion,
             "why": self._why(told, said.motion),
             "motions": motions,

@@ -32,6 +32,7 @@
       if (said.index !== undefined) Slider.moment(said);
     } else if (said.type === "why") Panel.why(said);
     else if (said.type === "depth") Panel.depth(said);
+    else if (said.type === "trouble") { Panel.at("note").hidden = false; Panel.setText(Panel.at("note"), said.text); }
     else if (said.type === "ended") isEnded = true;
     else if (said.type === "play") Slider.playing(said.is_playing);
     watch();

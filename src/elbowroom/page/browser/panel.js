@@ -75,6 +75,7 @@ const Panel = (() => {
     setText(at("mark"), {stop: "■", decelerate: "▲", inform: "●", clear: "○"}[said.level] ?? "?");
     setText(at("word"), said.word);
     setText(at("sentence"), said.sentence);
+    setText(at("detail"), said.detail);
     setText(at("at"), `${hello.site} · ${word("mode." + hello.mode)} · ${said.at}`);
     if (chosen === null) {
       at("why").hidden = !said.why;

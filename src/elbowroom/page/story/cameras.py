@@ -65,7 +65,8 @@ def _row(told: Told, words: Words, name: str, rate_hz: float | None, newest_ns: 
     unknown = words("unknown")
     age = skew = unknown
     if stamp_ns is not None and now_ns is not None:
-        age_ms = (now_ns - stamp_ns + told["bounds"].get(name, 0)) / 1e6
+        took_ms = sum(told["judged"]["stage_ms"].values())
+        age_ms = (now_ns - stamp_ns + told["bounds"].get(name, 0)) / 1e6 + took_ms
         age = words("milliseconds", value=f"{age_ms:.0f}")
     if stamp_ns is not None:
         skew = words("milliseconds", value=f"{(newest_ns - stamp_ns) / 1e6:.0f}")

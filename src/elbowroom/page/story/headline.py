@@ -17,12 +17,14 @@ class Headline:
     Args:
         level: of all motions; None: no motion is judged.
         sentence: why.
+        detail: what was reported besides, as it was; empty: nothing.
         motion: number of the motion that it is about; None: all.
     """
 
     level: Level | None
     sentence: str
     motion: int | None = None
+    detail: str = ""
 
 
 def headline(told: Told, words: Words) -> Headline:
@@ -35,9 +37,8 @@ def headline(told: Told, words: Words) -> Headline:
     rows: Sequence[Mapping[str, Any]] = told["judged"]["verdicts"]
     stopped_by = told["judged"]["stopped_by"]
     if stopped_by is not None:
-        cause = _cause_of_all(told, words)
-        text = words("headline.all", cause=words("reported", cause=cause, text=stopped_by))
-        return Headline(Level.STOP, _ended(text))
+        text = words("headline.all", cause=_cause_of_all(told, words))
+        return Headline(Level.STOP, _ended(text), detail=_ended(stopped_by))
     held = _held(told, words)
     if held is not None:
         return held

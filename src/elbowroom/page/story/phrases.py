@@ -63,7 +63,11 @@ def in_short(words: Words, row: Mapping[str, Any]) -> str:
 
 
 def _filled(words: Words, row: Mapping[str, Any], kind: str) -> str:
-    values = {"link": row["link"] or "?", "other": row.get("other_link") or "?", "zone": row.get("zone") or "?"}
+    values = {
+        "link": row["link"] or "?",
+        "other": row.get("other_link") or "?",
+        "zone": row.get("zone") or "?",
+    }
     text = words(f"{kind}.{'limit' if _is_limit(row) else row['cause']}", **values)
     is_way_out = row.get("escapes") and row["cause"] != "none"
     return words(f"{kind}.escapes", cause=text) if is_way_out else text
@@ -79,7 +83,7 @@ def says(words: Words, row: Mapping[str, Any]) -> str:
     level, name = level_of(row).name.lower(), name_of(row)
     far = travel(words, row["free_travel"], row["free_travel_unit"])
     if row["cause"] in EVERYTHING:
-        return words("reported", cause=words("level.stop"), text=words(f"cause.{row['cause']}"))
+        return words("headline.all", cause=words(f"cause.{row['cause']}"))
     if level == "stop" and not row["free_travel"] > 0:
         verb = words("verb.at_once", motion=name)
     elif level == "clear":

@@ -75,7 +75,8 @@ def _of_all(told: Told, row: Mapping[str, Any], words: Words) -> str:
     from elbowroom.page.story.headline import headline
 
     if told["judged"]["stopped_by"] is not None:
-        return headline(told, words).sentence
+        said = headline(told, words)
+        return words("reported", cause=said.sentence, text=said.detail)
     return says(words, row) + "."
 
 

@@ -112,7 +112,7 @@ ENGLISH: dict[str, str] = {
     "cause.no_camera": "no camera gives anything that counts",
     "cause.reach": "the end of what was looked at",
     "cause.escapes": "{cause}; this way leads out of what the machine stands close beside",
-    "reported": "{cause}. Reported: {text}",
+    "reported": "{cause} Reported: {text}",
     # the sentence of why
     "why.where": "at x {x}, y {y}, z {z} m",
     "why.judged": "{verb} {cause}, {where}.",

@@ -112,7 +112,7 @@ GERMAN: dict[str, str] = {
     "cause.no_camera": "Keine Kamera liefert etwas, das zählt",
     "cause.reach": "das Ende dessen, was angeschaut wurde",
     "cause.escapes": "{cause}; dieser Weg führt hinaus aus dem, woran die Maschine dicht steht",
-    "reported": "{cause}. Gemeldet: {text}",
+    "reported": "{cause} Gemeldet: {text}",
     # the sentence of why
     "why.where": "bei x {x}, y {y}, z {z} m",
     "why.judged": "{verb} {cause}, {where}.",
