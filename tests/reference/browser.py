@@ -21,8 +21,9 @@ NO_WEBGL = ["--disable-gpu", "--disable-3d-apis"]
 
 @contextmanager
 def browsers() -> Iterator:
-    """What opens a browser, given flags besides those that it needs without a screen and without network; where there is no
-    browser the test is skipped.
+    """What opens a browser, given flags besides those that it needs without a screen and without network.
+
+    Where there is no browser the test is skipped.
     """
     if CHROMIUM is None:
         pytest.skip("no chromium is installed (Debian: apt-get install chromium)")

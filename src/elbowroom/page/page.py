@@ -13,8 +13,8 @@ from elbowroom.page.fly import client_of, fly_to
 from elbowroom.page.hello import hello_of
 from elbowroom.page.scene.near import Near
 from elbowroom.page.scene.scene import Scene
-from elbowroom.page.server import Guarded, guarded
 from elbowroom.page.served import answers_of
+from elbowroom.page.server import Guarded, guarded
 from elbowroom.page.stage import Stage
 from elbowroom.page.story.cameras import Rates, camera_rows
 from elbowroom.page.story.headline import headline

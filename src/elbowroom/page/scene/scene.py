@@ -45,7 +45,9 @@ class Scene:
         corners = np.array([[(lower, upper)[(n >> axis) & 1][axis] for axis in range(3)] for n in range(8)])
         edges = [(a, a | 1 << axis) for a in range(8) for axis in range(3) if not a >> axis & 1]
         lines = np.array([[corners[a], corners[b]] for a, b in edges])
-        self.server.scene.add_line_segments("/box", lines, colors=colours.BOX, thickness=1.5, thickness_units="screen")
+        self.server.scene.add_line_segments(
+            "/box", lines, colors=colours.BOX, thickness=1.5, thickness_units="screen"
+        )
         middle = (lower + upper) / 2
         self.server.scene.add_grid(
             "/floor",
