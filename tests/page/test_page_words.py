@@ -37,9 +37,12 @@ def test_each_phrase_is_used_somewhere():
         if path.suffix in (".py", ".js", ".html") and "words" not in path.parts
     )
     for key in ENGLISH:
-        head = key.rpartition(".")[0]
-        made = [f'f"{head}.{{', f'"{head}." +', *(["{kind}."] if head in ("cause", "short") else [])]
-        assert any(piece in text for piece in (f'"{key}"', f"{{{{{key}}}}}", *made)), key
+        parts = key.split(".")
+        heads = [".".join(parts[:n]) for n in range(1, len(parts))]
+        made = [piece for head in heads for piece in (f'f"{head}.{{', f"f'{head}.{{", f'"{head}." +')]
+        made += ["{kind}."] if parts[0] in ("cause", "short") else []
+        asked = (f'"{key}"', f"'{key}'", f"{{{{{key}}}}}")
+        assert any(piece in text for piece in (*asked, *made)), key
 
 
 def test_levels_and_conditions_have_words():

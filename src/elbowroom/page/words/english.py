@@ -112,6 +112,7 @@ ENGLISH: dict[str, str] = {
     "cause.escapes": "{cause}; this way leads out of what the machine stands close beside",
     "reported": "{cause} Reported: {text}",
     # the sentence of why
+    "why.where": "at x {x}, y {y}, z {z} m",
     "why.change": "What would change it",
     "change.move": "{camera} would see it if what stands {distance} m before it moved {shift} cm {side} (as the camera sees it).",
     "change.gone": "{camera} would see it if what stands {distance} m before it were not there.",
@@ -157,6 +158,12 @@ ENGLISH: dict[str, str] = {
     "legend.unseen": "nobody sees it",
     "legend.blind": "a camera is blind there",
     "legend.contact": "first contact",
+    "legend.way.stop": "way of a motion that stops",
+    "legend.way.decelerate": "way: slow down",
+    "legend.way.inform": "way: take care",
+    "legend.way.clear": "way: clear",
+    "legend.camera.well": "camera that is well",
+    "legend.camera.ill": "camera that is not",
     "legend.near": "Blocked space is drawn within {distance} m of the machine, where the cycle looked.",
     # the report
     "report.title": "Stop of {site}, {time}",

@@ -112,6 +112,7 @@ GERMAN: dict[str, str] = {
     "cause.escapes": "{cause}; dieser Weg führt hinaus aus dem, woran die Maschine dicht steht",
     "reported": "{cause} Gemeldet: {text}",
     # the sentence of why
+    "why.where": "bei x {x}, y {y}, z {z} m",
     "why.change": "Was es ändern würde",
     "change.move": "{camera} sähe es, wenn das, was {distance} m vor ihr steht, {shift} cm {side} rückte (von der Kamera aus).",
     "change.gone": "{camera} sähe es, wenn das, was {distance} m vor ihr steht, nicht da wäre.",
@@ -157,6 +158,12 @@ GERMAN: dict[str, str] = {
     "legend.unseen": "niemand sieht es",
     "legend.blind": "eine Kamera ist dort blind",
     "legend.contact": "erste Berührung",
+    "legend.way.stop": "Weg einer Bewegung, die hält",
+    "legend.way.decelerate": "Weg: langsam",
+    "legend.way.inform": "Weg: Vorsicht",
+    "legend.way.clear": "Weg: frei",
+    "legend.camera.well": "Kamera, der nichts fehlt",
+    "legend.camera.ill": "Kamera, der etwas fehlt",
     "legend.near": "Nicht freier Raum ist bis {distance} m um die Maschine gezeichnet, wo der Durchgang hinsah.",
     # the report
     "report.title": "Halt von {site}, {time}",
