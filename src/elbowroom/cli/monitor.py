@@ -1,6 +1,7 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
@@ -12,6 +13,8 @@ from elbowroom.cli.options import (
     Detail,
     JointsText,
     JsonFile,
+    Language,
+    PagePort,
     Rule,
     VoxelSize,
     options_named,
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
     from elbowroom.monitor import Gate
     from elbowroom.monitor.blackbox.recorder import Recorder
     from elbowroom.monitor.serving import Serving
+    from elbowroom.page.opened import OpenedPage
     from elbowroom.sensing import MeantPaths
     from elbowroom.site import Site
     from elbowroom.sources import Room
@@ -94,6 +98,19 @@ ServiceOrigin = Annotated[
     list[str] | None,
     typer.Option(metavar="ORIGIN", help="A page that may ask the service, such as http://127.0.0.1:8080."),
 ]
+NoPage = Annotated[
+    bool, typer.Option("--no-page", envvar="ELBOWROOM_NO_PAGE", help="Open no page for a browser.")
+]
+Seconds = Annotated[float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")]
+Noise = Annotated[
+    str | None,
+    typer.Option(
+        help="Of a simulated room's cameras: exact, or a sensor such as tof, realsense_d435. Default: the site's."
+    ),
+]
+OutDir = Annotated[
+    Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
+]
 SkewMs = Annotated[
     float,
     typer.Option(
@@ -109,9 +126,7 @@ def monitor(
         Path | None,
         typer.Argument(metavar="SITE", help="A site file. Default: a simulated intervention room."),
     ] = None,
-    seconds: Annotated[
-        float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")
-    ] = None,
+    seconds: Seconds = None,
     voxel_size: VoxelSize = None,
     cameras: Annotated[
         int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")
@@ -119,12 +134,7 @@ def monitor(
     resolution: Annotated[
         str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
     ] = None,
-    noise: Annotated[
-        str | None,
-        typer.Option(
-            help="Of a simulated room's cameras: exact, or a sensor such as tof, realsense_d435. Default: the site's."
-        ),
-    ] = None,
+    noise: Noise = None,
     rule: Rule = None,
     detail: Detail = None,
     joints: JointsText = None,
@@ -140,9 +150,10 @@ def monitor(
     token: TokenFile = None,
     service_origin: ServiceOrigin = None,
     json: JsonFile = None,
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
-    ] = None,
+    out: OutDir = None,
+    no_page: NoPage = False,
+    page_port: PagePort = None,
+    language: Language = "en",
 ) -> None:
     """Watch a room and say, per joint and direction, how far the machine may go.
 
@@ -172,6 +183,9 @@ def monitor(
     means to do, so that it can stop at any moment and rest in free space; where
     that is not far, the motions that the path makes slow down or stop. A machine
     that is not on its path stops.
+
+    A page at 127.0.0.1:8137 shows the room, each motion and why it stops, in a process
+    of its own that nothing here waits for; where it needs packages, it is said which.
 
     Not a certified safety function.
     """
@@ -203,8 +217,15 @@ def monitor(
         recorder = recorder_of(room, record, black_box)
         decides = gate_of(room, gate, callback)
         serving = None if service is None else _serving(decides, service, token, service_origin or ())
-        run = Run(decides, recorder, _paths(path), serving)
-        _watch(shown, seconds, (json, out), run)
+        page = None if no_page else _page(shown, page_port, language)
+        _watch(shown, seconds, (json, out), Run(decides, recorder, _paths(path), serving, page))
+
+
+def _page(room: "Room", port: int | None, language: str) -> "OpenedPage | str":
+    """The page of a run, not opened yet; or why there is none, a line."""
+    from elbowroom.page.opened import OpenedPage, missing
+
+    return missing() or OpenedPage(room, port, language)
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -244,6 +265,7 @@ class Run(NamedTuple):
     recorder: "Recorder | None"
     paths: "MeantPaths | None"
     serving: "Serving | None"
+    page: "OpenedPage | str | None"
 
 
 def _serving(gate: "Gate | None", port: int, token: Path | None, origins: Sequence[str]) -> "Serving":
@@ -288,6 +310,7 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
     """Runs the loop over a room, with the faces that were asked for; files: of rows, and of pictures."""
     from rich.console import Console
 
+    from elbowroom.cli.page_note import PageNote
     from elbowroom.cli.progress import Steps
     from elbowroom.files.json_rows import json_rows
     from elbowroom.monitor import Face
@@ -299,15 +322,17 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
-    (json_file, out_dir), recorder = files, run.recorder
+    (json_file, out_dir), recorder, page = files, run.recorder, run.page
     unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
-    with json_rows(json_file) as add, TerminalView(console) as view:
+    opened = page if page is not None and not isinstance(page, str) else None
+    with json_rows(json_file) as add, TerminalView(console) as view, opened or nullcontext():
         for note in (*notes_of(room.site), *(finding.text for finding in time_findings(room.site))):
             view.note(note)
         if unasked is not None:
             view.note(unasked)
+        noted = PageNote(view.note, page)
         compile_kernels(
             console,
             machine=room.machine is not None,
@@ -319,6 +344,9 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]
+        noted.wait()
+        if opened is not None:
+            faces.append(opened.face)
         if recorder is not None:
             recorder.cycle = loop.cycle
             faces.append(recorder)
@@ -329,5 +357,6 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
         with asked_to_end() as is_over:
             loop.run(faces, seconds, is_over)
         add(view.log.row())
-    for line in () if recorder is None else (*recorder.said, *recorder.troubles):
+    told = [] if recorder is None else [*recorder.said, *recorder.troubles]
+    for line in (*told, *(() if opened is None else opened.troubles)):
         console.print(line, highlight=False)
