@@ -17,6 +17,7 @@ from elbowroom.cli.reconstruct import reconstruct
 from elbowroom.cli.replay import replay
 from elbowroom.cli.simulate import simulate
 from elbowroom.cli.site import site_app
+from elbowroom.cli.view import view
 
 app = typer.Typer(
     name="elbowroom",
@@ -55,6 +56,13 @@ app.command(
         "elbowroom replay run.mcap --why 1200",
     )
 )(replay)
+app.command(
+    epilog=_example(
+        "elbowroom view my_room.yaml --picture room.png",
+        "elbowroom view my_room.yaml --picture above.png --view top --hide sweeps",
+        "elbowroom view my_room.yaml --picture near.png --from 2,-2,1.8 --to 0,0,1 --size 1600x1200 --sweep larm+",
+    )
+)(view)
 app.command(epilog=_example("elbowroom export run.mcap images"))(export)
 app.command(
     epilog=_example(
