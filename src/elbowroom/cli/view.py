@@ -22,57 +22,64 @@ PARTS = ("room", "machine", "cameras", "blocked", "sweeps")
 """What a picture can show."""
 
 
+PictureFile = Annotated[
+    Path, typer.Option(metavar="FILE", help="Where it goes; ends in .png, .jpg or .webp.")
+]
+ViewName = Annotated[
+    str, typer.Option("--view", help="From where: iso, top, front or side; the last three to scale.")
+]
+Eye = Annotated[
+    str | None, typer.Option("--from", metavar="X,Y,Z", help="From this point instead, in metres.")
+]
+Target = Annotated[
+    str | None, typer.Option("--to", metavar="X,Y,Z", help="To this point. Default: the box's middle.")
+]
+Field = Annotated[float, typer.Option("--field", metavar="DEG", help="Field of view, with --from.")]
+Size = Annotated[str, typer.Option(metavar="WxH", help="Of the picture, in pixels.")]
+Hide = Annotated[
+    list[str] | None,
+    typer.Option(metavar="PART", help=f"Leave out one of {', '.join(PARTS)}. May be given more than once."),
+]
+Sweep = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="JOINT+|-",
+        help="Show what this motion sweeps, such as larm+. May be given more than once. Default: all.",
+    ),
+]
+Near = Annotated[
+    float | None,
+    typer.Option(
+        min=0,
+        metavar="METRES",
+        help="Show blocked space so near the machine; 0: all. Default: 0.5, none without a machine.",
+    ),
+]
+Reach = Annotated[
+    float | None,
+    typer.Option(min=0, metavar="METRES", help="Draw fields of view so far. Default: by the room's size."),
+]
+MomentNumber = Annotated[
+    int, typer.Option(min=0, help="Of the recording, from 0; of a simulated room, second.")
+]
+
+
 def view(
     site: Annotated[
         Path | None,
         typer.Argument(metavar="SITE", help="A site file. Default: the simulated intervention room."),
     ] = None,
-    picture: Annotated[
-        Path, typer.Option(metavar="FILE", help="Where it goes; ends in .png, .jpg or .webp.")
-    ] = Path("view.png"),
-    name: Annotated[
-        str, typer.Option("--view", help="From where: iso, top, front or side; the last three to scale.")
-    ] = "iso",
-    eye: Annotated[
-        str | None, typer.Option("--from", metavar="X,Y,Z", help="From this point instead [m].")
-    ] = None,
-    target: Annotated[
-        str | None, typer.Option("--to", metavar="X,Y,Z", help="To this point. Default: the box's middle.")
-    ] = None,
-    field: Annotated[
-        float, typer.Option("--field", metavar="DEG", help="Field of view, with --from.")
-    ] = 60.0,
-    size: Annotated[str, typer.Option(metavar="WxH", help="Of the picture, in pixels.")] = "1280x960",
-    hide: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="PART", help=f"Leave out one of {', '.join(PARTS)}. May be given more than once."
-        ),
-    ] = None,
-    sweep: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="JOINT+|-",
-            help="Show what this motion sweeps, such as larm+. May be given more than once. Default: all.",
-        ),
-    ] = None,
-    near: Annotated[
-        float | None,
-        typer.Option(
-            min=0,
-            metavar="METRES",
-            help="Show blocked space so near the machine; 0: all. Default: 0.5, none without a machine.",
-        ),
-    ] = None,
-    reach: Annotated[
-        float | None,
-        typer.Option(
-            min=0, metavar="METRES", help="Draw fields of view so far. Default: by the room's size."
-        ),
-    ] = None,
-    moment: Annotated[
-        int, typer.Option(min=0, help="Of the recording, from 0; of a simulated room, second.")
-    ] = 0,
+    picture: PictureFile = Path("view.png"),
+    name: ViewName = "iso",
+    eye: Eye = None,
+    target: Target = None,
+    field: Field = 60.0,
+    size: Size = "1280x960",
+    hide: Hide = None,
+    sweep: Sweep = None,
+    near: Near = None,
+    reach: Reach = None,
+    moment: MomentNumber = 0,
     voxel_size: VoxelSize = None,
     rule: Rule = None,
     detail: Detail = None,
