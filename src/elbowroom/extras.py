@@ -17,6 +17,8 @@ PACKAGES = {
     "ortools": ("finding a placement needs CP-SAT of OR-Tools", "placement"),
     "pymodbus": ("the Modbus output needs pymodbus", "modbus"),
     "small_gicp": ("calibration by the machine needs small_gicp", "calibrate"),
+    "viser": ("the page needs viser", "page"),
+    "websockets": ("the page needs websockets", "page"),
     "xacro": ("expanding a xacro file needs xacro", "xacro"),
     "zstandard": (
         "what is compressed with zstd, as some bags and all recordings of a run are, needs zstandard",
