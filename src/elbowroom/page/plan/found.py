@@ -16,7 +16,7 @@ from elbowroom.reconstruct.resolve import decide
 from elbowroom.reconstruct.witnesses import merged_by_witness, witnesses
 from elbowroom.simulate import Moment, true_occupancy
 
-COARSE_PX = 96
+COARSE_PX = 80
 """For a first answer, pixels are joined as long as so many stay across."""
 AT_ONCE = 8
 """So many cameras are asked before it is looked whether anybody still wants to know."""
@@ -43,6 +43,8 @@ class FoundScene:
     _truly_free: Words = field(init=False)
     _known: dict[int, tuple[DepthCamera, Evidence]] = field(default_factory=dict, init=False)
 
+    _coarse: dict[int, tuple[DepthCamera, DepthCamera]] = field(default_factory=dict, init=False)
+
     def __post_init__(self) -> None:
         self._truly_free = bits.empty(self.grid)
 
@@ -58,7 +60,7 @@ class FoundScene:
         """
         moment = self._settled(layout)
         cameras = [placed.camera for placed in layout.cameras]
-        used = [camera if self.is_exact else with_joined_pixels(camera, COARSE_PX) for camera in cameras]
+        used = [camera if self.is_exact else self._joined(camera) for camera in cameras]
         known = {id(one): self._known[id(one)] for one in cameras if id(one) in self._known}
         missing = [number for number, camera in enumerate(cameras) if id(camera) not in known]
         for first in range(0, len(missing), AT_ONCE):
@@ -69,12 +71,19 @@ class FoundScene:
             for number, evidence in zip(some, parts, strict=True):
                 known[id(cameras[number])] = self._known[id(cameras[number])] = (cameras[number], evidence)
         self._known = known
+        self._coarse = {key: pair for key, pair in self._coarse.items() if key in known}
         terms, machine = self.ground.terms, self.ground.machine
         groups = witnesses(self.grid, tuple(used), terms.witness_angle_deg)
         merged = merged_by_witness([known[id(camera)][1] for camera in cameras], groups)
         space = decide(merged, used, machine, moment.joints, terms)
         true = max(_count(self._truly_free), 1)
         return space, 100.0 * _count(space.free_words & self._truly_free) / true
+
+    def _joined(self, camera: DepthCamera) -> DepthCamera:
+        """The camera with fewer pixels, the same each time, so that what was made for it is kept."""
+        if id(camera) not in self._coarse:
+            self._coarse[id(camera)] = camera, with_joined_pixels(camera, COARSE_PX)
+        return self._coarse[id(camera)][1]
 
     def _settled(self, layout: Layout) -> Moment:
         """All that is there; lets go of what no longer holds."""

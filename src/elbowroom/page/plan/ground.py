@@ -7,13 +7,13 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.errors import SiteError
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
 from elbowroom.page.plan.layout import Layout, PlacedCamera
 from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.requirement import Requirement, requirement_of
 from elbowroom.placement.sensor import Sensor, known_sensors, sensors_of
-from elbowroom.errors import SiteError
 from elbowroom.reconstruct import Terms
 from elbowroom.simulate import Moment
 from elbowroom.simulate.floor import floor_height
@@ -113,7 +113,9 @@ class Ground:
         base = self.room or FixedRoom()
         closed = tuple(solid for solid in solids if solid.has_inside)
         opened = tuple(solid for solid in solids if not solid.has_inside)
-        return FixedRoom(base.solids + closed, base.surfaces + opened, base.walls_m, base.notes)
+        return FixedRoom(
+            base.solids + closed, base.surfaces + opened, base.walls_m, base.notes, base.from_mesh
+        )
 
     def moment_of(self, layout: Layout, fixed: FixedRoom | None) -> Moment:
         """All that is there: room, things, people and machine.

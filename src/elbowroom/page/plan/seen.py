@@ -16,7 +16,6 @@ from elbowroom.placement.fixed_room import FixedRoom
 from elbowroom.placement.sight import sights
 from elbowroom.placement.verification import Verification, judge
 
-
 AT_ONCE = 8
 """So many cameras are looked through before it is asked whether anybody still wants to know."""
 

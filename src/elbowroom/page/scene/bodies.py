@@ -80,5 +80,3 @@ def wxyz_of(rotation: NDArray[np.float64]) -> tuple[float, float, float, float]:
 
     x, y, z, w = Rotation.from_matrix(rotation).as_quat()
     return float(w), float(x), float(y), float(z)
-
-
