@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from elbowroom.errors import InputError
+from elbowroom.motion import Level, Motion, Verdict, check_motion
 from elbowroom.page.plan.ground import Ground
 from elbowroom.page.plan.layout import Layout
 from elbowroom.page.plan.stale import Stop, never, unless
 from elbowroom.placement.coarse import with_joined_pixels
-from elbowroom.motion import Level, Motion, Verdict, check_motion
 from elbowroom.reconstruct import free_space_of
 from elbowroom.sensing import Snapshot
 from elbowroom.simulate import render

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,6 @@ from elbowroom.simulate.person import Person, Stance, Walk
 from elbowroom.simulate.solid import Mesh, Solid
 
 NOWHERE = Walk((0.0, 0.0), (0.1, 0.1), 1.0)
-Named = TypeVar("Named", "PlacedCamera", "PlacedPerson", "PlacedThing")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -181,6 +180,14 @@ class Layout:
         while f"{stem} {number}" in taken:
             number += 1
         return f"{stem} {number}"
+
+
+class _HasName(Protocol):
+    @property
+    def name(self) -> str: ...
+
+
+Named = TypeVar("Named", bound=_HasName)
 
 
 def _of(some: tuple[Named, ...], name: str, what: str) -> Named:

@@ -1,5 +1,6 @@
 """A person who walks through the planned room, and who sees them where."""
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -119,7 +120,7 @@ def walked(
         Stale: nobody wants to know any more.
     """
     watch, corners = Watch(ground, layout), np.array(way_m, dtype=np.float64)
-    for start, end in zip(corners[:-1], corners[1:], strict=True):
+    for start, end in itertools.pairwise(corners):
         length = float(np.linalg.norm(end - start))
         heading = math.atan2(end[1] - start[1], end[0] - start[0])
         for share in np.linspace(0.0, 1.0, max(2, round(length / STEP_M) + 1)):
@@ -183,8 +184,10 @@ def _in_image(camera: DepthCamera, points: Array) -> NDArray[np.bool_]:
     local = (points - camera.centre_in_world) @ camera.world_from_camera[:3, :3]
     depth = local[:, 2] if camera.depth_kind == "planar" else np.linalg.norm(local, axis=1)
     ahead = local[:, 2] > 1e-6
-    u, v = (np.full(len(points), -1.0) for _ in range(2))
-    u[ahead], v[ahead] = project(camera.intrinsics, local[ahead])
+    pixels = np.full((len(points), 2), -1.0)
+    if ahead.any():
+        pixels[ahead] = project(camera.intrinsics, local[ahead])[0]
+    u, v = pixels.T
     within = (u >= -0.5) & (u < camera.width - 0.5) & (v >= -0.5) & (v < camera.height - 0.5)
     return np.asarray(ahead & within & (depth >= camera.min_depth_m) & (depth <= camera.max_depth_m))
 
