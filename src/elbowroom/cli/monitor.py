@@ -1,5 +1,6 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,6 +12,8 @@ from elbowroom.cli.options import (
     Detail,
     JointsText,
     JsonFile,
+    Language,
+    PagePort,
     Rule,
     VoxelSize,
     options_named,
@@ -23,6 +26,7 @@ from elbowroom.errors import InputError
 if TYPE_CHECKING:
     from elbowroom.monitor import Gate
     from elbowroom.monitor.blackbox.recorder import Recorder
+    from elbowroom.page.opened import OpenedPage
     from elbowroom.site import Site
     from elbowroom.sources import Room
 
@@ -62,6 +66,9 @@ BlackBoxFolder = Annotated[
     typer.Option(
         metavar="DIR", help="Keep the minute before each stop, and 10 s after it, as a file in this folder."
     ),
+]
+NoPage = Annotated[
+    bool, typer.Option("--no-page", envvar="ELBOWROOM_NO_PAGE", help="Open no page for a browser.")
 ]
 SkewMs = Annotated[
     float,
@@ -108,6 +115,9 @@ def monitor(
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
     ] = None,
+    no_page: NoPage = False,
+    page_port: PagePort = None,
+    language: Language = "en",
 ) -> None:
     """Watch a room and say, per joint and direction, how far the machine may go.
 
@@ -129,6 +139,9 @@ def monitor(
     With --record, or --black-box (or a key `black_box` of the site), it is kept what
     came in and what was decided; `elbowroom replay FILE` judges it again. A full disk
     is told, and stops nothing.
+
+    A page at 127.0.0.1:8137 shows the room, each motion and why it stops, in a process
+    of its own that nothing here waits for, where `pip install 'elbowroom[page]'` was done.
 
     Not a certified safety function.
     """
@@ -158,7 +171,15 @@ def monitor(
         )
         shown = live(_skewed(room, skew_ms) if skew_ms else room)
         recorder = recorder_of(room, record, black_box)
-        _watch(shown, seconds, json, out, gate_of(room, gate, callback), recorder)
+        page = None if no_page else _page(shown, page_port, language)
+        _watch(shown, seconds, json, out, gate_of(room, gate, callback), recorder, page)
+
+
+def _page(room: "Room", port: int | None, language: str) -> "OpenedPage | str":
+    """The page of a run, not opened yet; or why there is none, a line."""
+    from elbowroom.page.opened import OpenedPage, missing
+
+    return missing() or OpenedPage(room, port, language)
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -198,10 +219,12 @@ def _watch(
     out_dir: Path | None,
     gate: "Gate | None",
     recorder: "Recorder | None",
+    page: "OpenedPage | str | None" = None,
 ) -> None:
     """Runs the loop over a room, with the faces that were asked for."""
     from rich.console import Console
 
+    from elbowroom.cli.page_note import PageNote
     from elbowroom.cli.progress import Steps
     from elbowroom.files.json_rows import json_rows
     from elbowroom.monitor import Face
@@ -216,11 +239,13 @@ def _watch(
     unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
-    with json_rows(json_file) as add, TerminalView(console) as view:
+    opened = page if page is not None and not isinstance(page, str) else None
+    with json_rows(json_file) as add, TerminalView(console) as view, opened or nullcontext():
         for note in (*notes_of(room.site), *(finding.text for finding in time_findings(room.site))):
             view.note(note)
         if unasked is not None:
             view.note(unasked)
+        noted = PageNote(view.note, page)
         compile_kernels(
             console,
             machine=room.machine is not None,
@@ -232,6 +257,9 @@ def _watch(
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]
+        noted.wait()
+        if opened is not None:
+            faces.append(opened.face)
         if recorder is not None:
             recorder.cycle = loop.cycle
             faces.append(recorder)
@@ -239,5 +267,6 @@ def _watch(
         with asked_to_end() as is_over:
             loop.run(faces, seconds, is_over)
         add(view.log.row())
-    for line in () if recorder is None else (*recorder.said, *recorder.troubles):
+    told = [] if recorder is None else [*recorder.said, *recorder.troubles]
+    for line in (*told, *(() if opened is None else opened.troubles)):
         console.print(line, highlight=False)

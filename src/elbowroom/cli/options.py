@@ -16,6 +16,13 @@ from elbowroom.errors import InputError
 SitePath = Annotated[
     Path, typer.Argument(metavar="SITE", help="A site file (YAML); elbowroom site new writes one.")
 ]
+PagePort = Annotated[
+    int | None,
+    typer.Option(
+        min=0, max=65535, help="Port of the page, at 127.0.0.1. Default: 8137, or any that is free."
+    ),
+]
+Language = Annotated[str, typer.Option(help="Words of the page: en, de.")]
 JsonFile = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the results as JSON: meta and rows.")
 ]

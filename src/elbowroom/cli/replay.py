@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.options import JsonFile, use_threads
+from elbowroom.cli.options import JsonFile, Language, PagePort, use_threads
 
 RecordingPath = Annotated[
     Path, typer.Argument(metavar="FILE", help="A file of `monitor --record`, or of its black box.")
@@ -21,6 +21,11 @@ def replay(
         int | None,
         typer.Option(min=0, metavar="CYCLE", help="Say of one cycle what ended each motion's way, and why."),
     ] = None,
+    page: Annotated[
+        bool, typer.Option("--page", help="Show it in a browser: time, stops, play, step, and why.")
+    ] = False,
+    page_port: PagePort = None,
+    language: Language = "en",
     threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
     json: JsonFile = None,
 ) -> None:
@@ -32,12 +37,18 @@ def replay(
 
     What the clock decided (images too old when the verdicts were out), and what the
     drift watch and the looks at the input found, is taken as it was recorded.
+
+    With --page it is not compared, but shown in a browser at 127.0.0.1, until Ctrl-C.
     """
     use_threads(threads)
 
     from elbowroom.cli.replay_run import explain_cycle, judge_again
 
-    if why is not None:
+    if page:
+        from elbowroom.cli.replay_page import show_page
+
+        show_page(file, begin, page_port, language)
+    elif why is not None:
         explain_cycle(file, why, json)
     elif not judge_again(file, begin, json):
         raise typer.Exit(1)

@@ -39,11 +39,11 @@ def judge_again(file: Path, begin: int | None, json_file: Path | None) -> bool:
         BagError: it is no recording, or malformed.
     """
     with json_rows(json_file) as add, Recording(file) as recording:
-        wrong = _checked(recording)
+        wrong = checked(recording)
         configuration = recording.configuration()
         for line in _told(configuration, recording):
             print(line)
-        _compile(configuration)
+        compiled(configuration)
         first = 0 if begin is None else recording.number_of(begin)
         found: list[Compared] = []
         rows = watched("cycles", replayed(recording, first), len(recording) - first)
@@ -76,7 +76,7 @@ def explain_cycle(file: Path, sequence: int, json_file: Path | None) -> None:
     with json_rows(json_file) as add, Recording(file) as recording:
         one = recording.at(recording.number_of(sequence))
         configuration = recording.configuration()
-        _compile(configuration)
+        compiled(configuration)
         cycle = configuration.cycle(keeps_images=True)
         given = one.judged["given"] or ()
         frames = tuple(frame for frame in one.snapshot.frames if frame.camera in given)
@@ -106,7 +106,7 @@ def explain_cycle(file: Path, sequence: int, json_file: Path | None) -> None:
     print(NOT_CERTIFIED)
 
 
-def _checked(recording: Recording) -> str | None:
+def checked(recording: Recording) -> str | None:
     """Compares every byte with the chain, with a bar; says what is found."""
     with _bar(recording.size) as tell:
         wrong = recording.wrong(tell)
@@ -134,7 +134,8 @@ def _told(configuration: Configuration, recording: Recording) -> Iterator[str]:
     yield f"recorded by elbowroom {versions.get('elbowroom')} ({told.get('commit')}) on {told.get('processor')}"
 
 
-def _compile(configuration: Configuration) -> None:
+def compiled(configuration: Configuration) -> None:
+    """Compiles what judging by a configuration needs."""
     console = Console(stderr=True)
     compile_kernels(
         console,

@@ -176,6 +176,17 @@ class Recording:
                 raise BagError(f"{what}: {error}") from None
             raise BagError(f"{what}: malformed ({type(error).__name__}: {error})") from None
 
+    def said_at(self, number: int) -> Mapping[str, Any]:
+        """What a pass says of itself, without its images: `sequence`, `wall_ns`, `judged`, `gate`.
+
+        Args:
+            number: in this file, from 0.
+
+        Raises:
+            BagError: malformed.
+        """
+        return self._told(number)[0]
+
     def units_of(self, camera: str) -> tuple[NDArray[np.uint16], float] | None:
         """The last frame that was read of a camera as its sensor's whole numbers, and metres per unit.
 

@@ -172,7 +172,7 @@ def _of_margin(found: Why, source: ImageSource) -> list[str]:
     )
     ways = ["less noise", "a machine that stands higher or farther from it"]
     cameras = {camera.name: camera for camera in source.images.cameras}
-    nearer = _near_enough(cameras[widest.camera], found.outside_m, source)
+    nearer = near_enough_m(cameras[widest.camera], found.outside_m, source)
     if nearer is not None:
         ways.insert(
             0, f"cameras nearer than about {nearer:.1f} m ({widest.camera} is {widest.distance_m:.1f} m away)"
@@ -180,8 +180,14 @@ def _of_margin(found: Why, source: ImageSource) -> list[str]:
     return [text, f"what would change it: {', '.join(ways[:-1])}, or {ways[-1]}"]
 
 
-def _near_enough(camera: DepthCamera, gap_m: float, source: ImageSource) -> float | None:
-    """From how far a camera of this kind would have a margin of a gap at most [m]; None: from nowhere."""
+def near_enough_m(camera: DepthCamera, gap_m: float, source: ImageSource) -> float | None:
+    """From how far a camera of this kind would have a margin of a gap at most [m]; None: from nowhere.
+
+    Args:
+        camera: of its kind.
+        gap_m: at most so wide the margin is [m].
+        source: by whose terms.
+    """
     margin = margin_of(camera, camera.margin or source.terms.margin)
     depths = np.arange(NEAREST_CAMERA_M, 20.0, 0.05)
     good = [depth for depth in depths if plain(margin_at)(margin, depth) <= gap_m]

@@ -28,7 +28,7 @@ def light_mesh(
         Corners and triangles.
     """
     size = 0.002
-    light, kept = vertices, np.asarray(faces)
+    light, kept = vertices, np.asarray(faces, dtype=np.int64)
     while len(kept) > most:
         cells = np.floor(vertices / size).astype(np.int64)
         _, first, of = np.unique(cells, axis=0, return_index=True, return_inverse=True)

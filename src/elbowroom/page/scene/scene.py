@@ -15,7 +15,7 @@ from elbowroom.page.colours import Colour
 from elbowroom.page.scene.bodies import light_mesh, wxyz_of
 from elbowroom.page.scene.near import Near
 
-FRUSTUM_M = 0.25
+FRUSTUM_M = 0.16
 """A camera's frustum is drawn so far [m]."""
 KINDS: dict[str, Colour] = {
     "surface": colours.SURFACE,

@@ -1,0 +1,121 @@
+"""The page, opened by a run: its process, its board and the face that tells it."""
+
+import contextlib
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from elbowroom.extras import install_command
+from elbowroom.monitor.blackbox.configuration import Configuration, plain_cycle
+from elbowroom.page.board.board import Board, Sizes
+from elbowroom.page.face import PageFace
+from elbowroom.page.words import words_of
+from elbowroom.sources import Room
+
+LOG = "page.log"
+OPENS_S = 20.0
+"""So long it may take until the page says where it is [s]."""
+
+
+def missing() -> str | None:
+    """What to install so that there is a page; None: all is there."""
+    if find_spec("viser") is not None:
+        return None
+    return f"no page: it needs viser; install it with {install_command('page')}"
+
+
+@dataclass(slots=True, eq=False)
+class OpenedPage:
+    """A page in its own process; whatever becomes of it, the run goes on. As a context, it ends with it.
+
+    Args:
+        room: that is watched.
+        port: at which; None: 8137, or where that is taken any that is free.
+        language: of its words.
+
+    Raises:
+        InputError: no such language.
+    """
+
+    room: Room
+    port: int | None = None
+    language: str = "en"
+    face: PageFace = field(init=False)
+    url: str | None = field(default=None, init=False)
+    _folder: Path = field(init=False)
+    _process: Any = field(default=None, init=False)
+    _answer: dict[str, str] = field(default_factory=dict, init=False)
+    _heard: threading.Event = field(default_factory=threading.Event, init=False)
+
+    def __post_init__(self) -> None:
+        words_of(self.language)
+
+    def __enter__(self) -> Self:
+        room = self.room
+        board = Board.made(Sizes.of(room.grid, room.cameras))
+        self.face = PageFace(board)
+        self._folder = Path(tempfile.mkdtemp(prefix="elbowroom-page-"))
+        for part in Configuration.of(room, plain_cycle(room)).attached():
+            (self._folder / part.name).write_bytes(part.data)
+        said = {"board": board.said(), "folder": str(self._folder), "language": self.language}
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "elbowroom.page.process"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=(self._folder / LOG).open("w"),
+            text=True,
+        )
+        with contextlib.suppress(OSError):
+            self._process.stdin.write(json.dumps({**said, "port": self.port}) + "\n")
+            self._process.stdin.flush()
+        threading.Thread(target=self._listen, daemon=True).start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        with contextlib.suppress(OSError):
+            self._process.stdin.close()
+        threading.Thread(target=self._process.wait, daemon=True).start()
+        self.face.board.forget()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    @property
+    def pid(self) -> int:
+        """Number of its process."""
+        return int(self._process.pid)
+
+    def said(self, waits_s: float = OPENS_S) -> str:
+        """Where the page is, or why there is none, a line.
+
+        Args:
+            waits_s: for so long it is waited for [s].
+        """
+        self._heard.wait(waits_s)
+        if "url" in self._answer:
+            return f"page: {self._answer['url']}"
+        return f"no page: {self._answer.get('error', 'its process does not answer')}"
+
+    @property
+    def troubles(self) -> Iterator[str]:
+        """What the page suffered, a line each."""
+        if self.face.fault is not None:
+            yield f"page: was not told all ({self.face.fault})"
+        if self._process.poll() not in (None, 0):
+            yield f"page: its process ended by itself ({self._process.returncode}); the monitor went on"
+
+    def _listen(self) -> None:
+        for line in self._process.stdout:
+            with contextlib.suppress(ValueError):
+                self._answer = json.loads(line)
+                break
+        self._heard.set()

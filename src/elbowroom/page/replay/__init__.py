@@ -1,0 +1,1 @@
+"""The page over a recording: time, stops, play and step."""
