@@ -13,6 +13,7 @@ from elbowroom.cli.export import export
 from elbowroom.cli.gate import gate_app
 from elbowroom.cli.monitor import monitor
 from elbowroom.cli.placement.app import placement_app
+from elbowroom.cli.plan import plan
 from elbowroom.cli.reconstruct import reconstruct
 from elbowroom.cli.replay import replay
 from elbowroom.cli.simulate import simulate
@@ -56,6 +57,13 @@ app.command(
         "elbowroom replay run.mcap --why 1200",
     )
 )(replay)
+app.command(
+    epilog=_example(
+        "elbowroom plan",
+        "elbowroom plan my_room.yaml --out planned.yaml",
+        "elbowroom plan setup1",
+    )
+)(plan)
 app.command(
     epilog=_example(
         "elbowroom view my_room.yaml --picture room.png",

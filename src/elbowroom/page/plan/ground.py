@@ -95,6 +95,16 @@ class Ground:
         return OWN
 
     @property
+    def has_prices(self) -> bool:
+        """Whether the site says of anything what it costs."""
+        given = self.site.entry.placement
+        if given is None:
+            return False
+        named = [*given.sensors, *given.mounts, given.prices]
+        keys = {"price", "mount", "cable_per_m"}
+        return any(keys & entry.model_fields_set for entry in named)
+
+    @property
     def box_m(self) -> NDArray[np.float64]:
         """Within which things can be: walls, else the watched box, shape (2, 3), world frame [m]."""
         if self.room is not None and self.room.walls_m is not None:

@@ -128,6 +128,21 @@ class Layout:
     people: tuple[PlacedPerson, ...] = ()
     things: tuple[PlacedThing, ...] = ()
 
+    @property
+    def bodies(self) -> "tuple[PlacedPerson | PlacedThing, ...]":
+        """People and things: what stands on the floor."""
+        return (*self.people, *self.things)
+
+    @property
+    def camera_names(self) -> tuple[str, ...]:
+        """Of all cameras."""
+        return tuple(placed.name for placed in self.cameras)
+
+    @property
+    def body_names(self) -> tuple[str, ...]:
+        """Of all people and things."""
+        return tuple(body.name for body in self.bodies)
+
     def camera(self, name: str) -> PlacedCamera:
         """One by its name.
 
@@ -175,7 +190,7 @@ class Layout:
         Args:
             stem: what it begins with.
         """
-        taken = {one.name for one in (*self.cameras, *self.people, *self.things)}
+        taken = {*self.camera_names, *self.body_names}
         number = 1
         while f"{stem} {number}" in taken:
             number += 1
