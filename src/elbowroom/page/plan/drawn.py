@@ -23,7 +23,7 @@ FRUSTUM_M = 0.35
 ROOM, THING, PERSON = (226, 224, 219), (200, 176, 140), (118, 160, 158)
 CHOSEN: Colour = (204, 121, 167)
 INVALID: Colour = (213, 94, 0)
-MOST_DOTS = 6000
+MOST_DOTS = 2500
 DOTS: tuple[tuple[str, Colour], ...] = (
     ("none", (204, 0, 110)), ("few", (240, 200, 40)), ("many", (0, 114, 178)),
 )  # fmt: skip
@@ -100,7 +100,7 @@ class Drawn:
             if len(index) > MOST_DOTS:
                 index = index[np.arange(MOST_DOTS) * len(index) // MOST_DOTS]
             points = found.grid.centre_of(index)
-        self.scene.show_points("/invalid", points, INVALID, 0.02)
+        self.scene.show_points("/invalid", points, INVALID, 0.014)
 
     def show_blocked(self, reckoner: Reckoner | None, layout: Layout) -> None:
         """Shows space near the machine that is not found free; None: does not show it.

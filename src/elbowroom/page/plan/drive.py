@@ -75,7 +75,7 @@ def driven(
         snapshot = Snapshot(tuple(render(cameras, moment, seed=1)), moment.joints, now_ns=moment.stamp_ns)
         space = free_space_of(ground.grid, cameras, snapshot, machine, ground.terms)
         verdict = check_motion(space, machine, moment.joints, motion)
-        at_end = abs(end - here) < 1e-9
+        at_end = abs(end - here) < 1e-3 * step
         yield Step(here, verdict, verdict.level is Level.STOP or at_end)
         if verdict.level is Level.STOP or at_end:
             return

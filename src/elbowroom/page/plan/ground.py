@@ -142,10 +142,13 @@ class Ground:
 
 def _sensors(site: Site) -> tuple[Sensor, ...]:
     """Kinds of the site, then those of the package that have another name."""
+    own: Sequence[Sensor] = ()
     try:
-        own: Sequence[Sensor] = sensors_of(site)
+        own = sensors_of(site)
     except SiteError:
-        own = ()  # it says of no sensor what it is: those of the package are left
+        # where it lists sensors it has to say what they are; where it lists none, those of the package are left
+        if site.entry.placement is not None and site.entry.placement.sensors:
+            raise
     names = {sensor.name for sensor in own}
     return (*own, *(sensor for name, sensor in known_sensors().items() if name not in names))
 

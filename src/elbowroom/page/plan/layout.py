@@ -184,17 +184,18 @@ class Layout:
             things=tuple(t for t in self.things if t is not one),
         )
 
-    def free_name(self, stem: str) -> str:
-        """A name that nothing here has yet, such as "camera 3".
+    def free_name(self, stem: str, joint: str = " ") -> str:
+        """A name that nothing here has yet, such as "person 3".
 
         Args:
             stem: what it begins with.
+            joint: between it and the number.
         """
         taken = {*self.camera_names, *self.body_names}
         number = 1
-        while f"{stem} {number}" in taken:
+        while f"{stem}{joint}{number}" in taken:
             number += 1
-        return f"{stem} {number}"
+        return f"{stem}{joint}{number}"
 
 
 class _HasName(Protocol):

@@ -44,7 +44,9 @@ def open_plan(
         Guarded({"/": Answer("text/html; charset=utf-8", frame_of(words, ground.site.name))}), port
     )
     try:
-        made.viser.gui.configure_theme(control_layout="fixed", control_width="large", show_logo=False)
+        made.viser.gui.configure_theme(
+            control_layout="fixed", control_width="large", show_logo=False, show_share_button=False
+        )
         session = Session(made.viser, ground, words, out, is_fresh)
     except BaseException:
         made.stop()
@@ -77,5 +79,5 @@ def _look_in(session: Session) -> None:
     lower, upper = session.ground.box_m
     middle, size = (lower + upper) / 2, upper - lower
     camera = session.server.initial_camera
-    camera.position = tuple(middle + size * (-0.75, -1.15, 1.0))
+    camera.position = tuple(middle + size * (-0.6, -0.95, 0.8))
     camera.look_at = tuple(middle - (0, 0, 0.15 * size[2]))

@@ -105,7 +105,7 @@ class Planner:
         kind = self._sensor(sensor)
         if len(self.layout.cameras) >= MOST_CAMERAS:
             raise InputError(f"plan: {MOST_CAMERAS} cameras are the most that can be verified")
-        name = self.layout.free_name("camera").replace(" ", "_")
+        name = self.layout.free_name("camera", "_")
         pose = looking_at(self._lonely_place().tolist(), self._middle().tolist())
         self._do(lambda now: now.having(PlacedCamera(kind.at(name, pose), kind.name)))
         return name
