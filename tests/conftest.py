@@ -44,6 +44,7 @@ def _kept_apart(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What is kept from one process to the next is kept in a folder of the tests, not in the user's."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ELBOWROOM_CACHE", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("ELBOWROOM_NO_PAGE", "1")  # a test that wants a page opens it
         yield
 
 

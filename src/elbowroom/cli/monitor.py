@@ -70,6 +70,16 @@ BlackBoxFolder = Annotated[
 NoPage = Annotated[
     bool, typer.Option("--no-page", envvar="ELBOWROOM_NO_PAGE", help="Open no page for a browser.")
 ]
+Seconds = Annotated[float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")]
+Noise = Annotated[
+    str | None,
+    typer.Option(
+        help="Of a simulated room's cameras: exact, or a sensor such as tof, realsense_d435. Default: the site's."
+    ),
+]
+OutDir = Annotated[
+    Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
+]
 SkewMs = Annotated[
     float,
     typer.Option(
@@ -85,9 +95,7 @@ def monitor(
         Path | None,
         typer.Argument(metavar="SITE", help="A site file. Default: a simulated intervention room."),
     ] = None,
-    seconds: Annotated[
-        float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")
-    ] = None,
+    seconds: Seconds = None,
     voxel_size: VoxelSize = None,
     cameras: Annotated[
         int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")
@@ -95,12 +103,7 @@ def monitor(
     resolution: Annotated[
         str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
     ] = None,
-    noise: Annotated[
-        str | None,
-        typer.Option(
-            help="Of a simulated room's cameras: exact, or a sensor such as tof, realsense_d435. Default: the site's."
-        ),
-    ] = None,
+    noise: Noise = None,
     rule: Rule = None,
     detail: Detail = None,
     joints: JointsText = None,
@@ -112,9 +115,7 @@ def monitor(
     record: RecordFile = None,
     black_box: BlackBoxFolder = None,
     json: JsonFile = None,
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
-    ] = None,
+    out: OutDir = None,
     no_page: NoPage = False,
     page_port: PagePort = None,
     language: Language = "en",
@@ -141,7 +142,7 @@ def monitor(
     is told, and stops nothing.
 
     A page at 127.0.0.1:8137 shows the room, each motion and why it stops, in a process
-    of its own that nothing here waits for, where `pip install 'elbowroom[page]'` was done.
+    of its own that nothing here waits for; where it needs packages, it is said which.
 
     Not a certified safety function.
     """

@@ -38,7 +38,7 @@ def show_page(file: Path, begin: int | None, port: int | None, language: str) ->
         checked(recording)
         configuration = recording.configuration()
         compiled(configuration)
-        stops = _stops(recording)
+        stops = stops_with_bar(recording)
         extra = extra_of(stops, len(recording), recording.note, words)
         page = Page(configuration, words, "replay", extra)
         page.open(PORT if port is None else port)
@@ -52,7 +52,7 @@ def show_page(file: Path, begin: int | None, port: int | None, language: str) ->
     print(NOT_CERTIFIED)
 
 
-def _stops(recording: Recording) -> list[Stop]:
+def stops_with_bar(recording: Recording) -> list[Stop]:
     """The stops of a recording, looked for with a bar."""
     console = Console(stderr=True)
     with Steps(console, 1) as steps:

@@ -70,17 +70,17 @@ def verdict_of(row: Mapping[str, Any], motion: Motion) -> Verdict:
     """
     place = row["place_m"]
     return Verdict(
-        motion,
-        Level[row["level"].upper()],
-        float(row["free_travel"]),
-        row["free_travel_unit"],
-        row["link"],
-        None if place is None else _three(place),
-        Cause[row["cause"].upper()],
-        row["other_link"],
-        row["escapes"],
-        row["zone"],
-        _creep(row["creep"]),
+        motion=motion,
+        level=Level[row["level"].upper()],
+        free_travel=float(row["free_travel"]),
+        free_travel_unit=row["free_travel_unit"],
+        link=row["link"],
+        place_in_world=None if place is None else _three(place),
+        cause=Cause[row["cause"].upper()],
+        other_link=row["other_link"],
+        escapes=row["escapes"],
+        zone=row["zone"],
+        creep=_creep(row["creep"]),
     )
 
 

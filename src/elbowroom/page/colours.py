@@ -19,8 +19,8 @@ LEVELS: dict[Level, Colour] = {
     Level.INFORM: (112, 170, 255),
     Level.CLEAR: (36, 110, 101),
 }
-"""Red, orange, blue, green; of all colours here that mean something no two are nearer than 28 (CIE 1976 Lab), seen with all
-cones or without one kind (Machado, Oliveira and Fernandes 2009)."""
+"""Red, orange, blue, green. Of all colours here that mean something no two are nearer than 28 (CIE 1976 Lab), seen with
+all cones or without one kind (Machado, Oliveira and Fernandes 2009)."""
 MARKS: dict[Level, str] = {Level.STOP: "■", Level.DECELERATE: "▲", Level.INFORM: "●", Level.CLEAR: "○"}
 """A shape for each level, so that it does not hang on colour alone."""
 

@@ -67,13 +67,14 @@ class OpenedPage:
         for part in Configuration.of(room, plain_cycle(room)).attached():
             (self._folder / part.name).write_bytes(part.data)
         said = {"board": board.said(), "folder": str(self._folder), "language": self.language}
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "elbowroom.page.process"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=(self._folder / LOG).open("w"),
-            text=True,
-        )
+        with (self._folder / LOG).open("w") as log:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "elbowroom.page.process"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=log,
+                text=True,
+            )
         with contextlib.suppress(OSError):
             self._process.stdin.write(json.dumps({**said, "port": self.port}) + "\n")
             self._process.stdin.flush()
@@ -114,8 +115,6 @@ class OpenedPage:
             yield f"page: its process ended by itself ({self._process.returncode}); the monitor went on"
 
     def _listen(self) -> None:
-        for line in self._process.stdout:
-            with contextlib.suppress(ValueError):
-                self._answer = json.loads(line)
-                break
+        with self._process.stdout as lines, contextlib.suppress(ValueError):
+            self._answer = json.loads(lines.readline())
         self._heard.set()

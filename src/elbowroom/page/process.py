@@ -1,4 +1,4 @@
-"""The page's own process: started by the monitor, fed by its board, and ended with it. `python -m elbowroom.page.process`.
+"""The page's own process, `python -m elbowroom.page.process`: started by the monitor, fed by its board, ended with it.
 
 Read from standard input: one line of JSON that says what to show. Written to standard output: one line that says where.
 """

@@ -1,4 +1,4 @@
-"""What would change it, as values: which camera would see the place if what moved by how much, and all else that helps."""
+"""What would change it, as values: which camera would see the place if what moved by how much, and what else helps."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field

@@ -114,8 +114,10 @@ def _explained(source: ImageSource, camera: str, window: _Window, inside: NDArra
 
 
 def _aside(before: NDArray[np.bool_], window: _Window) -> tuple[str | None, int]:
-    """The side to which what is before the window goes least far until it is clear, and how far [px]; people and things go
-    aside before they go up or down."""
+    """The side to which what is before the window goes least far until it is clear, and how far [px].
+
+    People and things go aside before they go up or down.
+    """
     across = np.asarray(before[window.top : window.bottom + 1].any(axis=0))
     ways = {
         "left": _clear_of(across, window.left, window.right),
@@ -135,8 +137,10 @@ def _aside(before: NDArray[np.bool_], window: _Window) -> tuple[str | None, int]
 
 
 def _clear_of(blocked: NDArray[np.bool_], first: int, last: int) -> int:
-    """How far what blocks places `first` to `last` has to go towards the beginning until it blocks none of them; 0: it goes on
-    to the end of the line, so nobody can tell."""
+    """How far what blocks places `first` to `last` has to go towards the beginning until it blocks none of them.
+
+    0: it goes on to the end of the line, so nobody can tell.
+    """
     end = last
     while end < len(blocked) and (end <= last or blocked[end]):
         end += 1

@@ -3,8 +3,8 @@
 Two slots take turns. A slot begins and ends with the number of what is in it: where both are the same before and after
 it was copied, nobody wrote into it meanwhile. The writer never looks at what a reader does.
 
-A processor that shows one core's writes to another in another order (ARM) could show the numbers before the bytes: so what is
-read is compared with a sum of its bytes, too, where it is no longer than `SUMMED`.
+A processor that shows one core's writes to another in another order (ARM) could show the numbers before the bytes: so
+what is read is compared with a sum of its bytes, too, where it is no longer than `SUMMED`.
 """
 
 import struct

@@ -132,5 +132,5 @@ const Panel = (() => {
 
   function seconds(value) { return value.toFixed(value < 10 ? 1 : 0).replace(".", hello ? hello.words.decimal : "."); }
 
-  return {at, begin, moment, why, depth, old, word, element, setText, seconds, choose};
+  return {at, begin, moment, why, because, depth, old, word, element, setText, seconds, choose};
 })();

@@ -9,10 +9,11 @@ from typing import Any
 from elbowroom.errors import ElbowroomError
 from elbowroom.page.face import planes_of
 from elbowroom.page.live import depth_message
-from elbowroom.page.page import Page, clock
+from elbowroom.page.page import Page
 from elbowroom.page.replay.again import Again, Judge
 from elbowroom.page.replay.stops import Stop
 from elbowroom.page.talk import Viewer
+from elbowroom.page.telling import clock
 from elbowroom.page.words import Words
 
 WAITS_S = 0.02

@@ -45,7 +45,9 @@ class Scene:
         corners = np.array([[(lower, upper)[(n >> axis) & 1][axis] for axis in range(3)] for n in range(8)])
         edges = [(a, a | 1 << axis) for a in range(8) for axis in range(3) if not a >> axis & 1]
         lines = np.array([[corners[a], corners[b]] for a, b in edges])
-        self.server.scene.add_line_segments("/box", lines, colors=colours.BOX, line_width=1.5)
+        self.server.scene.add_line_segments(
+            "/box", lines, colors=colours.BOX, thickness=1.5, thickness_units="screen"
+        )
         middle = (lower + upper) / 2
         self.server.scene.add_grid(
             "/floor",
@@ -103,7 +105,8 @@ class Scene:
                 fov=2 * float(np.arctan2(camera.height / 2, of.fy)),
                 aspect=camera.width / camera.height * of.fy / of.fx,
                 scale=FRUSTUM_M,
-                line_width=2.5,
+                thickness=2.5,
+                thickness_units="screen",
                 color=colours.CAMERA_WELL,
                 wxyz=wxyz_of(camera.world_from_camera[:3, :3]),
                 position=camera.centre_in_world,

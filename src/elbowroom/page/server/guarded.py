@@ -1,8 +1,8 @@
 """A viser server behind a door: loopback alone, Host and Origin by exact name, no tunnel, small messages.
 
-viser (1.1) asks nobody who they are, takes messages of 50 MB, and opens a tunnel to elsewhere when a message says so. So its
-call of `websockets.serve` is taken over while it starts: what it would answer is answered behind the door. A version of
-viser that starts otherwise is refused, and never served open.
+viser (1.1) asks nobody who they are, takes messages of 50 MB, and opens a tunnel to elsewhere when a message says so.
+So its call of `websockets.serve` is taken over while it starts: what it would answer is answered behind the door. A
+version of viser that starts otherwise is refused, and never served open.
 """
 
 import contextlib

@@ -1,4 +1,4 @@
-"""A moment in what JSON knows: all that the page says is said of this, whether it comes from a run or from a recording."""
+"""A moment in what JSON knows: all that the page says is said of this, be it of a run or of a recording."""
 
 from collections.abc import Mapping
 from dataclasses import replace
