@@ -44,9 +44,8 @@ def open_plan(
         Guarded({"/": Answer("text/html; charset=utf-8", frame_of(words, ground.site.name))}), port
     )
     try:
-        made.viser.gui.configure_theme(
-            control_layout="fixed", control_width="large", show_logo=False, show_share_button=False
-        )
+        made.viser.gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
+        made.viser.gui.main_panel.dock_right()
         session = Session(made.viser, ground, words, out, is_fresh)
     except BaseException:
         made.stop()

@@ -39,6 +39,7 @@ class Panel:
     at: dict[str, Any] = field(default_factory=dict, init=False)
     joints: dict[str, Any] = field(default_factory=dict, init=False)
     _is_filling: bool = field(default=False, init=False)
+    _is_troubled: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
         words, gui = self.words, self.gui
@@ -107,8 +108,12 @@ class Panel:
         words, figures = self.words, said.figures
         if figures is None:
             self.say(words("plan.trouble", text=said.trouble))
-            self.at["figures"].content = words("plan.reckoning")
+            self.at["figures"].content = words("plan.no_figures")
+            self._is_troubled = True
             return
+        if self._is_troubled:
+            self.say(words("plan.ready"))
+        self._is_troubled = False
         if figures.cameras == 0:
             self.at["figures"].content = words("plan.no_camera")
             return

@@ -14,6 +14,7 @@ PLAN_ENGLISH: dict[str, str] = {
     "plan.exact": "Exact, at {edge} cm",
     "plan.coarse": "First answer, at {edge} cm …",
     "plan.reckoning": "Reckoning …",
+    "plan.no_figures": "No figures: see below.",
     "plan.no_camera": "No camera yet: nothing is seen.",
     "plan.no_price": "the site names no prices",
     "plan.millimetres": "{value} mm",

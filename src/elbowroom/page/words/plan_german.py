@@ -14,6 +14,7 @@ PLAN_GERMAN: dict[str, str] = {
     "plan.exact": "Genau, bei {edge} cm",
     "plan.coarse": "Erste Antwort, bei {edge} cm …",
     "plan.reckoning": "Wird gerechnet …",
+    "plan.no_figures": "Keine Zahlen: siehe unten.",
     "plan.no_camera": "Noch keine Kamera: Nichts wird gesehen.",
     "plan.no_price": "die Datei nennt keine Preise",
     "plan.millimetres": "{value} mm",
