@@ -11,8 +11,9 @@ from elbowroom.geometry.noise import NoiseModel
 from elbowroom.machine import Explained
 from elbowroom.reconstruct import reconstruct
 from elbowroom.reconstruct.carve import carve_images
+from elbowroom.reconstruct.growth import pixel_width_m
 from elbowroom.reconstruct.images import room_images
-from elbowroom.reconstruct.parts import LATERAL_PX, PARTS, free_parts
+from elbowroom.reconstruct.parts import FINE_PIXEL_M, LATERAL_PX, PARTS, finest_part_m, free_parts
 from elbowroom.reconstruct.resolve import decide
 from elbowroom.reconstruct.source import ImageSource
 from elbowroom.reconstruct.terms import WITNESS_ANGLE_DEG, Terms
@@ -251,6 +252,30 @@ def test_no_part_that_a_ball_touches_is_free():
             asked += touched.any()
             assert not (parts_free(space, index) & touched).any()
     assert asked > 100
+
+
+def test_where_pixels_are_fine_no_part_that_a_finger_touches_is_free():
+    """Parts are finer than pixels there, and pixels wider: a finger two pixels thick is missed by none."""
+    grid, rng = VoxelGrid((-0.05, -0.05, -0.05), (5, 5, 5), 0.02), np.random.default_rng(3)
+    cut = asked = 0
+    for _ in range(12):
+        eyes = rng.normal(size=(6, 3))
+        eyes *= 1.5 / np.linalg.norm(eyes, axis=1, keepdims=True)
+        cameras = [scenes.camera_at(f"c{n}", eye, (0, 0, 0), focal=200.0) for n, eye in enumerate(eyes)]
+        pixel_m = pixel_width_m(cameras, np.zeros(3))
+        assert finest_part_m(pixel_m) < 0.005 < pixel_m < FINE_PIXEL_M
+        corner, axis = rng.uniform(-0.03, 0.01, 3), rng.integers(3)
+        size = np.where(np.arange(3) == axis, 0.06, rng.uniform(2.0, 2.6) * pixel_m)
+        finger = scenes.Scene(boxes=np.concatenate([corner, corner + size])[None])
+        frames = [scenes.frame_of(camera, finger) for camera in cameras]
+        space = reconstruct(grid, cameras, frames, margin=Margin(lateral_px=0.0))
+        assert not (space.free & scenes.touched(grid, finger)).any()
+        for index in blocked(space):
+            touched, free = scenes.touched(parts_of(grid, index), finger), parts_free(space, index)
+            assert not (free & touched).any()
+            asked += touched.any()
+            cut += touched.any() and free.any()
+    assert asked > 100 and cut > 30
 
 
 def test_no_part_is_free_that_a_ball_may_have_come_to_since():

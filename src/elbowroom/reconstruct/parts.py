@@ -24,6 +24,8 @@ EIGHTHS = tuple(
 EIGHT = np.uint64(sum(1 << lane for lane, _ in EIGHTHS))
 LATERAL_PX = 0.5
 """By so much pixels are widened at least: what ends between the rays of two pixels ends in some part."""
+FINE_PIXEL_M = 0.01
+"""Three pixels of this width are no wider than a hand is thick: there parts may be half a pixel wide [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
@@ -46,6 +48,15 @@ def widened(views: Views) -> Views:
     cameras["ray_half_width"] *= ((0.5 + lateral_px) / (0.5 + cameras["lateral_px"]))[:, None]
     cameras["lateral_px"] = lateral_px
     return views._replace(cameras=cameras)
+
+
+def finest_part_m(pixel_m: float) -> float:
+    """How fine parts may be where a pixel is so wide [m]: as a pixel, or as half of one that is fine.
+
+    Parts halves of a pixel wide lose nothing that is wider than a pixel, since pixels are `widened`. What is narrower
+    a whole voxel notices more often than its parts do: limbs, in coarse images, and nothing of people in fine ones.
+    """
+    return pixel_m / 2 if pixel_m <= FINE_PIXEL_M else pixel_m
 
 
 def free_parts(

@@ -11,7 +11,7 @@ from elbowroom.geometry.bits import Words
 from elbowroom.reconstruct.free_space import FreeSpace, Index
 from elbowroom.reconstruct.growth import pixel_width_m
 from elbowroom.reconstruct.images import Image, RoomImages
-from elbowroom.reconstruct.parts import NONE, KeptViews, free_parts
+from elbowroom.reconstruct.parts import NONE, KeptViews, finest_part_m, free_parts
 from elbowroom.reconstruct.point_report import PointReport, Sight
 from elbowroom.reconstruct.sight import sight_of, surface_about
 from elbowroom.reconstruct.terms import Terms
@@ -82,8 +82,8 @@ class ImageSource:
         Args:
             space: judged by detail `pixel` and rule `three`, and no less free than the images say; else none are. None
                 are as well where the terms say that nothing is looked at again.
-            index: of the voxel; of one that cameras were not asked of none are. No part is finer than a pixel is
-                wide there.
+            index: of the voxel; of one that cameras were not asked of none are. No part is finer than
+                `parts.finest_part_m` says of that place.
 
         Returns:
             A word, as of `parts.free_parts`.
@@ -95,7 +95,7 @@ class ImageSource:
         if self._more_is_blocked(space) or not (self.focus is None or self.focus[word]):
             return NONE
         pixel_m = pixel_width_m(self.images.cameras, space.grid.centre_of(np.array(index)))
-        return free_parts(space.grid, index, self.kept, finest_m=pixel_m)
+        return free_parts(space.grid, index, self.kept, finest_part_m(pixel_m))
 
     def _more_is_blocked(self, space: FreeSpace) -> bool:
         """Whether somebody blocked what the images say is free, such as a zone to keep out of; asked again and again of
