@@ -82,7 +82,7 @@ def pixel(session, panel, point: np.ndarray) -> np.ndarray:
 
 
 def test_a_camera_is_dragged_and_the_figures_follow(session, panel) -> None:
-    frame, tab = panel
+    _, tab = panel
     says(panel, "Exact, at 10.0 cm")
     session.choose("b")
     waited(lambda: session.gizmo._handle is not None)
