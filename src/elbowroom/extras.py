@@ -11,7 +11,9 @@ from elbowroom.errors import PackageError
 PACKAGES = {
     "coal": ("exact mesh distance needs coal", "evaluate"),
     "cv2": ("calibration needs OpenCV", "calibrate"),
+    "cryptography": ("the Foxglove face needs cryptography", "foxglove"),
     "distributed": ("a cluster needs Dask", "cluster"),
+    "foxglove": ("the Foxglove face needs foxglove-sdk", "foxglove"),
     "lz4": ("reading this bag, whose chunks are compressed with lz4, needs lz4", "bag"),
     "matplotlib": ("charts need Matplotlib", "evaluate"),
     "ortools": ("finding a placement needs CP-SAT of OR-Tools", "placement"),

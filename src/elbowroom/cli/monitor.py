@@ -1,6 +1,7 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
-from contextlib import nullcontext
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -67,6 +68,12 @@ BlackBoxFolder = Annotated[
         metavar="DIR", help="Keep the minute before each stop, and 10 s after it, as a file in this folder."
     ),
 ]
+FoxgloveFace = Annotated[
+    bool, typer.Option("--foxglove", help="Show it in Foxglove as well, at 127.0.0.1, port 8765.")
+]
+FoxglovePort = Annotated[
+    int, typer.Option(min=0, max=65535, help="Another port for Foxglove. 0: any that is free.")
+]
 NoPage = Annotated[
     bool, typer.Option("--no-page", envvar="ELBOWROOM_NO_PAGE", help="Open no page for a browser.")
 ]
@@ -119,6 +126,8 @@ def monitor(
     no_page: NoPage = False,
     page_port: PagePort = None,
     language: Language = "en",
+    foxglove: FoxgloveFace = False,
+    foxglove_port: FoxglovePort = 8765,
 ) -> None:
     """Watch a room and say, per joint and direction, how far the machine may go.
 
@@ -143,6 +152,7 @@ def monitor(
 
     A page at 127.0.0.1:8137 shows the room, each motion and why it stops, in a process
     of its own that nothing here waits for; where it needs packages, it is said which.
+    --foxglove shows it in Foxglove too.
 
     Not a certified safety function.
     """
@@ -172,8 +182,9 @@ def monitor(
         )
         shown = live(_skewed(room, skew_ms) if skew_ms else room)
         recorder = recorder_of(room, record, black_box)
-        page = None if no_page else _page(shown, page_port, language)
-        _watch(shown, seconds, json, out, gate_of(room, gate, callback), recorder, page)
+        pages = [] if no_page else [_page(shown, page_port, language)]
+        pages += [_foxglove(shown, foxglove_port)] if foxglove else []
+        _watch(shown, seconds, json, out, gate_of(room, gate, callback), recorder, pages)
 
 
 def _page(room: "Room", port: int | None, language: str) -> "OpenedPage | str":
@@ -181,6 +192,13 @@ def _page(room: "Room", port: int | None, language: str) -> "OpenedPage | str":
     from elbowroom.page.opened import OpenedPage, missing
 
     return missing() or OpenedPage(room, port, language)
+
+
+def _foxglove(room: "Room", port: int) -> "OpenedPage | str":
+    """The face for Foxglove, not opened yet; or why there is none, a line."""
+    from elbowroom.page.foxglove.opened import opened_foxglove
+
+    return opened_foxglove(room, port)
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -220,7 +238,7 @@ def _watch(
     out_dir: Path | None,
     gate: "Gate | None",
     recorder: "Recorder | None",
-    page: "OpenedPage | str | None" = None,
+    pages: "Sequence[OpenedPage | str]" = (),
 ) -> None:
     """Runs the loop over a room, with the faces that were asked for."""
     from rich.console import Console
@@ -240,13 +258,15 @@ def _watch(
     unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
-    opened = page if page is not None and not isinstance(page, str) else None
-    with json_rows(json_file) as add, TerminalView(console) as view, opened or nullcontext():
+    opened = [page for page in pages if not isinstance(page, str)]
+    with json_rows(json_file) as add, TerminalView(console) as view, ExitStack() as open_pages:
+        for page in opened:
+            open_pages.enter_context(page)
         for note in (*notes_of(room.site), *(finding.text for finding in time_findings(room.site))):
             view.note(note)
         if unasked is not None:
             view.note(unasked)
-        noted = PageNote(view.note, page)
+        noted = [PageNote(view.note, page) for page in pages]
         compile_kernels(
             console,
             machine=room.machine is not None,
@@ -258,9 +278,9 @@ def _watch(
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]
-        noted.wait()
-        if opened is not None:
-            faces.append(opened.face)
+        for note_of_page in noted:
+            note_of_page.wait()
+        faces += [page.face for page in opened]
         if recorder is not None:
             recorder.cycle = loop.cycle
             faces.append(recorder)
@@ -269,5 +289,5 @@ def _watch(
             loop.run(faces, seconds, is_over)
         add(view.log.row())
     told = [] if recorder is None else [*recorder.said, *recorder.troubles]
-    for line in (*told, *(() if opened is None else opened.troubles)):
+    for line in (*told, *(line for page in opened for line in page.troubles)):
         console.print(line, highlight=False)

@@ -33,7 +33,7 @@ def plan(
     site: PlanSite = None,
     out: PlanOut = None,
     fresh: Fresh = False,
-    port: Port = 8138,
+    port: Port = 8139,
     language: Language = "en",
     voxel_size: VoxelSize = None,
 ) -> None:

@@ -20,7 +20,7 @@ FRAME = (
     "<header><h1>{title}</h1><p>{hint}</p></header>"
     '<iframe src="/scene/plan" title="{scene}"></iframe></body></html>'
 )
-PORT = 8138
+PORT = 8139
 """At which the page is, if nobody says otherwise."""
 
 
