@@ -13,10 +13,12 @@ from elbowroom.cli.export import export
 from elbowroom.cli.gate import gate_app
 from elbowroom.cli.monitor import monitor
 from elbowroom.cli.placement.app import placement_app
+from elbowroom.cli.plan import plan
 from elbowroom.cli.reconstruct import reconstruct
 from elbowroom.cli.replay import replay
 from elbowroom.cli.simulate import simulate
 from elbowroom.cli.site import site_app
+from elbowroom.cli.view import view
 
 app = typer.Typer(
     name="elbowroom",
@@ -55,6 +57,20 @@ app.command(
         "elbowroom replay run.mcap --why 1200",
     )
 )(replay)
+app.command(
+    epilog=_example(
+        "elbowroom plan",
+        "elbowroom plan my_room.yaml --out planned.yaml",
+        "elbowroom plan setup1",
+    )
+)(plan)
+app.command(
+    epilog=_example(
+        "elbowroom view my_room.yaml --picture room.png",
+        "elbowroom view my_room.yaml --picture above.png --view top --hide sweeps",
+        "elbowroom view my_room.yaml --picture near.png --from 2,-2,1.8 --to 0,0,1 --size 1600x1200 --sweep larm+",
+    )
+)(view)
 app.command(epilog=_example("elbowroom export run.mcap images"))(export)
 app.command(
     epilog=_example(

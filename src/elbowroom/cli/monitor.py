@@ -1,7 +1,7 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
 from collections.abc import Sequence
-from contextlib import nullcontext
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
@@ -98,6 +98,12 @@ ServiceOrigin = Annotated[
     list[str] | None,
     typer.Option(metavar="ORIGIN", help="A page that may ask the service, such as http://127.0.0.1:8080."),
 ]
+FoxgloveFace = Annotated[
+    bool, typer.Option("--foxglove", help="Show it in Foxglove as well, at 127.0.0.1, port 8765.")
+]
+FoxglovePort = Annotated[
+    int, typer.Option(min=0, max=65535, help="Another port for Foxglove. 0: any that is free.")
+]
 NoPage = Annotated[
     bool, typer.Option("--no-page", envvar="ELBOWROOM_NO_PAGE", help="Open no page for a browser.")
 ]
@@ -154,6 +160,8 @@ def monitor(
     no_page: NoPage = False,
     page_port: PagePort = None,
     language: Language = "en",
+    foxglove: FoxgloveFace = False,
+    foxglove_port: FoxglovePort = 8765,
 ) -> None:
     """Watch a room and say, per joint and direction, how far the machine may go.
 
@@ -186,6 +194,7 @@ def monitor(
 
     A page at 127.0.0.1:8137 shows the room, each motion and why it stops, in a process
     of its own that nothing here waits for; where it needs packages, it is said which.
+    --foxglove shows it in Foxglove too.
 
     Not a certified safety function.
     """
@@ -217,8 +226,9 @@ def monitor(
         recorder = recorder_of(room, record, black_box)
         decides = gate_of(room, gate, callback)
         serving = None if service is None else _serving(decides, service, token, service_origin or ())
-        page = None if no_page else _page(shown, page_port, language)
-        _watch(shown, seconds, (json, out), Run(decides, recorder, _paths(path), serving, page))
+        pages = [] if no_page else [_page(shown, page_port, language)]
+        pages += [_foxglove(shown, foxglove_port)] if foxglove else []
+        _watch(shown, seconds, (json, out), Run(decides, recorder, _paths(path), serving, pages))
 
 
 def _page(room: "Room", port: int | None, language: str) -> "OpenedPage | str":
@@ -226,6 +236,13 @@ def _page(room: "Room", port: int | None, language: str) -> "OpenedPage | str":
     from elbowroom.page.opened import OpenedPage, missing
 
     return missing() or OpenedPage(room, port, language)
+
+
+def _foxglove(room: "Room", port: int) -> "OpenedPage | str":
+    """The face for Foxglove, not opened yet; or why there is none, a line."""
+    from elbowroom.page.foxglove.opened import opened_foxglove
+
+    return opened_foxglove(room, port)
 
 
 def _noisy(site: "Site", noise: str) -> "Site":
@@ -265,7 +282,7 @@ class Run(NamedTuple):
     recorder: "Recorder | None"
     paths: "MeantPaths | None"
     serving: "Serving | None"
-    page: "OpenedPage | str | None"
+    pages: "Sequence[OpenedPage | str]"
 
 
 def _serving(gate: "Gate | None", port: int, token: Path | None, origins: Sequence[str]) -> "Serving":
@@ -322,17 +339,19 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
     from elbowroom.view.draw.last_pictures import LastPictures
     from elbowroom.view.screen.terminal import TerminalView
 
-    (json_file, out_dir), recorder, page = files, run.recorder, run.page
+    (json_file, out_dir), recorder, pages = files, run.recorder, run.pages
     unasked = room.unasked  # what is wrong with the machine is said before anything is compiled
     console = Console()
     pictures = [] if out_dir is None else [LastPictures(out_dir, console)]
-    opened = page if page is not None and not isinstance(page, str) else None
-    with json_rows(json_file) as add, TerminalView(console) as view, opened or nullcontext():
+    opened = [page for page in pages if not isinstance(page, str)]
+    with json_rows(json_file) as add, TerminalView(console) as view, ExitStack() as open_pages:
+        for page in opened:
+            open_pages.enter_context(page)
         for note in (*notes_of(room.site), *(finding.text for finding in time_findings(room.site))):
             view.note(note)
         if unasked is not None:
             view.note(unasked)
-        noted = PageNote(view.note, page)
+        noted = [PageNote(view.note, page) for page in pages]
         compile_kernels(
             console,
             machine=room.machine is not None,
@@ -344,9 +363,9 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
         faces: list[Face] = [view, Rows(add), *pictures]
-        noted.wait()
-        if opened is not None:
-            faces.append(opened.face)
+        for note_of_page in noted:
+            note_of_page.wait()
+        faces += [page.face for page in opened]
         if recorder is not None:
             recorder.cycle = loop.cycle
             faces.append(recorder)
@@ -358,5 +377,5 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
             loop.run(faces, seconds, is_over)
         add(view.log.row())
     told = [] if recorder is None else [*recorder.said, *recorder.troubles]
-    for line in (*told, *(() if opened is None else opened.troubles)):
+    for line in (*told, *(line for page in opened for line in page.troubles)):
         console.print(line, highlight=False)

@@ -41,6 +41,8 @@ class OpenedPage:
         room: that is watched.
         port: at which; None: 8137, or where that is taken any that is free.
         language: of its words.
+        name: what it is called when something is said of it.
+        program: the module that runs in its process.
 
     Raises:
         InputError: no such language.
@@ -49,6 +51,8 @@ class OpenedPage:
     room: Room
     port: int | None = None
     language: str = "en"
+    name: str = "page"
+    program: str = "elbowroom.page.process"
     face: PageFace = field(init=False)
     url: str | None = field(default=None, init=False)
     _folder: Path = field(init=False)
@@ -69,7 +73,7 @@ class OpenedPage:
         said = {"board": board.said(), "folder": str(self._folder), "language": self.language}
         with (self._folder / LOG).open("w") as log:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "elbowroom.page.process"],
+                [sys.executable, "-m", self.program],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=log,
@@ -103,16 +107,16 @@ class OpenedPage:
         """
         self._heard.wait(waits_s)
         if "url" in self._answer:
-            return f"page: {self._answer['url']}"
-        return f"no page: {self._answer.get('error', 'its process does not answer')}"
+            return f"{self.name}: {self._answer['url']}"
+        return f"no {self.name}: {self._answer.get('error', 'its process does not answer')}"
 
     @property
     def troubles(self) -> Iterator[str]:
         """What the page suffered, a line each."""
         if self.face.fault is not None:
-            yield f"page: was not told all ({self.face.fault})"
+            yield f"{self.name}: was not told all ({self.face.fault})"
         if self._process.poll() not in (None, 0):
-            yield f"page: its process ended by itself ({self._process.returncode}); the monitor went on"
+            yield f"{self.name}: its process ended by itself ({self._process.returncode}); the monitor went on"
 
     def _listen(self) -> None:
         with self._process.stdout as lines, contextlib.suppress(ValueError):

@@ -110,14 +110,14 @@ def _mounts(given: PlacementEntry, room: FixedRoom | None, seed: int) -> list[Mo
         if not entry.taken:
             position = np.array(entry.position_m)
             price = prices.mount if entry.price is None else entry.price
-            cable = _cable_m(position, prices) if entry.cable_m is None else entry.cable_m
+            cable = cable_m(position, prices) if entry.cable_m is None else entry.cable_m
             mounts.append(Mount(entry.name, position, price, cable))
     along = given.mounts_along
     if along is None and not given.mounts:
         along = AlongEntry(wall_spacing_m=WALL_SPACING_M, ceiling_spacing_m=CEILING_SPACING_M)
     if along is not None:
         places = _along(along, room, seed)
-        mounts += [Mount(name, at, prices.mount, _cable_m(at, prices)) for name, at in places]
+        mounts += [Mount(name, at, prices.mount, cable_m(at, prices)) for name, at in places]
     return mounts
 
 
@@ -175,7 +175,7 @@ def _on_mesh(count: int, room: FixedRoom, seed: int) -> list[tuple[str, NDArray[
     return [(f"mesh{number:02d}", point) for number, point in enumerate(kept)]
 
 
-def _cable_m(position: NDArray[np.float64], prices: PricesEntry) -> float:
+def cable_m(position: NDArray[np.float64], prices: PricesEntry) -> float:
     """Cable along the room's axes to the hub [m]; 0 without one."""
     return 0.0 if prices.hub_m is None else float(np.abs(position - np.array(prices.hub_m)).sum())
 

@@ -118,7 +118,7 @@ def capability(found: Verification, views: int = 1) -> Capability:
         sizes = np.full((len(found.cameras), 2, *grid.shape[1:]), np.inf)
         for c, camera in enumerate(found.cameras):
             seen = found.seen[c, i]
-            pitch, noise = _needs(camera, points[seen])
+            pitch, noise = needs(camera, points[seen])
             sizes[c, 0][seen], sizes[c, 1][seen] = pitch, noise
         whole = np.maximum(np.maximum(sizes[:, 0], sizes[:, 1]), floor)
         order = np.argsort(whole, axis=0, kind="stable")[views - 1][None]
@@ -130,7 +130,7 @@ def capability(found: Verification, views: int = 1) -> Capability:
     return Capability(grid, views, parts[0], parts[1], parts[2], found.asked)
 
 
-def _needs(
+def needs(
     camera: DepthCamera, points_in_world: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """How thick an object must be at each point for pixels to hit it, and for noise not to hide it [m]."""

@@ -39,12 +39,14 @@ class FixedRoom:
         surfaces: meshes that are not closed, or closed about the room itself: they block sight and have no inside.
         walls_m: inner faces, least and greatest corner, shape (2, 3), world frame [m]; None: not known.
         notes: what a person should know of how the room's mesh was read, a line each.
+        from_mesh: those of both that come from the room's mesh, and not from its walls and furniture.
     """
 
     solids: tuple[Solid, ...] = ()
     surfaces: tuple[Solid, ...] = ()
     walls_m: NDArray[np.float64] | None = None
     notes: tuple[str, ...] = ()
+    from_mesh: tuple[Solid, ...] = ()
 
     @classmethod
     def of_site(cls, site: Site) -> "FixedRoom | None":
@@ -84,15 +86,17 @@ class FixedRoom:
             solids += _shell(walls)
         solids += [_static(item.name, join([box(item.lower_m, item.upper_m)])) for item in entry.furniture]
         if entry.mesh in SETUP_NAMES:
-            solids += [_static(solid.name, solid.mesh) for solid in setup(entry.mesh).solids()]
-            return cls(tuple(solids), (), INNER_WALLS_M)
+            shipped = [_static(solid.name, solid.mesh) for solid in setup(entry.mesh).solids()]
+            return cls(tuple(solids + shipped), (), INNER_WALLS_M, (), tuple(shipped))
         room = _read(entry, beside, box_m)
-        for one in room.objects:
-            (solids if one.is_solid else surfaces).append(_static(one.name, one.mesh, one.is_solid))
+        from_mesh = tuple(_static(one.name, one.mesh, one.is_solid) for one in room.objects)
+        for solid in from_mesh:
+            (solids if solid.has_inside else surfaces).append(solid)
         if walls is None and room.objects:
             corners = np.concatenate([one.mesh.vertices for one in room.objects])
             walls = np.array([corners.min(axis=0), corners.max(axis=0)])
-        return cls(tuple(solids), tuple(surfaces), walls, room.notes + _open_note(room, entry, box_m))
+        notes = room.notes + _open_note(room, entry, box_m)
+        return cls(tuple(solids), tuple(surfaces), walls, notes, from_mesh)
 
     @property
     def moment(self) -> Moment:

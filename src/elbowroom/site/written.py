@@ -107,7 +107,14 @@ def refuse_own_file(site: Site, out: Path) -> None:
         raise SiteError(f"{out}: is the site file itself; write beside it, under another name")
 
 
-def write_site(site: Site, cameras: Sequence[DepthCamera], path: Path) -> Path:
+def write_site(
+    site: Site,
+    cameras: Sequence[DepthCamera],
+    path: Path,
+    *,
+    by: str = "placed by `elbowroom placement optimise`",
+    room: Mapping[str, Any] | None = None,
+) -> Path:
     """Writes the site again with these cameras in place of its own.
 
     All that the site says otherwise stays; paths are written so that they lead to the same files from the new place.
@@ -117,6 +124,8 @@ def write_site(site: Site, cameras: Sequence[DepthCamera], path: Path) -> Path:
         site: what is taken over.
         cameras: all of the layout.
         path: the file to write; there must be none of that name but one that was written by the same means.
+        by: what placed the cameras, for the first line.
+        room: the key `room` otherwise, with paths from the new place; None: as it was.
 
     Returns:
         The path.
@@ -126,12 +135,12 @@ def write_site(site: Site, cameras: Sequence[DepthCamera], path: Path) -> Path:
         InputError: the folder cannot be written to.
     """
     content = {key: value for key, value in said_again(site, path).items() if key != "cameras"}
+    if room is not None:
+        content["room"] = plain(dict(room))
     content["cameras"] = [camera_entry(camera) for camera in cameras]
     if site.simulated is not None:
         content.pop("camera_defaults", None)
-    return written(
-        content, path, f"{site.name}: {len(cameras)} cameras, placed by `elbowroom placement optimise`", site
-    )
+    return written(content, path, f"{site.name}: {len(cameras)} cameras, {by}", site)
 
 
 def _checked(out: Path) -> Path:

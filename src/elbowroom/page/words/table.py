@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from elbowroom.errors import InputError
 from elbowroom.page.words.english import ENGLISH
 from elbowroom.page.words.german import GERMAN
+from elbowroom.page.words.plan_english import PLAN_ENGLISH
+from elbowroom.page.words.plan_german import PLAN_GERMAN
 
-LANGUAGES: dict[str, Mapping[str, str]] = {"en": ENGLISH, "de": GERMAN}
+LANGUAGES: dict[str, Mapping[str, str]] = {"en": {**ENGLISH, **PLAN_ENGLISH}, "de": {**GERMAN, **PLAN_GERMAN}}
 """The tables, by the code of their language (ISO 639-1)."""
 
 

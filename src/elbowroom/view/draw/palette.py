@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry import bits
+from elbowroom.motion.verdict import Level
 from elbowroom.reconstruct.free_space import FreeSpace
 
 Colour = tuple[int, int, int]
@@ -38,6 +39,15 @@ COLOURS: dict[Label, Colour] = {
     Label.BLIND: (240, 200, 66),
 }
 """Colours after Okabe and Ito (2008), and apart in lightness too, so that they survive a grey print."""
+UNSEEN_IN_3D: Colour = (0, 114, 178)
+"""Unseen space in pictures of rooms, whose walls are grey themselves."""
+LEVEL_COLOURS: dict[Level, Colour] = {
+    Level.STOP: (170, 0, 40),
+    Level.DECELERATE: (230, 159, 0),
+    Level.INFORM: (86, 180, 233),
+    Level.CLEAR: (0, 158, 115),
+}
+"""Of swept volumes; apart in lightness as well."""
 
 INK: Colour = (24, 32, 44)
 SOFT_INK: Colour = (96, 106, 118)

@@ -1,0 +1,175 @@
+"""Planning in a real browser: dragged, clicked, typed; saved, and refused."""
+
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+from elbowroom.page.plan.ground import Ground
+from elbowroom.page.plan.opened import open_plan
+from elbowroom.page.plan.saved import kept
+from elbowroom.page.plan.session import Session
+from elbowroom.page.words import words_of
+from elbowroom.site import Site
+from page.plan.conftest import ROOM
+from reference.browser import SOFTWARE_WEBGL, browsers
+
+WAITS_S = 20.0
+
+
+@pytest.fixture(scope="module")
+def session(tmp_path_factory) -> Iterator[Session]:
+    folder = tmp_path_factory.mktemp("plan")
+    (folder / "room.yaml").write_text(ROOM, encoding="utf-8")
+    with browsers():  # skipped here, where there is no browser
+        pass
+    opened = open_plan(
+        Ground.of(Site.load(folder / "room.yaml")), words_of("en"), folder / "planned.yaml", port=0
+    )
+    yield opened
+    opened.stop()
+    opened.page.stop()
+
+
+@pytest.fixture(scope="module")
+def panel(session):
+    """The panel in a browser that draws."""
+    with browsers() as browser:
+        context = browser(*SOFTWARE_WEBGL).new_context(viewport={"width": 860, "height": 480})
+        context.set_default_timeout(WAITS_S * 1000)
+        tab = context.new_page()
+        tab.goto(session.page.url)
+        frame = tab.frame_locator("iframe")
+        frame.get_by_role("button", name="Undo").wait_for()
+        waited(lambda: session.server.get_clients())
+        yield frame, tab
+        context.close()
+
+
+def waited(is_so: Callable[[], object]) -> None:
+    until = time.monotonic() + WAITS_S
+    while not is_so():
+        assert time.monotonic() < until, "it did not come to be"
+        time.sleep(0.05)
+
+
+def click(panel, name: str) -> None:
+    panel[0].get_by_role("button", name=name, exact=True).click()
+
+
+def says(panel, text: str) -> None:
+    panel[0].get_by_text(text).first.wait_for()
+
+
+def pixel(session, panel, point: np.ndarray) -> np.ndarray:
+    """Where a point of the room is in the tab [px]."""
+    (client,) = session.server.get_clients().values()
+    camera = client.camera
+    w, x, y, z = camera.wxyz
+    turn = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    right, down, ahead = (point - camera.position) @ turn
+    box = panel[0].locator("canvas").first.bounding_box()
+    focal = box["height"] / 2 / np.tan(camera.fov / 2)
+    middle = np.array([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2])
+    return middle + focal * np.array([right, down]) / ahead
+
+
+def drag(tab, start: np.ndarray, step: np.ndarray) -> None:
+    """As a hand does, not all within one frame of software drawing."""
+    tab.mouse.move(*start)
+    time.sleep(0.4)
+    tab.mouse.down()
+    for share in np.linspace(0.2, 1.0, 5):
+        time.sleep(0.1)
+        tab.mouse.move(*(start + share * step))
+    tab.mouse.up()
+    time.sleep(0.5)
+
+
+def test_a_camera_is_dragged_and_the_figures_follow(session, panel) -> None:
+    _, tab = panel
+    says(panel, "Exact, at 10.0 cm")
+    session.choose("b")
+    waited(lambda: session.gizmo._handle is not None)
+    time.sleep(1.0)  # drawn
+    before, figures = session.planner.layout.camera("b").camera, session.newest.figures
+    centre, along = before.centre_in_world, before.world_from_camera[:3, 2]
+    start = pixel(session, panel, centre + 0.30 * along)
+    step = start - pixel(session, panel, centre)
+    for _ in range(4):  # a busy computer draws so slowly that a hand has to pull again
+        drag(tab, start, step)
+        if session.planner.layout.camera("b").camera is not before:
+            break
+    waited(lambda: session.newest.figures.is_exact and session.newest.layout is session.planner.layout)
+    moved = session.planner.layout.camera("b").camera.centre_in_world - centre
+    assert moved @ along > 0.1
+    assert np.linalg.norm(moved - (moved @ along) * along) < 1e-3
+    assert session.newest.figures.price != figures.price
+    # all of the drag is one step
+    click(panel, "Undo")
+    waited(lambda: session.planner.layout.camera("b").camera is before)
+    click(panel, "Redo")
+    waited(lambda: session.planner.layout.camera("b").camera is not before)
+
+
+def test_cameras_people_and_sensors_come_by_clicks(session, panel) -> None:
+    frame, _ = panel
+    click(panel, "Add a camera")
+    waited(lambda: len(session.planner.layout.cameras) == 5)
+    says(panel, "5 cameras")
+    frame.get_by_text("People and furniture").click()
+    click(panel, "Place a person")
+    waited(lambda: session.planner.layout.body_names == ("person 1",))
+    click(panel, "Remove it")
+    waited(lambda: not session.planner.layout.people)
+
+
+def test_a_file_that_cannot_be_placed_is_said_and_the_work_is_kept(session, panel) -> None:
+    frame, tab = panel
+    layout = session.planner.layout
+    with tab.expect_file_chooser() as chooser:
+        frame.get_by_role("button", name="Place a mesh").click()
+    chooser.value.set_files(
+        {"name": "broken.glb", "mimeType": "model/gltf-binary", "buffer": b"glTF nothing"}
+    )
+    says(panel, "broken.glb")
+    assert session.planner.layout is layout
+
+
+def test_what_is_saved_is_a_site_and_what_cannot_be_is_said(session, panel) -> None:
+    frame, _ = panel
+    field = frame.locator("input[value='planned.yaml']")
+    field.evaluate("field => field.setAttribute('data-testid', 'file')")
+    field = frame.get_by_test_id("file")
+    field.fill("../elsewhere.yaml")
+    field.press("Enter")
+    click(panel, "Save as site file")
+    says(panel, "without a folder")
+    field.fill("room.yaml")
+    field.press("Enter")
+    click(panel, "Save as site file")
+    says(panel, "itself")
+    field.fill("mine.yaml")
+    field.press("Enter")
+    click(panel, "Save as site file")
+    says(panel, "Saved as")
+    cameras = Site.load(session.out.with_name("mine.yaml")).cameras()
+    for camera, placed in zip(cameras, session.planner.layout.cameras, strict=True):
+        np.testing.assert_allclose(camera.world_from_camera, placed.camera.world_from_camera, atol=2e-9)
+
+
+def test_what_was_done_is_kept_without_being_saved(session, panel) -> None:
+    session.kept_at.unlink(missing_ok=True)
+    click(panel, "Look at the middle")
+    waited(session.kept_at.is_file)
+    again = kept(session.kept_at, session.ground)
+    for camera, placed in zip(again.cameras, session.planner.layout.cameras, strict=True):
+        pose = placed.camera.world_from_camera
+        np.testing.assert_allclose(camera.camera.world_from_camera, pose, atol=2e-9)
