@@ -376,7 +376,13 @@ def settle_voxel(camera, texels, box, voxel):
 
 @njit(inline="always")
 def add_answer(answers, bit, answer):
-    """Words (through, disputed, surface, blind) with what is said of one voxel added to them."""
+    """Words (through, disputed, surface, blind) with what is said of one voxel added to them.
+
+    Args:
+        answers: the words.
+        bit: of the voxel.
+        answer: a sum, as of `settle_voxel`.
+    """
     nothing = np.uint64(0)
     return (
         answers[0] | (bit if answer & THROUGH else nothing),
