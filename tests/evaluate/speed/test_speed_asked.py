@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from elbowroom.errors import InputError
 from elbowroom.evaluate.speed.asked_case import run_asked
+from elbowroom.evaluate.speed.asked_rows import asked_rows
 from elbowroom.evaluate.speed.asked_scene import save_scene, scene_of
 from elbowroom.evaluate.speed.balls import WALL_M, depth_of_balls, random_balls, ring_cameras
 from elbowroom.evaluate.speed.outliers import Spent, Watch, cause_of_worst
@@ -107,3 +109,11 @@ def test_cases_that_see_the_same_have_one_scene():
     assert scene_of(usual) == scene_of(replace(usual, question="threads", voxel_size_m=0.01, threads=1))
     assert scene_of(usual) != scene_of(replace(usual, cameras=20))
     assert scene_of(replace(HALL, half_m=1.0)) != scene_of(HALL)
+
+
+def test_each_case_is_a_process_and_one_that_fails_is_told():
+    (row,) = asked_rows([HALL], others=False)
+    assert row["question"] == "volume"
+    assert row["median_ms"] > 0
+    with pytest.raises(InputError, match="half_m=-1"):
+        next(asked_rows([replace(HALL, half_m=-1.0)], others=False))

@@ -9,9 +9,36 @@ from elbowroom.cli.options import JsonFile
 
 Seconds = Annotated[float, typer.Option(min=1, help="decision, record: how long, of each case.")]
 Minutes = Annotated[float | None, typer.Option(min=0.1, help="decision, record: in place of --seconds.")]
+All = Annotated[
+    bool,
+    typer.Option(
+        "--all",
+        help="cycle: one question a case: voxels, cameras, pixels, what moves, threads, volume and surface, and "
+        "other systems on the same images; about ten minutes.",
+    ),
+]
 Against = Annotated[
     Path | None,
     typer.Option(metavar="DIR", help="start: src of another checkout, measured in turns with this package."),
+]
+Captures = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR", help="calibration: keep simulated captures here, and take those that are there."
+    ),
+]
+Examples = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="DIR", help="calibration: the examples' site files. Default: examples of a checkout."
+    ),
+]
+Part = Annotated[
+    list[str] | None,
+    typer.Option(
+        help="calibration: only real, coverage, images, captures, intrinsics, machine, refine or drift; "
+        "may be repeated."
+    ),
 ]
 
 
@@ -25,14 +52,7 @@ def bench(
         ),
     ] = "cycle",
     quick: Annotated[bool, typer.Option(help="Few rounds: a first impression in under a minute.")] = False,
-    all_: Annotated[
-        bool,
-        typer.Option(
-            "--all",
-            help="cycle: one question a case: voxels, cameras, pixels, what moves, threads, volume and surface, and "
-            "other systems on the same images; about ten minutes.",
-        ),
-    ] = False,
+    all_: All = False,
     cameras: Annotated[int, typer.Option(min=1, max=255, help="How many cameras.")] = 21,
     size: Annotated[str, typer.Option(help="Of their images: vga, qqvga or thesis.")] = "vga",
     threads: Annotated[int | None, typer.Option(min=1, help="Default: all cores.")] = None,
@@ -40,25 +60,9 @@ def bench(
     minutes: Minutes = None,
     octomap: Annotated[bool, typer.Option(help="Also run OctoMap, where pyoctomap is installed.")] = True,
     against: Against = None,
-    captures: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR", help="calibration: keep simulated captures here, and take those that are there."
-        ),
-    ] = None,
-    examples: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR", help="calibration: the examples' site files. Default: examples of a checkout."
-        ),
-    ] = None,
-    part: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="calibration: only real, coverage, images, captures, intrinsics, machine, refine or drift; "
-            "may be repeated."
-        ),
-    ] = None,
+    captures: Captures = None,
+    examples: Examples = None,
+    part: Part = None,
     json: JsonFile = None,
 ) -> None:
     """Measure carve and whole cycles in the simulated room, each in its own process; or something else."""

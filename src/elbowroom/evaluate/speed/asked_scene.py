@@ -12,9 +12,9 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import InterventionRoom, render, wall_cameras
 
-MOMENTS_S = (3.0, 3.5, 11.0, 11.5)
+MOMENTS_S = (3.0, 11.0)
 """Of people walking [s]."""
-STILL_S = (3.0, 3.0, 3.0, 3.0)
+STILL_S = (3.0, 3.0)
 """Of a room in which nothing moves: the noise is another in each."""
 
 

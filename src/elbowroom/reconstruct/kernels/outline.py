@@ -12,10 +12,25 @@ from numba import njit
 
 from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
 from elbowroom.geometry.kernels.noise import in_float32, margin_at
+from elbowroom.geometry.kernels.rigid import moved
 from elbowroom.reconstruct.kernels.box import INSIDE, SLOP_PX, SLOP_REL, place_boxes
-from elbowroom.reconstruct.kernels.pixel import add_answer, settle_voxel
+from elbowroom.reconstruct.kernels.cone import Pixel, misses, prepare
+from elbowroom.reconstruct.kernels.pixel import (
+    BLOCKED,
+    DISPUTES,
+    IS_BLIND,
+    IS_SURFACE,
+    THROUGH,
+    add_answer,
+    ask_pixel,
+    depths_of,
+    outline_of,
+    pixels_within,
+    settle_voxel,
+)
 from elbowroom.reconstruct.kernels.place import box_in
 from elbowroom.reconstruct.kernels.rows import EIGHT, short_of, telling
+from elbowroom.reconstruct.kernels.texels import NO_RETURN, greatest_of
 
 OUTLINES = np.dtype(
     (
@@ -192,6 +207,61 @@ def _settled(camera, texels, block, lane, stopped):
 
 
 @uncounted(cache=True, error_model="numpy")
+def _settle_few(camera, texels, box, stopped, voxel):
+    """As `kernels.pixel.settle_voxel`, of a voxel wholly in view that no more than 8 x 8 pixels may see: eight at once.
+
+    Args:
+        camera, texels, box, voxel: as there.
+        stopped: whether it is known that the camera does not see through it.
+    """
+    m, half = camera.camera_from_world, 0.5 * box.edge
+    middle = moved(m, box.x, box.y, box.z)
+    reach_z = half * (abs(m[2, 0]) + abs(m[2, 1]) + abs(m[2, 2]))
+    pixels = pixels_within(camera, outline_of(camera, middle, half))
+    few = pixels.right - pixels.left < EIGHT and pixels.bottom - pixels.top < EIGHT
+    if not few or not pixels.whole:
+        return settle_voxel(camera, texels, box, voxel)
+    depths = depths_of(camera, middle, box.edge, reach_z)
+    left = min(pixels.left, camera.width - EIGHT)
+    columns, corner = (
+        _run(left, pixels.left, pixels.right),
+        camera.first_texel + pixels.top * camera.width + left,
+    )
+    short, tell, at = np.uint64(0), np.uint64(0), corner
+    for row in range(pixels.bottom - pixels.top + 1):
+        here = np.uint64(8 * row)
+        short |= (short_of(texels.trust_texels, at, depths.clear_from) & columns) << here
+        tell |= (telling(texels.doubt_texels, at, depths.clear_from, depths.hidden_to) & columns) << here
+        at += camera.width
+    tell &= short
+    if not short:
+        return THROUGH
+    if stopped and not tell:
+        return 0
+    prepare(camera, box, voxel)
+    answer = BLOCKED if stopped else 0
+    # first those that may dispute, then those that may only keep it from being seen through
+    for turn in range(2):
+        rest = tell if turn == 0 else short & ~tell
+        while rest and not (turn == 1 and answer & BLOCKED):
+            n = lowest_bit(rest)
+            rest &= rest - np.uint64(1)
+            row, column = n >> 3, n & 7
+            texel = corner + row * camera.width + column
+            measured = texels.doubt_texels[texel]
+            if answer & IS_BLIND and greatest_of(measured) == NO_RETURN:
+                continue
+            u, v = left + column, pixels.top + row
+            if misses(voxel, u, v):
+                continue
+            free_to = texels.trust_texels[texel] >> np.uint32(16)
+            answer |= ask_pixel(camera, texels, depths, voxel, Pixel(u, v, free_to, measured))
+            if answer & IS_SURFACE:
+                return DISPUTES | IS_SURFACE
+    return answer & ~BLOCKED if answer else THROUGH
+
+
+@uncounted(cache=True, error_model="numpy")
 def settle_block(camera, texels, asked, stopped, boxes, scratch):
     """As `kernels.pixel.settle_word`, faster.
 
@@ -212,9 +282,13 @@ def settle_block(camera, texels, asked, stopped, boxes, scratch):
         lane = lowest_bit(rest)
         bit = np.uint64(1) << np.uint64(lane)
         rest &= ~bit
-        known = _settled(camera, texels, lanes, lane, stopped) if by_outlines else UNKNOWN
+        if not by_outlines:
+            answers = add_answer(answers, bit, settle_voxel(camera, texels, box_in(boxes, lane), voxel))
+            continue
+        known = _settled(camera, texels, lanes, lane, stopped)
         if known == SEEN:
             through |= bit
         elif known == UNKNOWN:
-            answers = add_answer(answers, bit, settle_voxel(camera, texels, box_in(boxes, lane), voxel))
+            answer = _settle_few(camera, texels, box_in(boxes, lane), stopped, voxel)
+            answers = add_answer(answers, bit, answer)
     return answers[0] | through, answers[1], answers[2], answers[3]

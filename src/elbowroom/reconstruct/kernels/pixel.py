@@ -14,14 +14,8 @@ from elbowroom.geometry.kernels.rigid import moved
 from elbowroom.reconstruct.kernels.box import PLANE_EPS
 from elbowroom.reconstruct.kernels.cone import Pixel, has_left, misses, not_reached, prepare, steepness
 from elbowroom.reconstruct.kernels.place import box_in
-from elbowroom.reconstruct.kernels.rows import EIGHT, short_of, telling
 from elbowroom.reconstruct.kernels.texels import NEUTRAL, NO_RETURN, greatest_of
 
-SLACK_PX = 1e-3
-"""More than float64 can err in a pixel coordinate."""
-ALL_PIXELS = np.uint64(0xFFFFFFFFFFFFFFFF)
-EACH_ROW = np.uint64(0x0101010101010101)
-"""A byte times this is that byte in each of eight rows."""
 THROUGH, DISPUTES, IS_SURFACE, IS_BLIND, BLOCKED = 1, 2, 4, 8, 16
 """Answers. BLOCKED is said within this file alone: some pixel is not free beyond the voxel."""
 
@@ -123,8 +117,15 @@ def pixels_within(camera, outline):
 
 
 @uncounted(cache=True, error_model="numpy", forceinline=True)
-def _depths_of(camera, middle, edge, reach_z):
-    """Where a voxel lies along its rays; `reach_z`: from its middle along the optical axis."""
+def depths_of(camera, middle, edge, reach_z):
+    """Where a voxel lies along its rays.
+
+    Args:
+        camera: its record.
+        middle: of the voxel, in the camera's axes [m].
+        edge: of the voxel [m].
+        reach_z: from its middle along the optical axis [m].
+    """
     px, py, pz = middle
     near, far = pz - reach_z, pz + reach_z
     if camera.radial:
@@ -190,10 +191,16 @@ def _is_alone(camera, texels, depths, pixel):
 
 
 @uncounted(cache=True, error_model="numpy", forceinline=True)
-def _ask_pixel(camera, texels, depths, voxel, pixel):
+def ask_pixel(camera, texels, depths, voxel, pixel):
     """What one pixel whose cone meets the voxel says of it: 0, or BLOCKED with what else it says.
 
     Where pixels fly, one alone disputes nothing.
+
+    Args:
+        camera, texels: its record; those of all cameras.
+        depths: of the voxel along its rays.
+        voxel: the scratch record, prepared.
+        pixel: that is asked.
     """
     quantum, margin = camera.quantum, depths.margin
     steep_near, steep_far = steepness(camera, pixel.u, pixel.v)
@@ -244,99 +251,10 @@ def _ask_pixels(camera, texels, pixels, depths, voxel):
                         continue
                     if misses(voxel, u, v):
                         continue
-                    answer |= _ask_pixel(camera, texels, depths, voxel, Pixel(u, v, free_to, measured))
+                    answer |= ask_pixel(camera, texels, depths, voxel, Pixel(u, v, free_to, measured))
                     if answer & IS_SURFACE:
                         return BLOCKED | DISPUTES | IS_SURFACE
     return answer
-
-
-@uncounted(cache=True, error_model="numpy", forceinline=True)
-def _core(camera, middle, half, corner):
-    """Pixels whose cones surely meet a voxel, of 8 x 8 from a corner on, row by row, a word.
-
-    A disc about the voxel's middle, parallel to the image, lies in the voxel.
-    """
-    px, py, pz = middle
-    per_z = 1.0 / pz
-    u, v = camera.fx * px * per_z + camera.cx - corner[0], camera.fy * py * per_z + camera.cy - corner[1]
-    wide = 0.5 + camera.lateral_px - SLACK_PX
-    reach_u, reach_v = wide + camera.fx * half * per_z, wide + camera.fy * half * per_z
-    return (_run(u, reach_u) * EACH_ROW & _rows(v, wide)) | (_run(u, wide) * EACH_ROW & _rows(v, reach_v))
-
-
-@njit(inline="always")
-def _run(at, reach):
-    """Which of eight pixels lie within a reach of a place, bits of a byte."""
-    first, last = max(int(np.ceil(at - reach)), 0), min(int(np.floor(at + reach)), EIGHT - 1)
-    return (
-        np.uint64(0)
-        if first > last
-        else ((np.uint64(2) << np.uint64(last - first)) - np.uint64(1)) << np.uint64(first)
-    )
-
-
-@njit(inline="always")
-def _rows(at, reach):
-    """All pixels of those of eight rows that lie within a reach of a place."""
-    first, last = max(int(np.ceil(at - reach)), 0), min(int(np.floor(at + reach)), EIGHT - 1)
-    below = ALL_PIXELS >> np.uint64(8 * (EIGHT - 1 - last)) if last >= 0 else np.uint64(0)
-    return np.uint64(0) if first > last else below & (ALL_PIXELS << np.uint64(8 * first))
-
-
-@uncounted(cache=True, error_model="numpy", forceinline=True)
-def _settle_by_rows(camera, texels, box, seen, voxel):
-    """As `settle_voxel`, where no more than 8 x 8 pixels are to be asked: eight at once.
-
-    Args:
-        camera, texels, box, voxel: as there.
-        seen: the voxel's middle in camera axes, its pixels, its depths, and what it is if all are free beyond it.
-    """
-    middle, pixels, depths, free = seen
-    left = min(pixels.left, camera.width - EIGHT)
-    columns = ((np.uint64(2) << np.uint64(pixels.right - pixels.left)) - np.uint64(1)) << np.uint64(
-        pixels.left - left
-    )
-    at = camera.first_texel + pixels.top * camera.width + left
-    half = 0.5 * box.edge
-    px, py, pz = middle
-    nearest = np.sqrt(px * px + py * py + pz * pz) - half if camera.radial else pz
-    # what is free no farther is not free beyond a voxel whose middle it meets; a quantum more than rounding
-    stopped_to = np.uint32(max((nearest + depths.margin) / camera.quantum - 1.0, 0.0))
-    short, tell, stopped = np.uint64(0), np.uint64(0), np.uint64(0)
-    for row in range(pixels.bottom - pixels.top + 1):
-        here = np.uint64(8 * row)
-        short |= (short_of(texels.trust_texels, at, depths.clear_from) & columns) << here
-        stopped |= (short_of(texels.trust_texels, at, stopped_to) & columns) << here
-        tell |= (telling(texels.doubt_texels, at, depths.clear_from, depths.hidden_to) & columns) << here
-        at += camera.width
-    if not short:
-        return free
-    tell &= short
-    blocked = stopped & short & _core(camera, middle, half, (left, pixels.top)) != 0
-    if blocked and not tell:
-        return 0
-    prepare(camera, box, voxel)
-    answer = BLOCKED if blocked else 0
-    corner = camera.first_texel + pixels.top * camera.width + left
-    # first those that may dispute, then those that may only keep it from being seen through
-    for turn in range(2):
-        rest = tell if turn == 0 else short & ~tell
-        while rest and not (turn == 1 and answer & BLOCKED):
-            n = lowest_bit(rest)
-            rest &= rest - np.uint64(1)
-            row, column = n >> 3, n & 7
-            texel = corner + row * camera.width + column
-            measured = texels.doubt_texels[texel]
-            if answer & IS_BLIND and greatest_of(measured) == NO_RETURN:
-                continue
-            u, v = left + column, pixels.top + row
-            if misses(voxel, u, v):
-                continue
-            free_to = texels.trust_texels[texel] >> np.uint32(16)
-            answer |= _ask_pixel(camera, texels, depths, voxel, Pixel(u, v, free_to, measured))
-            if answer & IS_SURFACE:
-                return DISPUTES | IS_SURFACE
-    return answer & ~BLOCKED if answer else free
 
 
 @uncounted(cache=True, error_model="numpy")
@@ -360,10 +278,8 @@ def settle_voxel(camera, texels, box, voxel):
     if pixels.left > pixels.right:
         return 0
     free = THROUGH if pixels.whole else 0
-    depths = _depths_of(camera, middle, box.edge, reach_z)
-    if camera.width >= EIGHT and pixels.right - pixels.left < EIGHT and pixels.bottom - pixels.top < EIGHT:
-        return _settle_by_rows(camera, texels, box, (middle, pixels, depths, free), voxel)
-    # what bounds over all pixels settle
+    # what bounds over all pixels settle: most voxels
+    depths = depths_of(camera, middle, box.edge, reach_z)
     least, most = bounds_about(camera, texels, pixels)
     if least >= depths.clear_from:
         return free
@@ -376,7 +292,13 @@ def settle_voxel(camera, texels, box, voxel):
 
 @njit(inline="always")
 def add_answer(answers, bit, answer):
-    """Words (through, disputed, surface, blind) with what is said of one voxel added to them."""
+    """Words (through, disputed, surface, blind) with what is said of one voxel added to them.
+
+    Args:
+        answers: the words.
+        bit: of the voxel.
+        answer: a sum, as of `settle_voxel`.
+    """
     nothing = np.uint64(0)
     return (
         answers[0] | (bit if answer & THROUGH else nothing),

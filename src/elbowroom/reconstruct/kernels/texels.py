@@ -105,7 +105,12 @@ def free_to_model(depth, counting):
 
 @njit(cache=True, nogil=True)
 def any_of(row, start, stop):
-    """The bits that any number of a part of a row has."""
+    """The bits that any number of a part of a row has.
+
+    Args:
+        row: whole numbers.
+        start, stop: of the part, the second not in it.
+    """
     some = np.uint32(0)
     for n in range(start, stop):
         some |= row[np.uint64(n)]
@@ -116,6 +121,11 @@ def any_of(row, start, stop):
 def mark_row(model, counting, trust, doubt):
     """Pixels of a row that see the machine, as `machine.explain` tells: `NEUTRAL` in `doubt`; in `trust`, those with a
     depth of the model are free up to it, and hidden behind it. First column and one past the last of runs with any.
+
+    Args:
+        model: of the row, as of `texels_of_frame`.
+        counting: of the camera.
+        trust, doubt: of the row, changed.
     """
     columns = model.size
     # as `free_to_model`, in float32
