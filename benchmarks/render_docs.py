@@ -405,9 +405,10 @@ nothing is said is *unnoticed*.
         "replay.json",
         "Replay",
         """
-A run of the simulated room with 5 cameras of 48x36 and voxels of 20 cm, in which images are lost and old and joints are
-missing at random, judged again from its [recording](recording.md): verdicts, faults and free space are compared to the
-last bit. *any x86-64*: kernels compiled with `NUMBA_CPU_NAME=generic`, without this processor's vector instructions.
+Two runs in which images are lost and old and joints are missing at random, judged again from their
+[recordings](recording.md): verdicts, faults, free space, distances and margins are compared to the last bit. *A box
+that slides*: a cell of eight cameras of 64x48, voxels of 10 cm; *the simulated room*: 5 cameras of 48x36, voxels of
+20 cm, a C-arm, which takes ten times as long, so a tenth of the cycles. *any x86-64*: kernels compiled with `NUMBA_CPU_NAME=generic`, without this processor's vector instructions.
 """,
         "elbowroom evaluate replay",
         tables.replay_tables,

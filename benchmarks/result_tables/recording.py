@@ -30,6 +30,7 @@ BITS: dict[str, Cell] = {
     "unnoticed": of("unnoticed", due=cut.DUE),
 }
 REPLAY: dict[str, Cell] = {
+    "room": of("room"),
     "way": of("way"),
     "cycles": of("cycles"),
     "verdicts": of("verdicts"),
