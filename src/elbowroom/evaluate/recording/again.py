@@ -25,7 +25,7 @@ WAYS: tuple[tuple[str, int, Mapping[str, str]], ...] = (
     ("code for any x86-64, two threads", 2, {"NUMBA_CPU_NAME": "generic"}),
 )
 """Words, threads, and what stands in the environment."""
-ROOMS: tuple[tuple[str, int, Callable[[Path, int, int], Path]], ...] = (
+ROOMS: tuple[tuple[str, int, Callable[..., Path]], ...] = (
     ("a box that slides", 1, record_cell),
     ("the simulated room", 10, record_sample),
 )
