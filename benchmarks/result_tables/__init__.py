@@ -6,6 +6,7 @@ from result_tables.drift import drift_tables
 from result_tables.faults import fault_tables
 from result_tables.lag import decision_tables, lag_tables
 from result_tables.latch import latch_tables
+from result_tables.long import malformed_tables, soak_tables
 from result_tables.looks import contradiction_tables, looks_tables
 from result_tables.placement import placement_tables, sweep_tables
 from result_tables.recording import cut_tables, record_tables, replay_tables
