@@ -398,9 +398,10 @@ can move.
         "Recording",
         """
 Whether the [recorder](recording.md) keeps up with 21 cameras of 640x480 at 15 images a second: images of the simulated
-room with the noise of time-of-flight cameras, in whole millimetres, handed over from memory. *whole run*: all is kept
-in one file; *black box*: in memory, and a stop leaves a file on the way. *of a core*: processor time of the recorder's
-thread, a second. *not as given*: of every seventh pass, images that do not come back bit for bit.
+room with the noise of time-of-flight cameras, in whole millimetres, handed over from memory. *whole run*: all is kept,
+in files of 30 s that are looked at and taken away; *black box*: in memory, and a stop leaves a file on the way. *of a
+core*: processor time of the recorder's thread, a second; *raw, a core*: what one core would keep of 16-bit images. *not
+as given*: of every seventh pass, images that do not come back bit for bit. `--minutes 30` says how fast memory grows.
 """,
         "elbowroom bench record",
         tables.record_tables,
@@ -433,9 +434,11 @@ nothing is said is *unnoticed*.
         "replay.json",
         "Replay",
         """
-A run of the simulated room with 5 cameras of 48x36 and voxels of 20 cm, in which images are lost and old and joints are
-missing at random, judged again from its [recording](recording.md): verdicts, faults and free space are compared to the
-last bit. *any x86-64*: kernels compiled with `NUMBA_CPU_NAME=generic`, without this processor's vector instructions.
+Two runs in which images are lost and old and joints are missing at random, judged again from their
+[recordings](recording.md): verdicts, faults, free space, distances and margins are compared to the last bit. *A box
+that slides*: a cell of eight cameras of 64x48, voxels of 10 cm; *the simulated room*: 5 cameras of 48x36, voxels of
+20 cm, a C-arm, which takes ten times as long, so a tenth of the cycles. *any x86-64*: kernels compiled with
+`NUMBA_CPU_NAME=generic`, without this processor's vector instructions.
 """,
         "elbowroom evaluate replay",
         tables.replay_tables,

@@ -23,8 +23,9 @@ Every kind of fault thrown at a running monitor with its gate, its watchdog and 
 small room of eight cameras at 15 Hz and a box that slides. After each the cause has to clear by its own evidence, and a
 reset has to let the machine move again. *shown*: how often the fault came to anything at all; *silent*: how often it
 did, and the machine went on; *misnamed*: no cause that latched names it. Times are from when the first wrong thing was
-handed to the monitor to when the reader reads stop, or hears nothing for 80 ms. A disk that is full is tested by itself
-(`tests/monitor/gate`), not here.
+handed to the monitor to when the reader reads stop, or hears nothing for 80 ms. A disk that is full while a stop
+is saved is a small file system of its own, or a limit of a file's length where nobody may mount one: the machine stops,
+the black box says so, and what it kept opens up to the cut (a latch that cannot be written: `tests/monitor/gate`).
 
 The command's short form, `--quick`, throws each kind once, with a deadline of 400 ms in place of 60 so that a busy
 computer can run it: its times say little, and two missed deadlines (*hangs*, *suspended*) are 800 ms of it by design.
@@ -66,6 +67,32 @@ in 100 s. Half an hour of both skews is not measured yet.
 """,
         "elbowroom evaluate lag",
         tables.lag_tables,
+    ),
+    Section(
+        "soak.json",
+        "Half an hour at full rate",
+        """
+The whole monitor with the simulated room from memory, 21 cameras of 640x480 at 15 Hz: watch, gate, distances, a
+recording of all passes (in files of 30 s that are taken away) and the black box. What the process holds is looked at
+once a second; its slope is that of Theil and Sen over the medians of 20 s, the first quarter left out, with the
+interval of 95 %. *the worst*: when it was, and its longest parts in ms.
+""",
+        "elbowroom evaluate soak",
+        tables.soak_tables,
+    ),
+    Section(
+        "malformed.json",
+        "Malformed input",
+        """
+Every reader of input from outside, led by coverage (atheris, libFuzzer), from inputs as this package writes them:
+MCAP and sqlite3 as bags with all that is read of them, what rosbag2 writes beside its files, recordings of a run, depth
+images, masks, site files, joints as CSV and as messages, and the port of the Modbus server, which has to answer a right
+request as before after each. *crashes*: anything but an error of this package; *hangs*: more than 2 s of processor time
+for one input; *allocations*: the reader gets twice the memory that its code names as its limit, 64 MB at least, and
+asks for more.
+""",
+        "elbowroom evaluate malformed",
+        tables.malformed_tables,
     ),
 )
 

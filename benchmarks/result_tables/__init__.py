@@ -7,6 +7,7 @@ from result_tables.drift import drift_tables
 from result_tables.faults import fault_tables
 from result_tables.lag import decision_tables, lag_tables
 from result_tables.latch import latch_tables
+from result_tables.long import malformed_tables, soak_tables
 from result_tables.looks import contradiction_tables, looks_tables
 from result_tables.page import page_tables
 from result_tables.placement import placement_tables, sweep_tables
@@ -45,6 +46,7 @@ __all__ = [
     "latch_tables",
     "looks_tables",
     "machine_tables",
+    "malformed_tables",
     "own_links_tables",
     "page_tables",
     "path_tables",
@@ -56,6 +58,7 @@ __all__ = [
     "room_tables",
     "sevenscenes_tables",
     "skew_tables",
+    "soak_tables",
     "start_tables",
     "sweep_tables",
     "travel_tables",

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from elbowroom.evaluate.held_memory import words_of_slope
 from elbowroom.evaluate.recording import again, cut, rate
 from result_tables.cells import Cell, Row, of, table
 
@@ -13,8 +14,10 @@ RECORD: dict[str, Cell] = {
     "file [MB/s]": of("file_mb_s", 0),
     "lost": of("lost", due=rate.DUE),
     "of a core": of("core_share", 2, due=rate.DUE),
+    "raw, a core [MB/s]": of("raw_mb_s_of_a_core", 0),
     "not as given": of("not_as_given", due=rate.DUE),
     "handed over in, at worst [ms]": of("handed_over_ms", 1),
+    "memory grows by [MB/h]": words_of_slope,
 }
 CUT: dict[str, Cell] = {
     "case": of("case"),
@@ -30,6 +33,7 @@ BITS: dict[str, Cell] = {
     "unnoticed": of("unnoticed", due=cut.DUE),
 }
 REPLAY: dict[str, Cell] = {
+    "room": of("room"),
     "way": of("way"),
     "cycles": of("cycles"),
     "verdicts": of("verdicts"),

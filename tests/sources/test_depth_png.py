@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from elbowroom.errors import FrameError
+from elbowroom.errors import FrameError, SiteError
+from elbowroom.files.mask_file import read_mask
 from elbowroom.sources.depth_png import check_depth_png, png_pixels, read_depth_png
 
 
@@ -125,3 +126,17 @@ def test_a_png_without_pixels_is_refused(tmp_path):
         read_depth_png(tmp_path / "a.png", 8, 6)
     with pytest.raises(FrameError, match="truncated or damaged PNG"):
         png_pixels(data, "it", 8, 6)
+
+
+def test_a_chunk_that_says_it_is_longer_than_the_file_takes_no_memory(tmp_path):
+    """Found by `elbowroom evaluate malformed`, in a mask."""
+    whole = raw_png(8, 6, idat=b"".join(b"\x00" + bytes(16) for _ in range(6)))
+    at = whole.index(b"IEND") - 4
+    data = whole[:at] + (1 << 30).to_bytes(4, "big") + b"tRNSab"
+    (tmp_path / "a.png").write_bytes(data)
+    with pytest.raises(FrameError, match="a chunk ends beyond the file"):
+        read_depth_png(tmp_path / "a.png", 8, 6)
+    with pytest.raises(FrameError, match="a chunk ends beyond the file"):
+        png_pixels(data, "it", 8, 6)
+    with pytest.raises(SiteError, match="a chunk ends beyond the file"):
+        read_mask(tmp_path / "a.png", 8, 6)

@@ -8,7 +8,7 @@ from PIL import Image
 
 from elbowroom.errors import SiteError
 from elbowroom.files.atomic import whole_file
-from elbowroom.files.damaged_picture import DAMAGED
+from elbowroom.files.damaged_picture import DAMAGED, chunk_beyond_end
 
 
 def read_mask(path: Path, width: int, height: int) -> NDArray[np.bool_]:
@@ -26,6 +26,9 @@ def read_mask(path: Path, width: int, height: int) -> NDArray[np.bool_]:
     """
     if not path.is_file():
         raise SiteError(f"mask: no file {path}; elbowroom site mask makes one, white where pixels count")
+    with path.open("rb") as opened:
+        if chunk_beyond_end(opened):
+            raise SiteError(f"mask: {path}: not a PNG file, or damaged (a chunk ends beyond the file)")
     try:
         with Image.open(path, formats=("PNG",)) as image:
             size, mode = image.size, image.mode

@@ -11,7 +11,7 @@ from elbowroom.site.ranges import MILLISECONDS, between
 class BlackBoxEntry(Entry):
     """The last minute of a run in memory; each stop leaves a file.
 
-    Without `memory_mb` it takes 4000 MB at most, and no more than a quarter of this computer's memory.
+    Without `memory_mb` it takes 6000 MB at most, and no more than a quarter of this computer's memory.
     """
 
     folder: Text | None = None

@@ -3,6 +3,7 @@
 import io
 import struct
 import warnings
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from elbowroom.errors import FrameError
-from elbowroom.files.damaged_picture import DAMAGED
+from elbowroom.files.damaged_picture import DAMAGED, chunk_beyond_end
 from elbowroom.sources.depth_pgm import exchanged
 
 HEADER = 26
@@ -105,6 +106,11 @@ def png_pixels(data: bytes, name: str, width: int, height: int) -> NDArray[np.ui
 def _decoded(source: Path | io.BytesIO, name: str, size: tuple[int, int]) -> NDArray[np.uint16]:
     """The pixels of a PNG whose header was looked at; raises as `read_depth_png`."""
     width, height = size
+    with source.open("rb") if isinstance(source, Path) else nullcontext(source) as opened:
+        if chunk_beyond_end(opened):
+            raise FrameError(
+                f"{name}: truncated or damaged PNG (a chunk ends beyond the file); record or copy it again"
+            )
     try:
         with warnings.catch_warnings():
             # a size that a camera has was checked before and is no decompression bomb

@@ -220,8 +220,9 @@ def test_a_pass_in_which_nothing_was_judged_is_stop_by_word(file):
     with Recording(file) as recording:
         configuration = recording.configuration()
         cycle, figures = configuration.cycle(), configuration.figures()
-        one = recording.at(4)
-        one.judged.update(given=None, space=None, skew_ms=None, stopped_by="joints: not where they may be")
+        one = replace(recording.at(4), margins=None)
+        one.judged.update(given=None, space=None, skew_ms=None, distances=None)
+        one.judged["stopped_by"] = "joints: not where they may be"
         for verdict in one.judged["verdicts"]:
             verdict.update(stop | empty)
         found = compared(one, cycle, figures)

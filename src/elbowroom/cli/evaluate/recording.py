@@ -47,16 +47,18 @@ def cut(
 
 
 def replay(
-    cycles: Annotated[int, typer.Option(min=1, metavar="COUNT", help="Of the recording.")] = 10_000,
+    cycles: Annotated[int, typer.Option(min=1, metavar="COUNT", help="Of the cell's recording.")] = 10_000,
     quick: Annotated[bool, typer.Option("--quick", help=f"{QUICK_CYCLES} cycles are enough.")] = False,
     seed: Seed = 1,
     json: JsonFile = None,
 ) -> None:
-    """Record a run of the simulated room, and judge it again: are all verdicts the same to the last bit?
+    """Record runs, and judge them again: are all verdicts, distances and margins the same to the last bit?
 
-    In other processes, with one thread and two, and with kernels compiled for any
-    x86-64 processor in place of this one. Images are lost, old and without joints at
-    random. What is compiled for any processor is compiled first, which takes minutes.
+    Runs are of a cell of eight cameras with a box that slides, and, a tenth of the
+    cycles, of the simulated room with its C-arm. They are judged in other processes,
+    with one thread and two, and with kernels compiled for any x86-64 processor in
+    place of this one. Images are lost, old and without joints at random. What is
+    compiled for any processor is compiled first, which takes minutes.
     """
     from elbowroom.cli.evaluate.measured import measured, told
     from elbowroom.cli.evaluate.shown import as_table, text
@@ -65,6 +67,7 @@ def replay(
 
     show = as_table(
         {
+            "room": "{room}",
             "way": "{way}",
             "cycles": "{cycles}",
             "verdicts": "{verdicts}",

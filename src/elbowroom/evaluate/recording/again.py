@@ -5,14 +5,15 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from elbowroom.errors import ElbowroomError
 from elbowroom.evaluate.due import Due
-from elbowroom.evaluate.recording.sample import record_sample
+from elbowroom.evaluate.recording.sample import record_cell, record_sample
 from elbowroom.files.progress import Progress, silent
 
 DUE = (Due("different", "≤", 0, words="cycles with a verdict that is another"),)
@@ -24,27 +25,40 @@ WAYS: tuple[tuple[str, int, Mapping[str, str]], ...] = (
     ("code for any x86-64, two threads", 2, {"NUMBA_CPU_NAME": "generic"}),
 )
 """Words, threads, and what stands in the environment."""
+ROOMS: tuple[tuple[str, int, Callable[..., Path]], ...] = (
+    ("a box that slides", 1, record_cell),
+    ("the simulated room", 10, record_sample),
+)
+"""Words, of how many cycles one is recorded, and how. A pass of the room with its C-arm takes ten times as long."""
 
 
 def again_rows(cycles: int = 10_000, seed: int = 1, tell: Progress = silent) -> Iterator[dict[str, Any]]:
-    """A row for each way to judge a recording again.
+    """A row for each way to judge a recording again, of each room.
 
     Args:
-        cycles: how many it has.
+        cycles: how many a recording of the cell has; that of the room has a tenth of them.
         seed: of the noise, and of what goes wrong in the run.
         tell: told what is being done.
 
     Raises:
         ElbowroomError: a process came to nothing.
     """
+    for room, share, record in ROOMS:
+        yield from _rows_of(room, max(1, cycles // share), partial(record, seed=seed), tell)
+
+
+def _rows_of(
+    room: str, cycles: int, record: Callable[[Path, int], Path], tell: Progress
+) -> Iterator[dict[str, Any]]:
     with TemporaryDirectory() as folder:
-        tell(f"recording {cycles} cycles")
-        file = record_sample(Path(folder) / "run.mcap", cycles, seed)
+        tell(f"{room}: recording {cycles} cycles")
+        file = record(Path(folder) / "run.mcap", cycles)
         for words, threads, environment in WAYS:
-            tell(f"{words}: judging again")
+            tell(f"{room}, {words}: judging again")
             begun = time.perf_counter()
             rows = _replayed(file, threads, environment)
             yield {
+                "room": room,
                 "way": words,
                 "cycles": len(rows),
                 "verdicts": sum(row["verdicts"] for row in rows),

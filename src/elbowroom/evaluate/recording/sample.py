@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from elbowroom.evaluate.faults.scene import written_site
+from elbowroom.evaluate.recording.sliding import Sliding
 from elbowroom.monitor import Checks, Loop
 from elbowroom.monitor.blackbox.configuration import plain_cycle
 from elbowroom.monitor.blackbox.recorder import Recorder
@@ -21,6 +23,8 @@ RATE_HZ = 15.0
 CAMERAS, SIZE, VOXEL_M = 5, (48, 36), 0.2
 LOSES, AGES, FORGETS = 0.05, 0.05, 0.01
 """Shares of images that do not come, and that are old; and of passes in which nobody knows where the machine is."""
+PORT, DEADLINE_MS = 5020, 60.0
+"""Of the cell's gate, which is not begun."""
 TELLS_SPEED = 0.9
 """Of joints, so many say how fast they are."""
 
@@ -30,12 +34,12 @@ class Troubled:
     """The simulated room as a source of so many snapshots, of which some lack images, or joints.
 
     Args:
-        simulated: the room.
+        simulated: the room, or the cell.
         passes: how many.
         seed: of what goes wrong.
     """
 
-    simulated: Simulated
+    simulated: Simulated | Sliding
     passes: int
     seed: int
 
@@ -66,6 +70,18 @@ class Troubled:
         """Nothing is held."""
 
 
+def record_cell(path: Path, passes: int, seed: int = 1) -> Path:
+    """Runs the monitor over the cell, and keeps all of it: a fifth of what a pass of the room takes.
+
+    Args:
+        path: of a file that is not there yet, in a folder in which the cell's files are written.
+        passes: how many.
+        seed: of noise, and of what goes wrong.
+    """
+    room = open_room(Site.load(written_site(path.parent, PORT, DEADLINE_MS)))
+    return _recorded(path, room, Troubled(Sliding(room, seed), passes, seed))
+
+
 def record_sample(path: Path, passes: int, seed: int = 1, exact: bool = False) -> Path:
     """Runs the monitor over the room, and keeps all of it.
 
@@ -80,7 +96,10 @@ def record_sample(path: Path, passes: int, seed: int = 1, exact: bool = False) -
     site = with_noise(Site.simulated_room(), "exact") if exact else Site.simulated_room()
     room = open_room(site, voxel_size_m=VOXEL_M, cameras=CAMERAS, resolution=SIZE)
     assert isinstance(room.source, Simulated)
-    source = Troubled(replace(room.source, seed=seed), passes, seed)
+    return _recorded(path, room, Troubled(replace(room.source, seed=seed), passes, seed))
+
+
+def _recorded(path: Path, room: Room, source: Troubled) -> Path:
     recorder = Recorder([WholeRun(path)])
     loop = loop_of(replace(room, source=source))
     recorder.cycle = loop.cycle

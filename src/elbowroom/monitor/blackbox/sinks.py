@@ -143,7 +143,7 @@ class BlackBox:
     folder: Path
     before_ns: int = 60_000_000_000
     after_ns: int = 10_000_000_000
-    most_bytes: int = 4_000_000_000
+    most_bytes: int = 6_000_000_000
     clock_ns: Callable[[], int] = time.monotonic_ns
     _trouble: str | None = field(default=None, init=False)
     _short_ns: int | None = field(default=None, init=False)
