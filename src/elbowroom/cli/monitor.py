@@ -94,6 +94,20 @@ ServiceOrigin = Annotated[
     list[str] | None,
     typer.Option(metavar="ORIGIN", help="A page that may ask the service, such as http://127.0.0.1:8080."),
 ]
+Seconds = Annotated[float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")]
+Cameras = Annotated[int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")]
+Resolution = Annotated[
+    str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
+]
+Noise = Annotated[
+    str | None,
+    typer.Option(
+        help="Of a simulated room's cameras: exact, or a sensor such as tof, realsense_d435. Default: the site's."
+    ),
+]
+OutFolder = Annotated[
+    Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
+]
 SkewMs = Annotated[
     float,
     typer.Option(
@@ -109,22 +123,11 @@ def monitor(
         Path | None,
         typer.Argument(metavar="SITE", help="A site file. Default: a simulated intervention room."),
     ] = None,
-    seconds: Annotated[
-        float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")
-    ] = None,
+    seconds: Seconds = None,
     voxel_size: VoxelSize = None,
-    cameras: Annotated[
-        int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")
-    ] = None,
-    resolution: Annotated[
-        str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
-    ] = None,
-    noise: Annotated[
-        str | None,
-        typer.Option(
-            help="Of a simulated room's cameras: exact, or a sensor such as tof, realsense_d435. Default: the site's."
-        ),
-    ] = None,
+    cameras: Cameras = None,
+    resolution: Resolution = None,
+    noise: Noise = None,
     rule: Rule = None,
     detail: Detail = None,
     joints: JointsText = None,
@@ -140,9 +143,7 @@ def monitor(
     token: TokenFile = None,
     service_origin: ServiceOrigin = None,
     json: JsonFile = None,
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write pictures of the last cycle into this folder.")
-    ] = None,
+    out: OutFolder = None,
 ) -> None:
     """Watch a room and say, per joint and direction, how far the machine may go.
 

@@ -104,13 +104,8 @@ def _rows(
         for number in range(rounds):
             for is_attacked in (False, True):
                 tell(f"round {number + 1} of {rounds}, {'attacked' if is_attacked else 'left alone'}")
-                yield _stretch(
-                    times,
-                    is_attacked,
-                    number,
-                    lambda: _attack(port, (a_second, seconds), body, token),
-                    seconds,
-                )
+                how = (lambda: _attack(port, (a_second, seconds), body, token)) if is_attacked else None
+                yield {"kind": "stretch", "round": number, **_stretch(times, how, seconds)}
     finally:
         ends.set()
         thread.join()
