@@ -13,6 +13,7 @@ from result_tables.page import page_tables
 from result_tables.placement import placement_tables, sweep_tables
 from result_tables.recording import cut_tables, record_tables, replay_tables
 from result_tables.robots import robot_tables
+from result_tables.service import service_tables
 from result_tables.skew import skew_tables
 from result_tables.space import room_tables, sevenscenes_tables
 from result_tables.speed import bench_tables, machine_tables, start_tables
@@ -56,6 +57,7 @@ __all__ = [
     "replay_tables",
     "robot_tables",
     "room_tables",
+    "service_tables",
     "sevenscenes_tables",
     "skew_tables",
     "soak_tables",

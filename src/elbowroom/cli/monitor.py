@@ -108,6 +108,10 @@ NoPage = Annotated[
     bool, typer.Option("--no-page", envvar="ELBOWROOM_NO_PAGE", help="Open no page for a browser.")
 ]
 Seconds = Annotated[float | None, typer.Option(min=0, help="End after so long. Default: at Ctrl-C.")]
+Cameras = Annotated[int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")]
+Resolution = Annotated[
+    str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
+]
 Noise = Annotated[
     str | None,
     typer.Option(
@@ -134,12 +138,8 @@ def monitor(
     ] = None,
     seconds: Seconds = None,
     voxel_size: VoxelSize = None,
-    cameras: Annotated[
-        int | None, typer.Option(min=1, max=200, help="Number of cameras of a simulated room.")
-    ] = None,
-    resolution: Annotated[
-        str | None, typer.Option(metavar="WxH", help="Size of a simulated room's images, such as 160x120.")
-    ] = None,
+    cameras: Cameras = None,
+    resolution: Resolution = None,
     noise: Noise = None,
     rule: Rule = None,
     detail: Detail = None,

@@ -20,6 +20,7 @@ from elbowroom.cli.evaluate.recording import cut, replay
 from elbowroom.cli.evaluate.robots import robots
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
 from elbowroom.cli.evaluate.scale import scale_budget, scale_cameras
+from elbowroom.cli.evaluate.service import service
 from elbowroom.cli.evaluate.skew import skew
 from elbowroom.cli.evaluate.soak import soak
 from elbowroom.cli.evaluate.thesis import all_parts, calibration, more, motions, reconstruction, scale
@@ -60,6 +61,7 @@ evaluate_app.command(epilog=_example("lag --quick --json lag.json"))(lag)
 evaluate_app.command(epilog=_example("latch --quick --json latch.json"))(latch)
 evaluate_app.command(epilog=_example("faults --quick --json faults.json"))(faults)
 evaluate_app.command(epilog=_example("page --quick --json page.json"))(page)
+evaluate_app.command(epilog=_example("service --rounds 2 --json service.json"))(service)
 evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
 evaluate_app.command(epilog=_example("robots packages --json robots.json"))(robots)
 evaluate_app.command(epilog=_example("own-links packages --quick --json own_links.json"))(own_links)

@@ -47,17 +47,18 @@ URDF = f"""<robot name="slider">
 SPEED_M_S, BRAKING_S = 0.3, 0.2
 
 
-def site_text(port: int, deadline_ms: float) -> str:
+def site_text(port: int | None, deadline_ms: float) -> str:
     """The site file.
 
     Args:
-        port: of the Modbus server.
+        port: of the Modbus server; None: there is none.
         deadline_ms: of the gate.
     """
     cameras = "\n".join(
         f"  - {{name: {name}, position_m: {list(place)}, look_at_m: {list(MIDDLE_M)}}}"
         for name, place in PLACES.items()
     )
+    modbus = "" if port is None else f", modbus: {{port: {port}}}"
     return f"""name: room for faults
 grid: {{origin_m: [-1, -1, 0.2], upper_m: [1, 1, 1.8], voxel_size_m: 0.1}}
 camera_defaults: {{width: {WIDTH}, height: {HEIGHT}, fx: {WIDTH / 2}, fy: {WIDTH / 2}, cx: {WIDTH / 2 - 0.5},
@@ -70,11 +71,11 @@ machine:
 joints: {{slide: {{max_speed_m_s: {SPEED_M_S}, braking_time_s: {BRAKING_S}}}}}
 max_frame_age_ms: 250
 watch: {{reference: reference.npz}}
-gate: {{deadline_ms: {deadline_ms}, rise_per_s: 20, modbus: {{port: {port}}}}}
+gate: {{deadline_ms: {deadline_ms}, rise_per_s: 20{modbus}}}
 """
 
 
-def written_site(folder: Path, port: int, deadline_ms: float) -> Path:
+def written_site(folder: Path, port: int | None, deadline_ms: float) -> Path:
     """Writes the site file, its machine and what its cameras were commissioned on.
 
     Args:
