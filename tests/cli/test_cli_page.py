@@ -24,7 +24,7 @@ def test_the_page_is_opened_and_said_where(site, monkeypatch, capsys):
 
     def asked(page, *given):
         line = said(page, *given)
-        seen.append(urllib.request.urlopen(line.removeprefix("page: ")).read().decode())
+        seen.append(urllib.request.urlopen(line.removeprefix("page: "), timeout=30).read().decode())
         return line
 
     monkeypatch.setattr(opened.OpenedPage, "said", asked)
