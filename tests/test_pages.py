@@ -45,6 +45,8 @@ TYPED_ALONE = {
     "replay run.mcap --from 1200": "as the line before it",
     "replay run.mcap --why 1200": "as the line before it",
     "export run.mcap images": "as the line before it",
+    "replay run.mcap --page": "stays until Ctrl-C; its own tests run it",
+    "export run.mcap --report incident.html --stop 1 --seconds 20": "as the line before it",
     "site topics my_bag": "needs a bag, which tests of bags write",
     "site from-bag my_bag --out my_room.yaml": "as the line before it",
     "placement optimise my_room.yaml --motions --cameras 12 --write placed.yaml": "needs a machine with speeds: "

@@ -7,6 +7,7 @@ from result_tables.faults import fault_tables
 from result_tables.lag import decision_tables, lag_tables
 from result_tables.latch import latch_tables
 from result_tables.looks import contradiction_tables, looks_tables
+from result_tables.page import page_tables
 from result_tables.placement import placement_tables, sweep_tables
 from result_tables.recording import cut_tables, record_tables, replay_tables
 from result_tables.robots import robot_tables
@@ -43,6 +44,7 @@ __all__ = [
     "looks_tables",
     "machine_tables",
     "own_links_tables",
+    "page_tables",
     "path_tables",
     "placement_tables",
     "poses_tables",

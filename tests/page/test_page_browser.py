@@ -4,12 +4,9 @@ import os
 import signal
 import threading
 import time
-from io import BytesIO
 from pathlib import Path
 
-import numpy as np
 import pytest
-from PIL import Image
 
 from elbowroom.monitor.blackbox.recording import Recording
 from elbowroom.page.page import Page
@@ -17,12 +14,9 @@ from elbowroom.page.replay.again import Judge
 from elbowroom.page.replay.replayed import Replayed, extra_of
 from elbowroom.page.replay.stops import stops_of
 from elbowroom.page.words import words_of
-from reference.browser import NO_WEBGL, SOFTWARE_WEBGL, browsers
+from reference.browser import NO_WEBGL, SOFTWARE_WEBGL, browsers, is_drawn, serious, tab
 from reference.page_runs import told_page
 from reference.sample_run import PASSES, sample_run
-
-WAITS_MS = 30_000
-SERIOUS = ("serious", "critical")
 
 
 @pytest.fixture(scope="module")
@@ -49,30 +43,6 @@ def drawn_page(browser):
     yield from tab(browser(*SOFTWARE_WEBGL), 760, 560)
 
 
-def tab(browser, width=1280, height=800):
-    context = browser.new_context(viewport={"width": width, "height": height})
-    context.set_default_timeout(WAITS_MS)
-    made, errors = context.new_page(), []
-    made.on("pageerror", lambda error: errors.append(str(error)))
-    yield made
-    context.close()
-    assert errors == []
-
-
-def serious(page) -> list[str]:
-    """What axe finds that is serious."""
-    from axe_core_python.sync_playwright import Axe
-
-    found = Axe().run(page)["violations"]
-    return [f"{one['id']}: {one['help']}" for one in found if one["impact"] in SERIOUS]
-
-
-def is_drawn(page) -> bool:
-    """Whether the scene holds more than paper."""
-    picture = Image.open(BytesIO(page.locator("#scene").screenshot())).convert("RGB")
-    return len(np.unique(np.asarray(picture)[::3, ::3].reshape(-1, 3), axis=0)) > 60
-
-
 def test_a_run_is_seen_and_a_click_says_why(drawn_page, run):
     page = drawn_page
     page.goto(run.url)
@@ -87,9 +57,6 @@ def test_a_run_is_seen_and_a_click_says_why(drawn_page, run):
     page.click("#motions tbody tr:nth-child(1) button")
     page.wait_for_selector("#why[data-final=true]")
     assert "long +" in page.inner_text("#whysentence")
-    page.click("#cameras tbody tr:nth-child(1) button")
-    page.wait_for_selector("#depth:not([hidden]) img[src^='data:image/png']")
-    assert serious(page) == []
 
 
 def test_what_is_old_greys_and_says_how_old(page, run):
@@ -111,6 +78,10 @@ def test_without_webgl_there_are_tables_and_a_sentence(page, run):
     assert "no WebGL" in page.inner_text("#noscene")
     page.wait_for_selector("body:not(.waiting)")
     assert page.locator("#motions tbody .chip").first.inner_text()
+    page.click("#motions tbody tr:nth-child(1) button")
+    page.wait_for_selector("#why[data-final=true]")
+    page.click("#cameras tbody tr:nth-child(1) button")
+    page.wait_for_selector("#depth:not([hidden]) img[src^='data:image/png']")
     assert serious(page) == []
 
 

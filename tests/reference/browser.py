@@ -3,8 +3,11 @@
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import BytesIO
 
+import numpy as np
 import pytest
+from PIL import Image
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 FLAGS = [
@@ -16,6 +19,8 @@ FLAGS = [
     "--disable-sync",
 ]
 SOFTWARE_WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+WAITS_MS = 30_000
+SERIOUS = ("serious", "critical")
 NO_WEBGL = ["--disable-gpu", "--disable-3d-apis"]
 
 
@@ -42,3 +47,38 @@ def browsers() -> Iterator:
         finally:
             for one in opened.values():
                 one.close()
+
+
+def tab(browser, width: int = 1280, height: int = 800) -> Iterator:
+    """A tab, in which no error may happen.
+
+    Args:
+        browser: a browser.
+        width, height: of what is shown [px].
+    """
+    context = browser.new_context(viewport={"width": width, "height": height})
+    context.set_default_timeout(WAITS_MS)
+    made, errors = context.new_page(), []
+    made.on("pageerror", lambda error: errors.append(str(error)))
+    yield made
+    context.close()
+    assert errors == []
+
+
+def serious(page) -> list[str]:
+    """What axe finds that is serious."""
+    from axe_core_python.sync_playwright import Axe
+
+    found = Axe().run(page)["violations"]
+    return [f"{one['id']}: {one['help']}" for one in found if one["impact"] in SERIOUS]
+
+
+def pixels_of(locator) -> np.ndarray:
+    """What is on the screen where something is, shape (height, width, 3)."""
+    return np.asarray(Image.open(BytesIO(locator.screenshot())).convert("RGB"))
+
+
+def is_drawn(page) -> bool:
+    """Whether the scene holds more than paper."""
+    pixels = pixels_of(page.locator("#scene"))
+    return len(np.unique(pixels[::3, ::3].reshape(-1, 3), axis=0)) > 60

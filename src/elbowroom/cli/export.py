@@ -13,7 +13,7 @@ from elbowroom.errors import InputError
 def export(
     file: RecordingPath,
     out: Annotated[
-        Path | None, typer.Argument(metavar="[DIR]", help="A folder for the images. Not with --report.")
+        Path | None, typer.Argument(metavar="DIR", help="A folder for the images. Not with --report.")
     ] = None,
     unit: Annotated[
         float,

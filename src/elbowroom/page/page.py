@@ -133,6 +133,6 @@ def _look_from_aside(server: Any, stage: Stage) -> None:
     lower, upper = stage.grid.lower_m, stage.grid.upper_m
     middle = (lower + upper) / 2
     size = float(np.linalg.norm(upper - lower))
-    server.initial_camera.position = tuple(middle + size * np.array([0.5, -0.5, 0.2]))
+    server.initial_camera.position = tuple(middle + size * np.array([0.4, -0.42, 0.17]))
     server.initial_camera.look_at = tuple(middle - np.array([0.0, 0.0, 0.08 * size]))
     server.initial_camera.up = (0.0, 0.0, 1.0)

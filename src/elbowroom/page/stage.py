@@ -15,7 +15,7 @@ from elbowroom.page.scene.bodies import link_points, points_in_world
 from elbowroom.page.scene.near import Near, Planes, near_of
 from elbowroom.page.scene.scene import Scene
 from elbowroom.page.scene.ways import way_points
-from elbowroom.page.story.phrases import level_of
+from elbowroom.page.story.phrases import level_of, name_of
 from elbowroom.page.story.told import Told
 
 
@@ -79,8 +79,12 @@ class Stage:
         rows = told["judged"]["verdicts"]
         for number, row in enumerate(rows):
             self.scene.show_way(number, self.way(told, number), level_of(row))
-        places = [row["place_m"] for row in rows if row["place_m"] is not None and level_of(row).rank < 3]
-        self.scene.show_contacts(places)
+        ends = [row for row in rows if row["place_m"] is not None and level_of(row) is not Level.CLEAR]
+        by_place: dict[tuple[float, float, float], list[str]] = {}
+        for row in ends:
+            x, y, z = row["place_m"]
+            by_place.setdefault((x, y, z), []).append(name_of(row))
+        self.scene.show_contacts([(", ".join(names), place) for place, names in by_place.items()])
 
     def way(self, told: Told, number: int) -> NDArray[np.float64]:
         """The swept volume of a motion as points, shape (n, 3) [m]; none where it is clear and nobody asked.

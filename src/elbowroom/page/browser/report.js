@@ -66,7 +66,7 @@
     const clouds = [];
     if (drawn.near) for (const [kind, at] of Object.entries(drawn.near)) clouds.push({points: voxels(at), colour: colours[kind], size: grid.voxel});
     for (const [level, at] of drawn.ways ?? []) clouds.push({points: Float32Array.from(array(at), value => value / 100), colour: colours[level], size: 0.014});
-    clouds.push({points: Float32Array.from((drawn.contacts ?? []).flat()), colour: colours.contact, size: 0.07});
+    clouds.push({points: Float32Array.from((drawn.contacts ?? []).flat()), colour: colours.contact, size: 0.06, above: true});
     Viewer.setClouds(clouds);
     Viewer.draw();
   }

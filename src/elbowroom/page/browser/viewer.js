@@ -95,7 +95,7 @@ const Viewer = (() => {
 
   function setClouds(given) {
     for (const one of clouds) { gl.deleteBuffer(one.made); gl.deleteVertexArray(one.array); }
-    clouds = given.filter(one => one.points.length).map(one => ({...buffer(one.points), colour: shade(one.colour), size: one.size}));
+    clouds = given.filter(one => one.points.length).map(one => ({...buffer(one.points), colour: shade(one.colour), size: one.size, above: one.above}));
   }
 
   function look(target, far) { eye.target = target; eye.far = far; draw(); }
@@ -140,11 +140,13 @@ const Viewer = (() => {
     gl.uniformMatrix4fv(dots.of.project, false, project);
     gl.uniform1f(dots.of.scale, focal * height / 2);
     for (const [kind, all] of [[gl.LINES, lines], [gl.POINTS, clouds]]) for (const one of all) {
+      one.above ? gl.disable(gl.DEPTH_TEST) : gl.enable(gl.DEPTH_TEST);
       gl.uniform1f(dots.of.size, one.size ?? 1);
       gl.uniform3fv(dots.of.colour, one.colour);
       gl.bindVertexArray(one.array);
       gl.drawArrays(kind, 0, one.count);
     }
+    gl.enable(gl.DEPTH_TEST);
   }
 
   return {begin, addBody, addLines, placeBodies, setClouds, look, draw};

@@ -12,11 +12,14 @@ from elbowroom.page.live import depth_message
 from elbowroom.page.page import Page
 from elbowroom.page.replay.again import Again, Judge
 from elbowroom.page.replay.stops import Stop
+from elbowroom.page.story.headline import headline
 from elbowroom.page.talk import Viewer
 from elbowroom.page.telling import clock
 from elbowroom.page.words import Words
 
 WAITS_S = 0.02
+BEFORE = 20
+"""Rates of cameras are those of so many passes before."""
 LONGEST_STEP_S = 1.0
 """Where a recording has a gap, play goes on after so long [s]."""
 
@@ -136,6 +139,7 @@ class Replayed:
         self._index = index
         try:
             told, one = self.judge.told(index)
+            self._hear_before(index)
             self.page.hear(told)
             self.page.say(index=index, sequence_s=one.wall_ns / 1e9)
             self.page.stage.show_ways(told)
@@ -150,7 +154,22 @@ class Replayed:
             scene.hide()
         else:
             self.page.show_space(self.page.stage.near(told, planes_of(self._shown.space)))
-            self.page.say(index=index, sequence_s=one.wall_ns / 1e9)
+            why = self._why(self._shown)
+            self.page.say(index=index, sequence_s=one.wall_ns / 1e9, **why)
+
+    def _why(self, shown: Again) -> dict[str, Any]:
+        """What the sentence of a moment is about, explained by the cameras; nothing where nobody can."""
+        motion = headline(shown.told, self.page.words).motion
+        if motion is None:
+            return {}
+        changes = self.judge.changes(shown, motion)
+        return {} if changes is None else {"why": self.page.telling.why(shown.told, motion, changes)}
+
+    def _hear_before(self, index: int) -> None:
+        """Tells rates of the images that came before a pass."""
+        for number in range(max(0, index - BEFORE), index):
+            frames = self.judge.recording.said_at(number)["given"]["frames"]
+            self.page.telling.rates.hear({"stamps": {camera: stamp for camera, _, stamp in frames}})
 
     def _explain(self, viewer: Viewer, number: int) -> None:
         shown = self._shown

@@ -118,7 +118,7 @@ def _page(data: str, judge: Judge, words: Words, span: Span) -> str:
     extra = filled(file_of_page("report.html"), words)
     parts = {
         '<link rel="stylesheet" href="/page.css">': f"<style>{style()}</style>",
-        "<footer>": f"{extra}<footer>",
+        "</div>\n</main>": f"{extra}</div>\n</main>",
         '<script src="/page.js"></script>': (
             f'<script type="text/plain" id="data">{html.escape(data)}</script>\n<script>{program}</script>'
         ),

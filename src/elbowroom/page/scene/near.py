@@ -91,8 +91,9 @@ def _box(
     shape = np.array(grid.shape)
     if not len(machine):
         return np.zeros(3, dtype=np.int64), shape
-    lower = grid.index_of(machine.min(axis=0) - near_m)
-    upper = grid.index_of(machine.max(axis=0) + near_m) + 1
+    # and one voxel more, which may be the free one beside
+    lower = grid.index_of(machine.min(axis=0) - near_m) - 1
+    upper = grid.index_of(machine.max(axis=0) + near_m) + 2
     return np.clip(lower // 16 * 16, 0, shape), np.clip(-(-upper // 16) * 16, 0, shape)
 
 

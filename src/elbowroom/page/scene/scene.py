@@ -37,6 +37,7 @@ class Scene:
     _links: dict[str, Any] = field(default_factory=dict, init=False)
     _cameras: dict[str, Any] = field(default_factory=dict, init=False)
     _clouds: dict[str, Any] = field(default_factory=dict, init=False)
+    _labels: dict[int, Any] = field(default_factory=dict, init=False)
     _sent: dict[str, bytes] = field(default_factory=dict, init=False)
 
     def draw_box(self, grid: VoxelGrid) -> None:
@@ -144,14 +145,23 @@ class Scene:
         """
         self.show_points(f"/ways/{number}", points, colours.LEVELS[level], 0.012)
 
-    def show_contacts(self, places: Sequence[tuple[float, float, float]]) -> None:
+    def show_contacts(self, contacts: Sequence[tuple[str, tuple[float, float, float]]]) -> None:
         """Marks where motions first meet something.
 
         Args:
-            places: world frame [m].
+            contacts: names of the motions, and places, world frame [m].
         """
-        points = np.array(places, dtype=np.float64).reshape(-1, 3)
+        points = np.array([place for _, place in contacts], dtype=np.float64).reshape(-1, 3)
         self.show_points("/contacts", points, colours.CONTACT, 0.045, shape="diamond")
+        for number, (name, place) in enumerate(contacts):
+            content = f"{name} {place}".encode()
+            if self._is_news(f"contact {number}", content):
+                self._labels[number] = self.server.scene.add_label(
+                    f"/contact_names/{number}", f"◆ {name}", position=tuple(map(float, place))
+                )
+        for number in [number for number in self._labels if number >= len(contacts)]:
+            self._labels.pop(number).remove()
+            self._sent.pop(f"contact {number}", None)
 
     def show_points(
         self, name: str, points: NDArray[np.float64], colour: Colour, size_m: float, *, shape: str = "square"

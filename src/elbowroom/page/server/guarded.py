@@ -8,6 +8,7 @@ version of viser that starts otherwise is refused, and never served open.
 import contextlib
 import io
 import os
+import re
 import threading
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -23,8 +24,8 @@ MOST_MESSAGE = 1 << 20
 """No message of a browser is larger [bytes]."""
 MOST_SOCKETS = 40
 """So many connections are open at once."""
-SCENE = "/scene"
-"""Where viser's own page is."""
+SCENE = re.compile(r"/scene/[0-9A-Za-z_-]{1,64}")
+"""Where viser's own page is; the last word is the viewer's."""
 HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "SAMEORIGIN",
@@ -122,11 +123,11 @@ class Guarded:
             if is_socket:
                 if self._open >= MOST_SOCKETS:
                     return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "too many viewers\n")
-                known = path in self.sockets or path.split("/")[1] == SCENE[1:]
+                known = path in self.sockets or SCENE.fullmatch(path)
                 return None if known else connection.respond(HTTPStatus.NOT_FOUND, "not there\n")
             if path in self.answers:
                 return _answered(connection, self.answers[path], headers["Host"])
-            if path.split("/")[1] != SCENE[1:]:
+            if not SCENE.fullmatch(path):
                 return connection.respond(HTTPStatus.NOT_FOUND, "not there\n")
             response = theirs(connection, replace(request, path="/"))
             for name, value in HEADERS.items():

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from elbowroom.motion import Level
-from elbowroom.page.story.phrases import EVERYTHING, level_of, says
+from elbowroom.page.story.phrases import EVERYTHING, level_of, meets, says
 from elbowroom.page.story.told import Told
 from elbowroom.page.words import Words
 
@@ -47,9 +47,10 @@ def headline(told: Told, words: Words) -> Headline:
     worst = min(range(len(rows)), key=lambda number: urgency(rows[number]))
     level = level_of(rows[worst])
     stopping = told["judged"].get("stopping")
-    if level is Level.STOP and stopping is not None and stopping.get("blocked"):
-        first = {**stopping["blocked"], "escapes": False, "free_travel": 0.0, "braking_distance": 1.0}
-        return Headline(level, _ended(_stopping(first, words)))
+    first = None if stopping is None else stopping.get("stop_blocked") or stopping.get("blocked")
+    if level is Level.STOP and first is not None:
+        row = {**first, "escapes": False, "free_travel": 0.0, "braking_distance": 1.0}
+        return Headline(level, _ended(words("headline.stopping", cause=meets(words, row))), worst)
     if level is Level.CLEAR:
         return Headline(level, words("headline.free"))
     return Headline(level, _ended(says(words, rows[worst])), worst)
@@ -87,13 +88,14 @@ def _cause_of_all(told: Told, words: Words) -> str:
 
 
 def _held(told: Told, words: Words) -> Headline | None:
-    """What a gate holds; None: there is none, or it holds nothing."""
+    """What a gate holds; None: there is none, or it holds nothing back that verdicts do not."""
     gate = told["gate"]
     if gate is None:
         return None
     faults = [fault["text"] for fault in (*gate.get("latched", ()), *gate.get("active", ()))]
-    if not faults:
+    if not faults and gate["phase"] == "guarding":
         return None
+    faults = faults or [gate["sentence"]]
     return Headline(Level.STOP, _ended(words("headline.gate", text="; ".join(dict.fromkeys(faults)))))
 
 
@@ -105,11 +107,3 @@ def _without_motions(told: Told, words: Words) -> Headline:
         "shares", **{name: words.number(shares[f"{name}_pct"], 1) for name in ("free", "surface", "unseen")}
     )
     return Headline(None, _ended(words("headline.none", text=text)))
-
-
-def _stopping(first: Mapping[str, Any], words: Words) -> str:
-    """That the machine would not come to rest in free space."""
-    from elbowroom.page.story.phrases import meets
-
-    clause = meets(words, first)
-    return words("headline.stopping", link=first["link"] or "?", cause=clause)

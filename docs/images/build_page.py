@@ -1,0 +1,160 @@
+"""Takes the pictures of docs/page.md from the page itself: python docs/images/build_page.py
+
+It needs Chromium, playwright and the extra `page`. The simulated room is judged at moments of its own, and no time goes by
+in a pass, so that the pictures do not hang on how fast this computer is.
+"""
+
+import io
+import os
+import shutil
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from PIL import Image
+
+from elbowroom.evaluate.page.picture import FLAGS
+from elbowroom.monitor import Pass
+from elbowroom.monitor.blackbox.configuration import plain_cycle
+from elbowroom.monitor.blackbox.recorder import Recorder
+from elbowroom.monitor.blackbox.recording import Recording
+from elbowroom.monitor.blackbox.sinks import WholeRun
+from elbowroom.motion import Level
+from elbowroom.page.opened import OpenedPage
+from elbowroom.page.page import Page
+from elbowroom.page.replay.again import Judge
+from elbowroom.page.replay.replayed import Replayed, extra_of
+from elbowroom.page.replay.stops import stops_of
+from elbowroom.page.report.span import span_of
+from elbowroom.page.report.written import write_report
+from elbowroom.page.words import words_of
+from elbowroom.site import Site
+from elbowroom.sources import Room, open_room
+from elbowroom.sources.simulated import Simulated
+
+HERE = Path(__file__).resolve().parent
+TIMES_S = [0.5 + 0.1 * n for n in range(60)]
+WIDTH, HEIGHT = 1280, 860
+AROUND = 24
+"""So many passes about the stop that is looked for are shown."""
+
+
+def main() -> None:
+    """Judges the room, then looks at it."""
+    room = open_room(Site.simulated_room())
+    passes, about = judged(room)
+    with TemporaryDirectory() as folder, browser() as tab:
+        live(room, passes[about], tab)
+        path = Path(folder) / "run.mcap"
+        record(room, passes, path)
+        with Recording(path) as recording:
+            replayed(recording, about, tab)
+            report = Path(folder) / "incident.html"
+            judge = Judge(recording, recording.configuration())
+            write_report(report, judge, span_of(recording, about, 20.0), words_of("en"))
+            tab.goto(report.as_uri())
+            tab.wait_for_selector("#scene[data-drawn=yes]")
+            time.sleep(1.0)
+            keep(tab, "page_report")
+
+
+def judged(room: Room) -> tuple[list[Pass], int]:
+    """Passes up to a stop, and which of them it is."""
+    assert isinstance(room.source, Simulated)
+    cycle, passes = plain_cycle(room), []
+    cycle.clock_ns = lambda: 0
+    for snapshot in room.source.at(TIMES_S):
+        passes.append(Pass(snapshot, cycle.run(snapshot), 0.0))
+        rows = passes[-1].result.verdicts
+        if len(passes) > AROUND and any(row.level is Level.STOP for row in rows):
+            break
+    return passes[-AROUND:], AROUND - 1
+
+
+def live(room: Room, done: Pass, tab: Any) -> None:
+    """The page of a run: as it is, why on a click, and when it is old."""
+    with OpenedPage(room, 0) as page:
+        page.face.begin(room)
+        over = threading.Event()
+
+        def run() -> None:
+            while not over.wait(0.1):
+                page.face.show(done)
+
+        thread = threading.Thread(target=run)
+        thread.start()
+        tab.goto(page.said().removeprefix("page: "))
+        tab.wait_for_selector("body:not(.waiting)")
+        tab.wait_for_selector("#scene[data-drawn=yes]")
+        time.sleep(6.0)
+        keep(tab, "page_live")
+        tab.click("#motions tr:has(.chip.stop) button")
+        tab.wait_for_selector("#why[data-final=true]")
+        time.sleep(4.0)
+        keep(tab, "page_why")
+        os.kill(page.pid, signal.SIGSTOP)
+        time.sleep(2.5)
+        keep(tab, "page_old")
+        os.kill(page.pid, signal.SIGCONT)
+        over.set()
+        thread.join()
+        page.face.end()
+
+
+def record(room: Room, passes: list[Pass], path: Path) -> None:
+    """Keeps passes as a run of 10 Hz."""
+    recorder = Recorder([WholeRun(path)])
+    recorder.begin(room)
+    for done in passes:
+        recorder.show(done)
+        time.sleep(0.1)
+    recorder.end()
+
+
+def replayed(recording: Recording, about: int, tab: Any) -> None:
+    """The page over a recording."""
+    words, configuration = words_of("en"), recording.configuration()
+    extra = extra_of(list(stops_of(recording)), len(recording), recording.note, words)
+    page, over = Page(configuration, words, "replay", extra), threading.Event()
+    page.open(0)
+    feed = Replayed(page, Judge(recording, configuration), over.is_set)
+    thread = threading.Thread(target=feed.run, args=(about,))
+    thread.start()
+    tab.goto(page.server.url)
+    tab.wait_for_selector("body:not(.waiting)")
+    tab.wait_for_selector("#scene[data-drawn=yes]")
+    time.sleep(6.0)
+    keep(tab, "page_replay")
+    over.set()
+    thread.join()
+    tab.goto("about:blank")
+    page.server.stop()
+
+
+@contextmanager
+def browser() -> Iterator[Any]:
+    """A tab of a browser without a screen."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        tab = opened.new_page(viewport={"width": WIDTH, "height": HEIGHT})
+        tab.set_default_timeout(60_000)
+        yield tab
+        opened.close()
+
+
+def keep(tab: Any, name: str) -> None:
+    """Writes what is on the screen."""
+    picture = Image.open(io.BytesIO(tab.screenshot())).convert("RGB")
+    small = picture.convert("P", palette=Image.Palette.ADAPTIVE, colors=96)
+    small.save(HERE / f"{name}.png", optimize=True)
+
+
+if __name__ == "__main__":
+    main()
