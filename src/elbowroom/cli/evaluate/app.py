@@ -13,6 +13,7 @@ from elbowroom.cli.evaluate.latch import latch
 from elbowroom.cli.evaluate.looks import looks
 from elbowroom.cli.evaluate.own_links import own_links
 from elbowroom.cli.evaluate.page import page
+from elbowroom.cli.evaluate.plan import plan
 from elbowroom.cli.evaluate.paths import paths
 from elbowroom.cli.evaluate.placement import placement
 from elbowroom.cli.evaluate.recording import cut, replay
@@ -58,6 +59,7 @@ evaluate_app.command(epilog=_example("lag --quick --json lag.json"))(lag)
 evaluate_app.command(epilog=_example("latch --quick --json latch.json"))(latch)
 evaluate_app.command(epilog=_example("faults --quick --json faults.json"))(faults)
 evaluate_app.command(epilog=_example("page --quick --json page.json"))(page)
+evaluate_app.command(epilog=_example("plan --quick --json plan.json"))(plan)
 evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
 evaluate_app.command(epilog=_example("robots packages --json robots.json"))(robots)
 evaluate_app.command(epilog=_example("own-links packages --quick --json own_links.json"))(own_links)
