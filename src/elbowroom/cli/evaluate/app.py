@@ -13,9 +13,9 @@ from elbowroom.cli.evaluate.latch import latch
 from elbowroom.cli.evaluate.looks import looks
 from elbowroom.cli.evaluate.own_links import own_links
 from elbowroom.cli.evaluate.page import page
-from elbowroom.cli.evaluate.plan import plan
 from elbowroom.cli.evaluate.paths import paths
 from elbowroom.cli.evaluate.placement import placement
+from elbowroom.cli.evaluate.plan import plan
 from elbowroom.cli.evaluate.recording import cut, replay
 from elbowroom.cli.evaluate.robots import robots
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel

@@ -26,8 +26,9 @@ def plan(
     def show(found: Any) -> None:
         for row in found:
             print_(
-                f"{row['room']}, {row['deed']} moved: first figures after {row['coarse_ms']:.0f} ms (worst "
-                f"{row['coarse_worst_ms']:.0f}), exact ones after {row['exact_ms']:.0f} ms (worst {row['exact_worst_ms']:.0f})"
+                f"{row['room']}, {row['deed']} moved: first figures after {row['coarse_ms']:.0f} ms "
+                f"(worst {row['coarse_worst_ms']:.0f}), exact ones after {row['exact_ms']:.0f} ms "
+                f"(worst {row['exact_worst_ms']:.0f})"
             )
         print_(sentence(DUE))
 
