@@ -16,6 +16,7 @@ PACKAGES = {
     "foxglove": ("the Foxglove face needs foxglove-sdk", "foxglove"),
     "lz4": ("reading this bag, whose chunks are compressed with lz4, needs lz4", "bag"),
     "matplotlib": ("charts need Matplotlib", "evaluate"),
+    "numba_cuda": ("running on a GPU needs numba-cuda", "cuda"),
     "ortools": ("finding a placement needs CP-SAT of OR-Tools", "placement"),
     "pymodbus": ("the Modbus output needs pymodbus", "modbus"),
     "small_gicp": ("calibration by the machine needs small_gicp", "calibrate"),

@@ -103,8 +103,7 @@ def find_block(
         return None
     if way.stops is not None:
         return first_stop_blocked(machine, skin, speeds, way, volume)
-    finest = volume.lattice.edge * FINEST_STEP_IN_VOXELS
-    halvings = int(np.clip(np.ceil(np.log2(way.length * speeds.max() / finest)), 0, MOST_HALVINGS))
+    halvings = halvings_of(way, speeds, volume)
     if asked is None:
         asked = to_ask(skin, speeds, max(0, halvings - SAMPLE_HALVINGS), halvings)
     index, kind, cluster, place, met = first_block(
@@ -120,6 +119,16 @@ def find_block(
     if index < 0:
         return None
     return Block(index * way.length / 2.0**halvings, kind, cluster, place, met, asked)
+
+
+def halvings_of(way: Way, speeds: NDArray[np.float64], volume: Volume) -> int:
+    """How often a way is cut in half until no point moves farther than the finest step in a part.
+
+    Args:
+        way, speeds, volume: as of `find_block`.
+    """
+    finest = volume.lattice.edge * FINEST_STEP_IN_VOXELS
+    return int(np.clip(np.ceil(np.log2(way.length * speeds.max() / finest)), 0, MOST_HALVINGS))
 
 
 def _link_lengths(machine: Machine, way: Way) -> NDArray[np.float64]:

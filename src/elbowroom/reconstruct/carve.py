@@ -1,6 +1,6 @@
 """Frames of any group of cameras -> evidence."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from weakref import finalize
 
@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 from elbowroom.choices import Detail
 from elbowroom.geometry import DepthCamera, VoxelGrid, bits
 from elbowroom.geometry.bits import Words
+from elbowroom.geometry.kernels.bits import Lattice
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Explained
 from elbowroom.reconstruct.evidence import Counts, Evidence, merge
 from elbowroom.reconstruct.images import RoomImages, room_images
+from elbowroom.reconstruct.kernels.camera import Views
 from elbowroom.reconstruct.kernels.carve import carve_cubes
 from elbowroom.reconstruct.kernels.planes import PLANES, Answers
 from elbowroom.reconstruct.kernels.points import carve_points
@@ -26,6 +28,10 @@ from elbowroom.reconstruct.witnesses import as_one, witnesses
 from elbowroom.sensing import DepthFrame
 
 SHARES = 16
+
+
+Carver = Callable[[NDArray[np.int64], Lattice, Views, Answers], None]
+"""Asks all cameras of the voxels of some cubes of 16 voxels, by number, and writes the answers."""
 
 
 def carve(
@@ -99,6 +105,7 @@ def carve_images(
     complete: bool = False,
     focus: NDArray[np.bool_] | None = None,
     kept: list[KeptViews] | None = None,
+    carver: Carver | None = None,
 ) -> Evidence:
     """As `carve`, from images that are pinhole already.
 
@@ -111,6 +118,7 @@ def carve_images(
         focus: blocks of 4 voxels, in the planes' order, that are asked of the cameras; of the others nothing is known
             afterwards. None: all.
         kept: takes the images as kernels have them, to be asked again; None: they are let go.
+        carver: who asks the cameras by detail `pixel`; None: the threads of this computer.
 
     Raises:
         CameraError: more than 255 cameras.
@@ -119,10 +127,12 @@ def carve_images(
     names = [camera.name for camera in images.cameras]
     near = [[names[number] for number in group] for group in groups]
     alone = [name for name in names if not any(name in group for group in near)]
-    own = _Carve(grid, terms, complete, focus)(images.of(*alone) if near else images, explained, kept)
+    own = _Carve(grid, terms, complete, focus, carver=carver)(
+        images.of(*alone) if near else images, explained, kept
+    )
     rest = Explained(explained.model_depth, None)
     # of one witness every camera is asked, also where several see through: who disputes counts
-    as_one_witness = _Carve(grid, terms, True, focus, as_one=True)
+    as_one_witness = _Carve(grid, terms, True, focus, True, carver)
     shared = (as_one_witness(images.of(*group), rest, kept) for group in near)
     return merge([own, *(as_one([one], complete) for one in shared)])
 
@@ -134,6 +144,7 @@ class _Carve:
     Args:
         grid, terms, complete, focus: as of `carve_images`.
         as_one: whether these cameras are one witness.
+        carver: as of `carve_images`.
     """
 
     grid: VoxelGrid
@@ -141,6 +152,7 @@ class _Carve:
     complete: bool
     focus: NDArray[np.bool_] | None
     as_one: bool = False
+    carver: Carver | None = None
 
     def __call__(self, images: RoomImages, explained: Explained, kept: list[KeptViews] | None) -> Evidence:
         layout = layout_of(self.grid, images.cameras, self.terms.margin)
@@ -149,15 +161,12 @@ class _Carve:
         )
         answers = _no_answers(asked, self.terms.detail, self.complete)
         lattice, worth = bits.lattice(self.grid), np.flatnonzero(asked.reshape(-1, 64).any(axis=1))
-        kernel = carve_points if self.terms.detail == "point" else carve_cubes
+        carver = self.carver or (_by_points if self.terms.detail == "point" else _by_voxels)
         views, buffers = fill(layout, images, explained.model_depth)
         carved = KeptViews(views if kept is None else widened(views), self.as_one)
         # its memory is used again when nobody has it any more
         finalize(carved, layout.give_back, buffers)
-        spread(
-            lambda share: kernel(np.ascontiguousarray(worth[share::SHARES]), lattice, views, answers),
-            range(min(SHARES, len(worth))),
-        )
+        carver(worth, lattice, views, answers)
         if kept is not None:
             kept.append(carved)
         return Evidence(
@@ -168,6 +177,22 @@ class _Carve:
             Counts(answers.through_count, answers.dispute_count) if self.complete else None,
             witness_angle_deg=self.terms.witness_angle_deg,
         )
+
+
+def _by_voxels(cubes: NDArray[np.int64], lattice: Lattice, views: Views, answers: Answers) -> None:
+    """Asks cameras coarse to fine, each thread its own cubes."""
+    spread(
+        lambda share: carve_cubes(np.ascontiguousarray(cubes[share::SHARES]), lattice, views, answers),
+        range(min(SHARES, len(cubes))),
+    )
+
+
+def _by_points(cubes: NDArray[np.int64], lattice: Lattice, views: Views, answers: Answers) -> None:
+    """Asks cameras of the voxels' centres, each thread its own cubes."""
+    spread(
+        lambda share: carve_points(np.ascontiguousarray(cubes[share::SHARES]), lattice, views, answers),
+        range(min(SHARES, len(cubes))),
+    )
 
 
 def _no_answers(asked: Words, detail: Detail, complete: bool) -> Answers:

@@ -1,0 +1,1 @@
+"""Kernels of the GPU; what they call are the processor's own."""
