@@ -420,6 +420,16 @@ from foreign pages, too long, too slowly, or without end. *Report*: 20 s at 15 c
         tables.page_tables,
     ),
     Section(
+        "plan.json",
+        "Planning",
+        """
+From a drag on the [planning](planning.md) page to its figures, on the computer that serves it. *first*: by few voxels
+and few pixels. *exact*: by the site's voxels and all pixels.
+""",
+        "elbowroom evaluate plan",
+        tables.plan_table,
+    ),
+    Section(
         "cut.json",
         "Cut files",
         """

@@ -11,6 +11,7 @@ from result_tables.long import malformed_tables, soak_tables
 from result_tables.looks import contradiction_tables, looks_tables
 from result_tables.page import page_tables
 from result_tables.placement import placement_tables, sweep_tables
+from result_tables.plan import plan_table
 from result_tables.recording import cut_tables, record_tables, replay_tables
 from result_tables.robots import robot_tables
 from result_tables.service import service_tables
@@ -52,6 +53,7 @@ __all__ = [
     "page_tables",
     "path_tables",
     "placement_tables",
+    "plan_table",
     "poses_tables",
     "record_tables",
     "replay_tables",

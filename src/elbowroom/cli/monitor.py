@@ -11,6 +11,7 @@ import typer
 from elbowroom.cli.interrupt import asked_to_end
 from elbowroom.cli.options import (
     Detail,
+    FoxglovePort,
     JointsText,
     JsonFile,
     Language,
@@ -100,9 +101,6 @@ ServiceOrigin = Annotated[
 ]
 FoxgloveFace = Annotated[
     bool, typer.Option("--foxglove", help="Show it in Foxglove as well, at 127.0.0.1, port 8765.")
-]
-FoxglovePort = Annotated[
-    int, typer.Option(min=0, max=65535, help="Another port for Foxglove. 0: any that is free.")
 ]
 NoPage = Annotated[
     bool, typer.Option("--no-page", envvar="ELBOWROOM_NO_PAGE", help="Open no page for a browser.")

@@ -22,6 +22,9 @@ PagePort = Annotated[
         min=0, max=65535, help="Port of the page, at 127.0.0.1. Default: 8137, or any that is free."
     ),
 ]
+FoxglovePort = Annotated[
+    int, typer.Option(min=0, max=65535, help="Another port for Foxglove, at 127.0.0.1. 0: any that is free.")
+]
 Language = Annotated[str, typer.Option(help="Words of the page: en, de.")]
 JsonFile = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the results as JSON: meta and rows.")

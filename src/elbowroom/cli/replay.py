@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from elbowroom.cli.options import JsonFile, Language, PagePort, use_threads
+from elbowroom.cli.options import FoxglovePort, JsonFile, Language, PagePort, use_threads
 
 RecordingPath = Annotated[
     Path, typer.Argument(metavar="FILE", help="A file of `monitor --record`, or of its black box.")
@@ -26,6 +26,10 @@ def replay(
     ] = False,
     page_port: PagePort = None,
     language: Language = "en",
+    foxglove: Annotated[
+        bool, typer.Option("--foxglove", help="Show it in Foxglove, whose controls play, pause and seek.")
+    ] = False,
+    foxglove_port: FoxglovePort = 8765,
     threads: Annotated[int | None, typer.Option(min=1, help="Cores to use. Default: all.")] = None,
     json: JsonFile = None,
 ) -> None:
@@ -38,7 +42,7 @@ def replay(
     What the clock decided (images too old when the verdicts were out), and what the
     drift watch and the looks at the input found, is taken as it was recorded.
 
-    With --page it is not compared, but shown in a browser at 127.0.0.1, until Ctrl-C.
+    With --page or --foxglove it is not compared, but shown, at 127.0.0.1, until Ctrl-C.
     """
     use_threads(threads)
 
@@ -48,6 +52,10 @@ def replay(
         from elbowroom.cli.replay_page import show_page
 
         show_page(file, begin, page_port, language)
+    elif foxglove:
+        from elbowroom.cli.replay_foxglove import show_foxglove
+
+        show_foxglove(file, begin, foxglove_port)
     elif why is not None:
         explain_cycle(file, why, json)
     elif not judge_again(file, begin, json):

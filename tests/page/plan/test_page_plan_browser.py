@@ -134,10 +134,11 @@ def test_cameras_people_and_sensors_come_by_clicks(session, panel) -> None:
 def test_a_file_that_cannot_be_placed_is_said_and_the_work_is_kept(session, panel) -> None:
     frame, tab = panel
     layout = session.planner.layout
+    # in several messages, each within what the door lets through
     with tab.expect_file_chooser() as chooser:
         frame.get_by_role("button", name="Place a mesh").click()
     chooser.value.set_files(
-        {"name": "broken.glb", "mimeType": "model/gltf-binary", "buffer": b"glTF nothing"}
+        {"name": "broken.glb", "mimeType": "model/gltf-binary", "buffer": b"glTF nothing" * 200_000}
     )
     says(panel, "broken.glb")
     assert session.planner.layout is layout

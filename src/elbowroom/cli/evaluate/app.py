@@ -16,6 +16,7 @@ from elbowroom.cli.evaluate.own_links import own_links
 from elbowroom.cli.evaluate.page import page
 from elbowroom.cli.evaluate.paths import paths
 from elbowroom.cli.evaluate.placement import placement
+from elbowroom.cli.evaluate.plan import plan
 from elbowroom.cli.evaluate.recording import cut, replay
 from elbowroom.cli.evaluate.robots import robots
 from elbowroom.cli.evaluate.rooms import alone, lost_pixels, poses, room, sevenscenes, thin_solids, travel
@@ -62,6 +63,7 @@ evaluate_app.command(epilog=_example("latch --quick --json latch.json"))(latch)
 evaluate_app.command(epilog=_example("faults --quick --json faults.json"))(faults)
 evaluate_app.command(epilog=_example("page --quick --json page.json"))(page)
 evaluate_app.command(epilog=_example("service --rounds 2 --json service.json"))(service)
+evaluate_app.command(epilog=_example("plan --quick --json plan.json"))(plan)
 evaluate_app.command(epilog=_example("looks --sites 50 --wrong 5 --json looks.json"))(looks)
 evaluate_app.command(epilog=_example("robots packages --json robots.json"))(robots)
 evaluate_app.command(epilog=_example("own-links packages --quick --json own_links.json"))(own_links)

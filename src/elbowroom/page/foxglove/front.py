@@ -24,6 +24,7 @@ HEAD_S = 5.0
 """No request is longer [bytes], and none takes longer to be made [s]."""
 MOST_VIEWERS = 16
 PIECE = 65_536
+LINGERS_S = 0.05
 
 
 @dataclass(slots=True, eq=False)
@@ -44,6 +45,7 @@ class Front:
     """How many were not let in."""
     _secret: Certificate = field(init=False)
     _socket: socket.socket = field(init=False)
+    _server: asyncio.Server = field(init=False)
     _behind: int = field(default=0, init=False)
     _viewers: int = field(default=0, init=False)
     _loop: asyncio.AbstractEventLoop = field(init=False)
@@ -83,12 +85,13 @@ class Front:
         self._behind = port
         self._thread.start()
         opening = asyncio.start_server(self._receive, sock=self._socket, limit=MOST_HEAD)
-        asyncio.run_coroutine_threadsafe(opening, self._loop).result(10)
+        self._server = asyncio.run_coroutine_threadsafe(opening, self._loop).result(10)
 
     def stop(self) -> None:
         """Lets nobody in any more."""
         if not self._thread.is_alive():
             self._socket.close()
+            self._loop.close()
             return
         asyncio.run_coroutine_threadsafe(self._end(), self._loop).result(10)
         self._loop.call_soon_threadsafe(self._loop.stop)
@@ -96,11 +99,12 @@ class Front:
         self._loop.close()
 
     async def _end(self) -> None:
+        self._server.close()
         tasks = [task for task in asyncio.all_tasks() if task is not asyncio.current_task()]
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-        self._socket.close()
+        await asyncio.sleep(LINGERS_S)  # sockets that were just closed let go of what they hold
 
     async def _receive(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         """Reads a request; lets it through, or says no."""

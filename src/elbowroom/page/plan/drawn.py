@@ -128,7 +128,7 @@ class Drawn:
         for place in places:
             count = len(place.by)
             kind = "none" if count == 0 else "few" if count < MANY else "many"
-            kinds[kind].append((place.person.x_m, place.person.y_m, self.ground.floor_m + 0.02))
+            kinds[kind].append((place.person.x_m, place.person.y_m, self.ground.floor_m + 0.07))
         for name, colour in DOTS:
             points = np.array(kinds[name], dtype=np.float64).reshape(-1, 3)
             self.scene.show_points(f"/walk/{name}", points, colour, 0.05, shape="circle")

@@ -1,0 +1,1 @@
+"""How fast the figures of a plan follow the hand."""
