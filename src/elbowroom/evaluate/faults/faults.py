@@ -112,7 +112,7 @@ def _thrown(cell: Cell, kind: Kind, chance: random.Random) -> dict[str, Any]:
     stood = (
         kind.make is not None and stopped_ns is not None and shows_ns is not None and stopped_ns < shows_ns
     )
-    latched = _latched(cell, kind)
+    latched = _latched(cell, kind) if shows_ns is not None else []
     cell.tell(end=True)
     if kind.restarts and cell.starts == starts:
         cell.start()

@@ -64,8 +64,13 @@ def _starved(cell: Cell) -> int | None:
     core = min(os.sched_getaffinity(0))
     for task in before:
         os.sched_setaffinity(task, {core})
-    words = [sys.executable, "-c", f"import os; os.sched_setaffinity(0, {{{core}}})\nwhile True: pass"]
-    burners = [subprocess.Popen(words) for _ in range(BURNERS)]
+    words = [
+        sys.executable,
+        "-c",
+        f"import os; os.sched_setaffinity(0, {{{core}}})\nwhose = os.getppid()\nwhile os.getppid() == whose: pass",
+    ]
+    # each in a session of its own, as the monitor is: where sessions share the processor, one would have half of it
+    burners = [subprocess.Popen(words, start_new_session=True) for _ in range(BURNERS)]
     until_s = time.monotonic() + STARVED_S
     while time.monotonic() < until_s and cell.receiver.last.phase in MOVING:
         time.sleep(0.002)
