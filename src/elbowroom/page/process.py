@@ -3,6 +3,7 @@
 Read from standard input: one line of JSON that says what to show. Written to standard output: one line that says where.
 """
 
+import contextlib
 import json
 import os
 import sys
@@ -50,6 +51,8 @@ def serve(said: Mapping[str, Any]) -> None:
     folder = Path(said["folder"])
     content, text = ((folder / name).read_bytes() for name in (CONFIGURATION, SITE))
     board = Board.opened(said["board"])
+    with contextlib.suppress(OSError):  # both have it open: nothing stays behind, however they end
+        board.forget()
     page = Page(Configuration.read(content, text, "page"), words_of(said["language"]), "live")
     _open(page, said["port"])
     _say({"url": page.server.url})
