@@ -394,11 +394,11 @@ thread, a second. *not as given*: of every seventh pass, images that do not come
         "page.json",
         "The page",
         """
-The [page](page.md) of the simulated room at 2 cm, 21 cameras. *First full picture*: from the command `elbowroom monitor`
-until a browser without a screen, which draws by software, shows machine, blocked space and verdicts. *Updates*: what one of
-four viewers gets. *Cost*: the cycle with four viewers that read and one that never does, in turns with a page that is not
-told; viewers' own work apart (they step back). *Attacks*: who asks with foreign names or from foreign pages, too long, too
-slowly, or without end. *Report*: 20 s at 15 cycles a second.
+The [page](page.md) of the simulated room at 2 cm, 21 cameras. *First full picture*: from the command `elbowroom
+monitor` until a browser without a screen, which draws by software, shows machine, blocked space and verdicts.
+*Updates*: what one of four viewers gets. *Cost*: the cycle with four viewers that read and one that never does, in
+turns with a page that is not told; viewers' own work apart (they step back). *Attacks*: who asks with foreign names or
+from foreign pages, too long, too slowly, or without end. *Report*: 20 s at 15 cycles a second.
 """,
         "elbowroom evaluate page",
         tables.page_tables,

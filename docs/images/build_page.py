@@ -1,7 +1,7 @@
 """Takes the pictures of docs/page.md from the page itself: python docs/images/build_page.py
 
-It needs Chromium, playwright and the extra `page`. The simulated room is judged at moments of its own, and no time goes by
-in a pass, so that the pictures do not hang on how fast this computer is.
+It needs Chromium, playwright and the extra `page`. The simulated room is judged at moments of its own, and no time goes
+by in a pass, so that the pictures do not hang on how fast this computer is.
 """
 
 import io

@@ -22,7 +22,7 @@ from elbowroom.page.words import words_of
 from elbowroom.sources import Room
 
 LOG = "page.log"
-OPENS_S = 20.0
+OPENS_S = 90.0
 """So long it may take until the page says where it is [s]."""
 
 

@@ -67,21 +67,26 @@ def near_of(
     if (upper <= lower).any():
         nothing = np.zeros((0, 3), dtype=np.int32)
         return Near(nothing, nothing, nothing)
-    free = _cropped(planes.free, grid, lower, upper)
-    looked = np.ones_like(free) if not planes.looked_at.size else _looked(planes, grid, lower, upper)
-    index = np.argwhere(_outermost(~free) & looked) + lower
+    index = np.argwhere(_outermost(~_cropped(planes.free, grid, lower, upper))) + lower
+    if planes.looked_at.size:
+        index = index[planes.looked_at[_places(index, grid)[0]]]
     if len(machine_in_world):
         far, _ = cKDTree(machine_in_world).query(grid.centre_of(index), distance_upper_bound=near_m)
         index = index[np.isfinite(far)]
     every = len(index)
     if every > MOST_PLACES:
         index = index[np.arange(MOST_PLACES) * every // MOST_PLACES]
-    cell = tuple((index - lower).T)
-    surface = _cropped(planes.surface, grid, lower, upper)[cell]
-    blind = _cropped(planes.blind, grid, lower, upper)[cell] & ~surface
+    word, bit = _places(index, grid)
+    surface = planes.surface[word] & bit != 0
+    blind = (planes.blind[word] & bit != 0) & ~surface
     small = index.astype(np.int32)
     thinned = every if every > MOST_PLACES else None
     return Near(small[surface], small[~surface & ~blind], small[blind], thinned)
+
+
+def _places(index: NDArray[np.int64], grid: VoxelGrid) -> tuple[NDArray[np.int64], Words]:
+    """Words and bits of voxels."""
+    return bits.places_of(index[:, 0], index[:, 1], index[:, 2], grid)
 
 
 def _box(
@@ -118,14 +123,6 @@ def _cropped(
     whole = bits.unpack(np.ascontiguousarray(cubes).reshape(-1), box)
     size = upper - lower
     return np.asarray(whole[: size[0], : size[1], : size[2]])
-
-
-def _looked(
-    planes: Planes, grid: VoxelGrid, lower: NDArray[np.int64], upper: NDArray[np.int64]
-) -> NDArray[np.bool_]:
-    """Which voxels of a box cameras were asked of."""
-    full = np.where(planes.looked_at, np.uint64(0xFFFFFFFFFFFFFFFF), np.uint64(0))
-    return _cropped(full, grid, lower, upper)
 
 
 def _outermost(blocked: NDArray[np.bool_]) -> NDArray[np.bool_]:
