@@ -43,6 +43,7 @@ def panel(session):
         frame = tab.frame_locator("iframe")
         frame.get_by_role("button", name="Undo").wait_for()
         waited(lambda: session.server.get_clients())
+        says((frame, tab), "Exact, at 10.0 cm")
         yield frame, tab
         context.close()
 
@@ -95,7 +96,6 @@ def drag(tab, start: np.ndarray, step: np.ndarray) -> None:
 
 def test_a_camera_is_dragged_and_the_figures_follow(session, panel) -> None:
     _, tab = panel
-    says(panel, "Exact, at 10.0 cm")
     session.choose("b")
     waited(lambda: session.gizmo._handle is not None)
     time.sleep(1.0)  # drawn

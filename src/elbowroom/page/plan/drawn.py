@@ -142,9 +142,14 @@ class Drawn:
             solids = place.person.solids(self.ground.floor_m)
             self._walker = [self._mesh(f"/walker/{n}", solid, PERSON) for n, solid in enumerate(solids)]
 
-    def show_contact(self, place: tuple[float, float, float] | None) -> None:
-        """Marks where a joint stops; None: nowhere."""
-        self.scene.show_contacts([] if place is None else [place])
+    def show_contact(self, name: str, place: tuple[float, float, float] | None) -> None:
+        """Marks where a joint stops.
+
+        Args:
+            name: of the motion.
+            place: world frame [m]; None: nowhere.
+        """
+        self.scene.show_contacts([] if place is None else [(name, place)])
 
     def _draw_room(self) -> None:
         room = self.ground.room

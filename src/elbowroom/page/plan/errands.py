@@ -52,7 +52,7 @@ class Errands:
         self._number += 1
         self.drawn.show_places([])
         self.drawn.show_walker(None)
-        self.drawn.show_contact(None)
+        self.drawn.show_contact("", None)
 
     def drive(self) -> None:
         """Drives the chosen joint until it stops."""
@@ -95,7 +95,7 @@ class Errands:
         if last is None or is_stale():
             return
         self.planner.move_joint(joint, last.position)
-        self.drawn.show_contact(last.verdict.place_in_world if last.stops else None)
+        self.drawn.show_contact(f"{joint} {way}", last.verdict.place_in_world if last.stops else None)
         self.panel.say(self._drove(joint, way, last))
 
     def _drove(self, joint: str, way: str, last: Step) -> str:
