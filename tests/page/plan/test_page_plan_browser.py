@@ -98,13 +98,13 @@ def test_a_camera_is_dragged_and_the_figures_follow(session, panel) -> None:
     _, tab = panel
     session.choose("b")
     waited(lambda: session.gizmo._handle is not None)
-    time.sleep(1.0)  # drawn
+    time.sleep(2.0)  # drawn
     before, figures = session.planner.layout.camera("b").camera, session.newest.figures
     centre, along = before.centre_in_world, before.world_from_camera[:3, 2]
-    start = pixel(session, panel, centre + 0.30 * along)
-    step = start - pixel(session, panel, centre)
-    for _ in range(4):  # a busy computer draws so slowly that a hand has to pull again
-        drag(tab, start, step)
+    for reach in (0.30, 0.36, 0.24, 0.40, 0.30, 0.33):
+        # a busy computer draws so slowly that a hand has to pull again
+        start = pixel(session, panel, centre + reach * along)
+        drag(tab, start, 0.8 * (start - pixel(session, panel, centre)))
         if session.planner.layout.camera("b").camera is not before:
             break
     waited(lambda: session.newest.figures.is_exact and session.newest.layout is session.planner.layout)
