@@ -55,7 +55,8 @@ that computers compare. The due figures are for two cores.
         """
 Whole cycles of the simulated room: 21 cameras of 640x480 with the noise of time-of-flight cameras, people walking,
 detail pixel, 2 cm, two threads, but for what a question varies; each case in a process of its own, whose peak memory
-holds the images of two moments twice as well. *the worst had*: what the slowest pass took longer for than the middling one.
+holds the images of two moments twice as well. *the worst had*: what the slowest pass took longer for than the middling
+one.
 *volume*, *surface*: a carve of all of a hall in which balls hang, 21 cameras of 320x240, exact images. *others*: other
 systems on the same exact images, at 5 cm; Open3D's block grid tells no free space. wavemap and Bonxai are left out: no
 registry of Python packages has them (what bears these names there is something else).
