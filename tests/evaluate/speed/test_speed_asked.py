@@ -115,5 +115,5 @@ def test_each_case_is_a_process_and_one_that_fails_is_told():
     (row,) = asked_rows([HALL], others=False)
     assert row["question"] == "volume"
     assert row["median_ms"] > 0
-    with pytest.raises(InputError, match="half_m=-1"):
-        next(asked_rows([replace(HALL, half_m=-1.0)], others=False))
+    with pytest.raises(InputError, match="ended with 1"):
+        next(asked_rows([replace(HALL, rounds=0)], others=False))
