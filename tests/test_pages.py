@@ -47,6 +47,17 @@ TYPED_ALONE = {
     "export run.mcap images": "as the line before it",
     "replay run.mcap --page": "stays until Ctrl-C; its own tests run it",
     "export run.mcap --report incident.html --stop 1 --seconds 20": "as the line before it",
+    "plan": "stays until Ctrl-C; its own tests run it",
+    "plan my_room.yaml --out planned.yaml": "as the line before it",
+    "plan setup1": "as the line before it",
+    "view my_room.yaml --picture room.png": "takes some seconds; its own tests run it",
+    "view my_room.yaml --picture above.png --view top --hide sweeps": "as the line before it",
+    "view my_room.yaml --picture near.png --from 2,-2,1.8 --to 0,0,1 --size 1600x1200 --sweep larm+": "as the line "
+    "before it",
+    "monitor my_room.yaml --foxglove": "takes a port that others may have; its own tests run it",
+    "replay run.mcap --foxglove": "as the line before it",
+    "gate token my_token": "writes into the folder; its own tests run it",
+    "monitor my_room.yaml --gate my_gate --service 8088 --token my_token": "as the line before it",
     "site topics my_bag": "needs a bag, which tests of bags write",
     "site from-bag my_bag --out my_room.yaml": "as the line before it",
     "placement optimise my_room.yaml --motions --cameras 12 --write placed.yaml": "needs a machine with speeds: "

@@ -1,7 +1,7 @@
 """`elbowroom evaluate faults`: whether any fault passes silently."""
 
 from itertools import chain
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -71,8 +71,9 @@ def faults(
     )
     deadline_ms, disks = QUICK_DEADLINE_MS if quick else deadline, min(many, DISKS)
     total, rows = len(turns_of(many)) + disks, []
+    # a folder that is not there is said at once
     with (
-        json_rows(json) as add,  # a folder that is not there is said at once
+        json_rows(json) as add,
         asked_to_end("what was measured until now is shown and written") as is_over,
     ):
         found = chain(fault_rows(many, seed, deadline_ms), full_disk_rows(disks, seed, deadline_ms))
@@ -81,11 +82,13 @@ def faults(
             if is_over():
                 break
         summary = fault_summary(rows)
-        for row in (
-            *[row for row in rows if not (row["stopped"] and row["named"]) and row["shown"]],
-            *summary,
-        ):
+        for row in (*filter(_tells, rows), *summary):
             add(row)
     show(summary)
     if len(rows) < total:
         print_(f"Ended after {len(rows)} of {total} faults.")
+
+
+def _tells(row: dict[str, Any]) -> bool:
+    """Whether a fault that was thrown showed, and passed silently or was misnamed."""
+    return row["shown"] and not (row["stopped"] and row["named"])

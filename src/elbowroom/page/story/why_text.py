@@ -88,8 +88,8 @@ def _clearing(told: Told, row: Mapping[str, Any], words: Words) -> list[str]:
         found.append(words("change.fault"))
     elif judged["late"] is not None:
         found.append(words("change.stale"))
-    elif row["cause"] == "watch":
-        found.append(words("change.watch"))
+    elif row["cause"] in ("watch", "off_path"):
+        found.append(words(f"change.{row['cause']}"))
     elif not found:
         found.append(words("change.input"))
     return found
