@@ -16,7 +16,7 @@ SCRIPT = Path(__file__).parents[1] / "reference" / "gpu_simulated.py"
 def test_the_simulators_threads_leave_the_same_bits_and_end_at_the_same_blocks():
     # the simulator has to be asked for before numba is imported
     done = subprocess.run(
-        [sys.executable, SCRIPT, "4"],
+        [sys.executable, SCRIPT, "3"],
         env={**os.environ, "NUMBA_ENABLE_CUDASIM": "1"},
         capture_output=True,
         text=True,
