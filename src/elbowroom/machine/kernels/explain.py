@@ -56,14 +56,14 @@ class Three(NamedTuple):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def explain(view, depth, canvas, tolerance, model, around):
-    """Fills `model` where a measured depth fits what was drawn in the 3 x 3 pixels about it; wipes the canvas' image.
+    """Fills `model` where a measured depth fits what was drawn in the 3 x 3 pixels about it; empties the canvas.
 
     Sets the voxels of the returns that do not fit, too.
 
     Args:
         view: the camera.
         depth: (height, width) float32, measured [m, the camera's kind].
-        canvas: from `draw` and `to_kind`; its image is zeros afterwards.
+        canvas: from `draw` and `to_kind`; nothing is drawn in it afterwards.
         tolerance: how near is near enough.
         model: (height, width) float32 zeros; where a pixel fits, the depth drawn in it, or else nearest about it
             [m, same kind]. Of a camera whose pixels fly, also what `_settle_edges` says.
@@ -88,8 +88,15 @@ def explain(view, depth, canvas, tolerance, model, around):
     )
     for row in range(around.near.shape[0]):
         mark_row_of_tiles(view, depth, model, row, around, scratch)
-    for v in range(height):
+    _wipe(canvas)
+
+
+@uncounted()
+def _wipe(canvas):
+    """Makes a canvas empty again."""
+    for v in range(canvas.first.size):
         set_run(canvas.inverse[v], canvas.first[v], canvas.last[v] + 1, np.float32(0.0))
+        canvas.first[v], canvas.last[v] = canvas.inverse.shape[1], -1
 
 
 @uncounted()

@@ -358,7 +358,7 @@ def _set_cube(x, y, z, half, lattice, words):
                 k = (k & ~3) + 4
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def set_run(array, start, stop, value):
     """Sets a run of an array. Unsigned indices, as above, or the compiler does one pixel at a time."""
     for n in range(start, stop):
