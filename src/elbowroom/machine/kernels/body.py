@@ -185,7 +185,9 @@ def _mark_large(clusters, c, voxels_from_link, r, lattice, noted, words):
     _gather_rows(noted.about, counts, noted.rows)
     for row in range((ni + 2) * (nj + 2)):
         if noted.rows[row] != 0:
-            _set_row(i0 - 1 + row // (nj + 2), j0 - 1 + row % (nj + 2), k0 - 1, noted.rows[row], lattice, words)
+            _set_row(
+                i0 - 1 + row // (nj + 2), j0 - 1 + row % (nj + 2), k0 - 1, noted.rows[row], lattice, words
+            )
             noted.rows[row] = 0
 
 

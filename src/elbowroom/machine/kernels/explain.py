@@ -125,9 +125,7 @@ def _compare(view, depth, canvas, v, columns, tolerance, rows, model):
     above = inverse[v - 1] if v > 0 else rows.nothing
     below = inverse[v + 1] if v + 1 < height else rows.nothing
     _of_three(above, inverse[v], below, columns[0], columns[1], rows.about[0], rows.about[1])
-    _fill_model(
-        view, depth[v], inverse[v], columns, tolerance, rows.about[0], rows.about[1], model[v]
-    )
+    _fill_model(view, depth[v], inverse[v], columns, tolerance, rows.about[0], rows.about[1], model[v])
 
 
 @uncounted(error_model="numpy")
