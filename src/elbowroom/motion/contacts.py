@@ -195,4 +195,5 @@ def parts_of(shape: Shape) -> Skin:
         triangles=np.zeros((0, 3, 3)),
         patches=none,
         patch_start=none,
+        columns=np.zeros((3, 0), dtype=np.float32),
     )

@@ -50,6 +50,7 @@ def _skin(shape: Shape, samples: BodySamples) -> Skin:
         triangles=triangles,
         patches=patches,
         patch_start=starts,
+        columns=np.ascontiguousarray(samples.points.T),
     )
 
 
@@ -74,6 +75,7 @@ def bare_skin(samples: BodySamples, points: NDArray[np.float32]) -> Skin:
         triangles=np.zeros((0, 3, 3)),
         patches=none,
         patch_start=np.zeros(0, dtype=np.int64),
+        columns=np.zeros((3, 0), dtype=np.float32),
     )
 
 

@@ -11,7 +11,6 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -43,23 +42,23 @@ def parts_of(scene: Scene, voxel_size_m: float) -> dict[str, Callable[[int], obj
     cycle = Cycle(grid, scene.cameras, machine, motions, Terms(detail="pixel"), keeps_images=True)
     joints = [dict(zip(machine.joint_names, row, strict=True)) for row in scene.joints]
     depths = [[frame.depth_m for frame in moment] for moment in scene.moments]
-    spaces = [cycle.run(Snapshot.taken(scene.moments[m], joints[m], m)).space for m in range(len(joints))]
+    spaces = []
+    for m, moment in enumerate(scene.moments):
+        result = cycle.run(Snapshot.taken(moment, joints[m], m))
+        if result.space is None:
+            raise RuntimeError(result.fault)
+        spaces.append(result.space)
     paths = [_path(machine, one) for one in joints]
     brakes = Braking(SPEEDS, dict.fromkeys(SPEEDS, BRAKING_TIME_S))
-
-    def seen(m: int) -> Any:
-        space = spaces[m]
-        assert space is not None
-        return space
 
     return {
         "explain": lambda m: explain_frames(
             machine, scene.cameras, depths[m], [joints[m]] * len(scene.cameras), grid=grid
         ),
         "body out": lambda m: body_words(machine, joints[m], grid, 0.75 * voxel_size_m),
-        "eight motions": lambda m: check_motions(seen(m), machine, joints[m], motions),
-        "distances": lambda m: link_distances(seen(m), machine, joints[m], LOOK_M),
-        "path of 200 points": lambda m: check_path(seen(m), machine, paths[m], joints[m], brakes),
+        "eight motions": lambda m: check_motions(spaces[m], machine, joints[m], motions),
+        "distances": lambda m: link_distances(spaces[m], machine, joints[m], LOOK_M),
+        "path of 200 points": lambda m: check_path(spaces[m], machine, paths[m], joints[m], brakes),
     }
 
 

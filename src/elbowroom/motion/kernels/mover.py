@@ -24,7 +24,8 @@ class Skin(NamedTuple):
     """A machine's surface in its links' frames: samples, sorted by cluster, and triangles.
 
     A cluster lies on one link. The patch of a sample is the triangles that come within `cover` of it;
-    together its patches are the surface, or lie off it by `off` at most.
+    together its patches are the surface, or lie off it by `off` at most. `columns` are the points again, (3, n): loops
+    over many at once read them five times as fast so; none in skins that are not swept.
     """
 
     points: np.ndarray
@@ -39,6 +40,7 @@ class Skin(NamedTuple):
     triangles: np.ndarray
     patches: np.ndarray
     patch_start: np.ndarray
+    columns: np.ndarray
 
 
 class Mover(NamedTuple):

@@ -72,6 +72,7 @@ def near_members(placed, mover, half, volume, clusters, near, at):
     """
     skin, speeds = mover.skin, mover.speeds
     link, points, start, stop, cover = skin.link, skin.points, skin.start, skin.stop, skin.cover
+    columns = skin.columns
     words, corners, lattice = volume.words, volume.corners, volume.lattice
     count = 0
     for cluster in clusters:
@@ -80,7 +81,7 @@ def near_members(placed, mover, half, volume, clusters, near, at):
         for first in range(start[cluster], stop[cluster], TOGETHER):
             last = min(first + TOGETHER, stop[cluster])
             if small:
-                _corners_of(placed, link[cluster], points, first, last, lattice, at)
+                _corners_of(placed, link[cluster], columns, first, last, lattice, at)
             for sample in range(first, last):
                 n = sample - first
                 if small and at[0, n] >= 0:
@@ -95,7 +96,7 @@ def near_members(placed, mover, half, volume, clusters, near, at):
 
 
 @uncounted(error_model="numpy")
-def _corners_of(placed, link, points, first, last, lattice, at):
+def _corners_of(placed, link, columns, first, last, lattice, at):
     """The voxels' corners nearest to a link's points: (3, points) int32, -1 for one on the grid's border or beyond."""
     scale = 1.0 / lattice.edge
     for axis in range(3):
@@ -105,7 +106,7 @@ def _corners_of(placed, link, points, first, last, lattice, at):
         c, d = placed[link, axis, 2] * scale, (placed[link, axis, 3] - corner) * scale + 0.5
         for n in range(last - first):
             u = np.uint64(first + n)
-            place = a * points[u, 0] + b * points[u, 1] + c * points[u, 2] + d
+            place = a * columns[0, u] + b * columns[1, u] + c * columns[2, u] + d
             # comparisons with what is not a number are false
             at[axis, np.uint64(n)] = np.int32(place if (place >= 1.0) & (place < end) else -1.0)
     for n in range(last - first):
