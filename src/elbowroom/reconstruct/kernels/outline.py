@@ -29,7 +29,7 @@ from elbowroom.reconstruct.kernels.pixel import (
     settle_voxel,
 )
 from elbowroom.reconstruct.kernels.place import box_in
-from elbowroom.reconstruct.kernels.rows import EIGHT, short_of, telling
+from elbowroom.reconstruct.kernels.rows import EIGHT, short_of, shorts_of, tellings_of
 from elbowroom.reconstruct.kernels.texels import NO_RETURN, greatest_of
 
 OUTLINES = np.dtype(
@@ -51,6 +51,10 @@ SEEN, NOTHING_SAID, UNKNOWN = 0, 1, 2
 """What the rectangle about a voxel says: all is free beyond it; not that, and no pixel says anything of it; neither."""
 MOST_PIXELS = 24
 """Wider rectangles are left to the pixel test, which passes over tiles of pixels at once."""
+MOST_OF_BLOCK = 48
+"""Of blocks that cover more pixels either way each voxel is asked for itself."""
+IN_EACH_ROW = np.uint64(0x0101010101010101)
+"""Times the bits of one row, the same bits in each of eight."""
 SPARE = np.float32(2.0) * SLOP_PX
 """By so much rectangles are wider [px]."""
 
@@ -188,18 +192,18 @@ def _settled(camera, texels, block, lane, stopped):
     top, bottom = np.int64(block.top[lane]), np.int64(block.bottom[lane])
     if right - left >= MOST_PIXELS or bottom - top >= MOST_PIXELS:
         return UNKNOWN
-    clear_from, hidden_to = block.clear_from[lane], block.hidden_to[lane]
-    short, tell = np.uint64(0), np.uint64(0)
-    for column in range(left, right + 1, EIGHT):
-        begin = min(column, camera.width - EIGHT)
-        columns = _run(begin, column, right)
-        at = camera.first_texel + top * camera.width + begin
-        for _ in range(bottom - top + 1):
-            here = short_of(texels.trust_texels, at, clear_from) & columns
-            short |= here
-            tell |= telling(texels.doubt_texels, at, clear_from, hidden_to) & here
-            at += camera.width
-    if not short:
+    clear_from, between = block.clear_from[lane], (block.clear_from[lane], block.hidden_to[lane])
+    short, tell, width = np.uint64(0), np.uint64(0), camera.width
+    for row in range(top, bottom + 1, EIGHT):
+        last = bottom - row
+        for column in range(left, right + 1, EIGHT):
+            begin = min(column, width - EIGHT)
+            at = camera.first_texel + row * width + begin
+            columns = _run(begin, column, right) * IN_EACH_ROW
+            if not stopped:
+                short |= shorts_of(texels.trust_texels, at, width, last, clear_from) & columns
+            tell |= tellings_of(texels.doubt_texels, at, width, last, between) & columns
+    if not (short or stopped):
         return SEEN
     if tell:
         return UNKNOWN
@@ -227,12 +231,12 @@ def _settle_few(camera, texels, box, stopped, voxel):
         _run(left, pixels.left, pixels.right),
         camera.first_texel + pixels.top * camera.width + left,
     )
-    short, tell, at = np.uint64(0), np.uint64(0), corner
-    for row in range(pixels.bottom - pixels.top + 1):
-        here = np.uint64(8 * row)
-        short |= (short_of(texels.trust_texels, at, depths.clear_from) & columns) << here
-        tell |= (telling(texels.doubt_texels, at, depths.clear_from, depths.hidden_to) & columns) << here
-        at += camera.width
+    width, last = camera.width, pixels.bottom - pixels.top
+    between = depths.clear_from, depths.hidden_to
+    # of rows past the last the texels of the last would be counted again
+    own = columns * (IN_EACH_ROW >> np.uint64(8 * (EIGHT - 1 - last)))
+    short = shorts_of(texels.trust_texels, corner, width, last, depths.clear_from) & own
+    tell = tellings_of(texels.doubt_texels, corner, width, last, between) & own
     tell &= short
     if not short:
         return THROUGH
@@ -262,6 +266,34 @@ def _settle_few(camera, texels, box, stopped, voxel):
 
 
 @uncounted(cache=True, error_model="numpy")
+def _is_silent(camera, texels, boxes):
+    """Whether no pixel that may see any voxel of a block wholly in view says anything of what lies as deep as the block.
+
+    Then none of its voxels is disputed: their pixels are among these, and their depths within the block's.
+    """
+    m, edge = camera.camera_from_world, 4.0 * boxes.edge
+    aside = 1.5 * boxes.edge
+    middle = moved(m, boxes.x + aside, boxes.y + aside, boxes.z + aside)
+    u0, u1, v0, v1 = outline_of(camera, middle, 0.5 * edge)
+    spare = np.float64(SPARE)
+    pixels = pixels_within(camera, (u0 - spare, u1 + spare, v0 - spare, v1 + spare))
+    if pixels.right - pixels.left >= MOST_OF_BLOCK or pixels.bottom - pixels.top >= MOST_OF_BLOCK:
+        return False
+    reach_z = 0.5 * edge * (abs(m[2, 0]) + abs(m[2, 1]) + abs(m[2, 2]))
+    depths = depths_of(camera, middle, edge, reach_z)
+    # a quantum more to both sides than of a voxel: rounding may go either way
+    between = np.uint32(min(depths.clear_from + 1, 65535)), np.uint32(max(np.int64(depths.hidden_to) - 1, 0))
+    for row in range(pixels.top, pixels.bottom + 1, EIGHT):
+        for column in range(pixels.left, pixels.right + 1, EIGHT):
+            begin = min(column, camera.width - EIGHT)
+            at = camera.first_texel + row * camera.width + begin
+            tell = tellings_of(texels.doubt_texels, at, camera.width, pixels.bottom - row, between)
+            if tell & (_run(begin, column, pixels.right) * IN_EACH_ROW):
+                return False
+    return True
+
+
+@uncounted(cache=True, error_model="numpy")
 def settle_block(camera, texels, asked, stopped, boxes, scratch):
     """As `kernels.pixel.settle_word`, faster.
 
@@ -275,6 +307,8 @@ def settle_block(camera, texels, asked, stopped, boxes, scratch):
     first, state = place_boxes(camera, boxes)
     by_outlines = state == INSIDE and camera.width >= EIGHT
     lanes, voxel = scratch
+    if by_outlines and stopped and _is_silent(camera, texels, boxes):
+        return answers
     if by_outlines:
         outlines(camera, first, boxes.edge, lanes)
     rest, through = asked, np.uint64(0)
