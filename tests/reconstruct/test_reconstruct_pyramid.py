@@ -36,7 +36,9 @@ def test_texels_bound_a_depth_by_at_most_three_quanta():
     quantum = 8e-5
     depth = np.random.default_rng(0).uniform(0.001, 5.2, (40, 50)).astype(np.float32)
     trust = np.zeros(depth.shape, dtype=np.uint32)
-    texels.texels_of_frame((depth, depth), counting(quantum=quantum), NO_MODEL, (trust, NO_TEXELS), all_of(depth))
+    texels.texels_of_frame(
+        (depth, depth), counting(quantum=quantum), NO_MODEL, (trust, NO_TEXELS), all_of(depth)
+    )
     least, greatest = bounds_of(trust)
     exact = depth.astype(float) / quantum
     assert ((exact - 3 < least) & (least <= exact)).all()

@@ -38,10 +38,17 @@ def marks_of(texels, places, clear_from, hidden_to):
 
 
 @given(
-    st.lists(texel, min_size=80, max_size=80), st.integers(0, 2), st.integers(8, 10), st.integers(0, 7), depth, depth
+    st.lists(texel, min_size=80, max_size=80),
+    st.integers(0, 2),
+    st.integers(8, 10),
+    st.integers(0, 7),
+    depth,
+    depth,
 )
 @settings(max_examples=200, deadline=None)
-def test_marks_of_eight_rows_of_eight_texels_are_those_of_each(texels, at, stride, last, clear_from, hidden_to):
+def test_marks_of_eight_rows_of_eight_texels_are_those_of_each(
+    texels, at, stride, last, clear_from, hidden_to
+):
     short = tell = 0
     for row, n in product(range(8), range(8)):
         one = texels[at + min(row, last) * stride + n]

@@ -29,8 +29,8 @@ NOBODY = np.int32(0xFFFF)
 class Rows(NamedTuple):
     """Memory for rows of pixels, by row of a ring: texels; what each leaves free of a speck beside it, float32
     [quanta]; texels with specks passed over; least depth about them, a number beside the row on either side, int32
-    [quanta]. Of one row: nearest, the least of three of these; marks, a byte a pixel, and the same as words of eight;
-    about: (8, 5) int32, for pixels about one. marked (ring, 2): where the machine is in a row."""
+    [quanta]. Of one row: nearest, the least of three of these; marks, a byte a pixel, whole words of eight; about: (8, 5)
+    int32, for pixels about one. marked (ring, 2): where the machine is in a row."""
 
     texels: np.ndarray
     short_of: np.ndarray
@@ -38,7 +38,6 @@ class Rows(NamedTuple):
     least: np.ndarray
     nearest: np.ndarray
     marks: np.ndarray
-    mark_words: np.ndarray
     about: np.ndarray
     marked: np.ndarray
 
@@ -46,15 +45,13 @@ class Rows(NamedTuple):
 @njit(nogil=True)
 def _memory(ring, columns):
     """Memory for so many rows of so many pixels."""
-    words = np.zeros(columns // 8 + 1, dtype=np.uint64)
     return Rows(
         np.empty((ring, columns), dtype=np.uint32),
         np.empty((ring, columns), dtype=np.float32),
         np.empty((ring, columns), dtype=np.uint32),
         np.full((ring, columns + 2), NOBODY, dtype=np.int32),
         np.empty(columns + 2, dtype=np.int32),
-        words.view(np.uint8),
-        words,
+        np.zeros(8 * (columns // 8 + 1), dtype=np.uint8),
         np.empty((8, 5), dtype=np.int32),
         np.zeros((ring, 2), dtype=np.int64),
     )
@@ -141,7 +138,10 @@ def _fly(bounds_m, counting, model_m, near, own, within, memory):
             at, ring = first_row + v, v % RING
             texels = memory.texels[ring]
             texels_of_row(
-                (bounds_m[0][at, first:end], bounds_m[1][at, first:end]), counting, texels, doubt[at, first:end]
+                (bounds_m[0][at, first:end], bounds_m[1][at, first:end]),
+                counting,
+                texels,
+                doubt[at, first:end],
             )
             if has_model:
                 start, stop = mark_row(model_m[at, first:end], counting, texels, doubt[at, first:end])
@@ -199,11 +199,14 @@ def _pass_row(memory, v, rows, keep, passed):
             passed[u] = texels[u]
         return
     short_of = memory.short_of
-    _mark_near(texels, short_of[(v - 1) % ring], short_of[v % ring], short_of[(v + 1) % ring], memory.marks, passed)
+    _mark_near(
+        texels, short_of[(v - 1) % ring], short_of[v % ring], short_of[(v + 1) % ring], memory.marks, passed
+    )
     about = max(v - 2, 0) % ring, v - 1, v, v + 1, min(v + 2, rows - 1)
     about = about[0], about[1] % ring, about[2] % ring, about[3] % ring, about[4] % ring
-    for eight in range(memory.mark_words.size):
-        rest = memory.mark_words[eight]
+    words = memory.marks.view(np.uint64)
+    for eight in range(words.size):
+        rest = words[eight]
         while rest:
             u = 8 * eight + (lowest_bit(rest) >> 3)
             rest &= rest - np.uint64(1)

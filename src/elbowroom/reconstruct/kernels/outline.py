@@ -323,9 +323,9 @@ def _settle_few(camera, texels, box, stopped, voxel):
 
 @uncounted(cache=True, error_model="numpy")
 def _is_silent(camera, texels, boxes):
-    """Whether no pixel that may see any voxel of a block wholly in view says anything of what lies as deep as the block.
+    """Whether no pixel that may see any voxel of a block says anything of what lies as deep as the block.
 
-    Then none of its voxels is disputed: their pixels are among these, and their depths within the block's.
+    Then none of its voxels, all wholly in view, is disputed: their pixels are among these, their depths within its.
     """
     m, edge = camera.camera_from_world, 4.0 * boxes.edge
     aside = 1.5 * boxes.edge

@@ -1,8 +1,8 @@
 """Eight pixels of a row at once, and eight rows of them: which a voxel has to be asked of.
 
-One load and a few comparisons of eight texels each, and eight rows without a branch; as a loop the compiler does them one at a time. Numba emits them as
-vectors of LLVM, which any processor can do (`numba.extending.intrinsic`). Without the compiler the functions as they
-stand here are run.
+One load and a few comparisons of eight texels each, eight rows without a branch; as a loop the compiler does them one
+at a time. Numba emits them as vectors of LLVM, which any processor can do (`numba.extending.intrinsic`). Without the
+compiler the functions as they stand here are run.
 """
 
 from typing import Any
@@ -128,7 +128,7 @@ def _short_of_rows(_: Any, texels: Any, at: Any, stride: Any, last: Any, limit: 
         most = _upper(builder, limit)
         return _eight_rows(
             builder,
-            tuple(places),  # type: ignore[arg-type]
+            tuple(places),
             lambda at: builder.icmp_unsigned(
                 "<", _eight_from(context, builder, signature.args[0], array, at), most
             ),
@@ -151,7 +151,7 @@ def _telling_rows(_: Any, texels: Any, at: Any, stride: Any, last: Any, between:
             not_before = builder.icmp_unsigned("<", builder.and_(eight, _all(builder, lower)), before)
             return builder.and_(not_behind, not_before)
 
-        return _eight_rows(builder, tuple(places), marks_at)  # type: ignore[arg-type]
+        return _eight_rows(builder, tuple(places), marks_at)
 
     two = types.UniTuple(types.uint32, 2)
     return types.uint64(texels, types.intp, types.intp, types.intp, two), emit
