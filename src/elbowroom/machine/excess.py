@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine.joint_state import Joints
@@ -132,6 +131,8 @@ def _depth_in(
     samples: BodySamples, world_from_link: NDArray[np.float64], points: NDArray[np.float64]
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     """For points in the world, the link that each lies on or in, -1: none; how far it is from the surface [m]."""
+    from scipy.spatial import KDTree  # slow to load, and no pass needs it
+
     link = np.concatenate([samples.point_link, samples.interior_link])
     within = np.concatenate([samples.points, samples.interior]).astype(np.float64)
     pose = world_from_link[link]
