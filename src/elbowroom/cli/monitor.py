@@ -224,16 +224,23 @@ def monitor(
         recorder = recorder_of(room, record, black_box)
         decides = gate_of(room, gate, callback)
         serving = None if service is None else _serving(decides, service, token, service_origin or ())
-        pages = [] if no_page else [_page(shown, page_port, language)]
+        pages = [] if no_page else [_page(shown, page_port, language, service)]
         pages += [_foxglove(shown, foxglove_port)] if foxglove else []
         _watch(shown, seconds, (json, out), Run(decides, recorder, _paths(path), serving, pages))
 
 
-def _page(room: "Room", port: int | None, language: str) -> "OpenedPage | str":
-    """The page of a run, not opened yet; or why there is none, a line."""
+def _page(room: "Room", port: int | None, language: str, service: int | None) -> "OpenedPage | str":
+    """The page of a run, not opened yet; or why there is none, a line.
+
+    Args:
+        room: that is watched.
+        port: of the page.
+        language: of its words.
+        service: port of the control service; None: there is none.
+    """
     from elbowroom.page.opened import OpenedPage, missing
 
-    return missing() or OpenedPage(room, port, language)
+    return missing() or OpenedPage(room, port, language, service=service)
 
 
 def _foxglove(room: "Room", port: int) -> "OpenedPage | str":
@@ -369,6 +376,8 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
             faces.append(recorder)
             loop = replace(loop, checks=replace(loop.checks, looks=(*loop.checks.looks, recorder)))
         if run.serving is not None:
+            own = (origin for page in opened for origin in page.origins)
+            run.serving.origins = (*run.serving.origins, *own)
             run.serving.start()
             faces.append(run.serving)
         with asked_to_end() as is_over:

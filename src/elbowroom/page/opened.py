@@ -13,11 +13,13 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
+from urllib.parse import urlsplit
 
 from elbowroom.extras import install_command
 from elbowroom.monitor.blackbox.configuration import Configuration, plain_cycle
 from elbowroom.page.board.board import Board, Sizes
 from elbowroom.page.face import PageFace
+from elbowroom.page.server.door import HOSTS
 from elbowroom.page.words import words_of
 from elbowroom.sources import Room
 
@@ -43,6 +45,7 @@ class OpenedPage:
         language: of its words.
         name: what it is called when something is said of it.
         program: the module that runs in its process.
+        service: port of the control service, which browsers ask themselves; None: it is not started.
 
     Raises:
         InputError: no such language.
@@ -53,8 +56,8 @@ class OpenedPage:
     language: str = "en"
     name: str = "page"
     program: str = "elbowroom.page.process"
+    service: int | None = None
     face: PageFace = field(init=False)
-    url: str | None = field(default=None, init=False)
     _folder: Path = field(init=False)
     _process: Any = field(default=None, init=False)
     _answer: dict[str, str] = field(default_factory=dict, init=False)
@@ -71,6 +74,7 @@ class OpenedPage:
         for part in Configuration.of(room, plain_cycle(room)).attached():
             (self._folder / part.name).write_bytes(part.data)
         said = {"board": board.said(), "folder": str(self._folder), "language": self.language}
+        said |= {"port": self.port, "service": self.service}
         with (self._folder / LOG).open("w") as log:
             self._process = subprocess.Popen(
                 [sys.executable, "-m", self.program],
@@ -80,7 +84,7 @@ class OpenedPage:
                 text=True,
             )
         with contextlib.suppress(OSError):
-            self._process.stdin.write(json.dumps({**said, "port": self.port}) + "\n")
+            self._process.stdin.write(json.dumps(said) + "\n")
             self._process.stdin.flush()
         threading.Thread(target=self._listen, daemon=True).start()
         return self
@@ -109,6 +113,13 @@ class OpenedPage:
         if "url" in self._answer:
             return f"{self.name}: {self._answer['url']}"
         return f"no {self.name}: {self._answer.get('error', 'its process does not answer')}"
+
+    @property
+    def origins(self) -> tuple[str, ...]:
+        """What browsers call this page when it asks the control service, by exact name; none: it is not open."""
+        url = self._answer.get("url", "")
+        at = urlsplit(url)
+        return tuple(f"http://{host}:{at.port}" for host in HOSTS) if at.scheme == "http" else ()
 
     @property
     def troubles(self) -> Iterator[str]:

@@ -40,7 +40,7 @@ def serve(said: Mapping[str, Any]) -> None:
     """Serves the page that was asked for.
 
     Args:
-        said: board, folder with the configuration, language, port.
+        said: board, folder with the configuration, language, port, and port of the control service.
     """
     from elbowroom.monitor.blackbox.configuration import CONFIGURATION, SITE, Configuration
     from elbowroom.page.board.board import Board
@@ -53,7 +53,8 @@ def serve(said: Mapping[str, Any]) -> None:
     board = Board.opened(said["board"])
     with contextlib.suppress(OSError):  # both have it open: nothing stays behind, however they end
         board.forget()
-    page = Page(Configuration.read(content, text, "page"), words_of(said["language"]), "live")
+    configuration, words = Configuration.read(content, text, "page"), words_of(said["language"])
+    page = Page(configuration, words, "live", service=said.get("service"))
     _open(page, said["port"])
     _say({"url": page.server.url})
     over = threading.Event()

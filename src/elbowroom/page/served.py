@@ -8,7 +8,7 @@ from elbowroom.page import colours
 from elbowroom.page.server import Answer
 from elbowroom.page.words import Words
 
-PROGRAM = ("plot.js", "panel.js", "slider.js", "live.js")
+PROGRAM = ("plot.js", "panel.js", "slider.js", "controls.js", "live.js")
 """Files of the page's program, in the order in which they are read."""
 
 

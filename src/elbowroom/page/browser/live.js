@@ -21,10 +21,12 @@
       isEnded = false;
       Panel.begin(said, ask);
       if (said.mode === "replay") Slider.begin(said, ask);
+      Controls.begin(said);
     } else if (said.type === "moment") {
       heard = now();
       age = said.age_s;
       Panel.moment(said);
+      Controls.moment(said);
       const time = hello.mode === "replay" ? said.sequence_s : heard;
       Plots.add("free", time, said.motions.map(one => one.brakes));
       Plots.add("cycle", time, [said.cycle_ms]);
@@ -42,10 +44,12 @@
   function watch() {
     if (!hello) return;
     const seconds = heard === null ? 0 : now() - heard + age, values = {age: Panel.seconds(seconds)};
-    if (isEnded) Panel.old(Panel.word("ended"));
-    else if (!isOpen) Panel.old(Panel.word("gone", values));
-    else if (hello.mode === "live" && heard !== null && seconds > OLD_S) Panel.old(Panel.word("old", values));
-    else Panel.old(null);
+    let old = null;
+    if (isEnded) old = Panel.word("ended");
+    else if (!isOpen) old = Panel.word("gone", values);
+    else if (hello.mode === "live" && heard !== null && seconds > OLD_S) old = Panel.word("old", values);
+    Panel.old(old);
+    Controls.watch(old !== null || heard === null);
   }
 
   function hasWebGL() {
