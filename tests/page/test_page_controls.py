@@ -1,5 +1,6 @@
 """Reset and hold-to-override on the page, by clicks, with the real service and gate."""
 
+import re
 import time
 from pathlib import Path
 
@@ -133,7 +134,7 @@ def test_it_ends_when_the_connection_is_lost_and_when_what_is_shown_is_old(page,
 def test_the_token_is_nowhere_but_in_the_tab(page, run):
     give(page, run.token)
     page.click("#reset")
-    page.wait_for_function("/latched|Reset:/.test(document.getElementById('controlsaid').textContent)")
+    page.locator("#controlsaid", has_text=re.compile("latched|Reset:")).wait_for()
     kept = page.evaluate(
         "JSON.stringify([{...localStorage}, {...sessionStorage}, document.cookie, location.href])"
     )
@@ -152,7 +153,8 @@ def test_the_token_is_nowhere_but_in_the_tab(page, run):
 
 def _memory_of(pid: int):
     """What a process holds in memory that can be written, piece by piece."""
-    with open(f"/proc/{pid}/maps") as maps, open(f"/proc/{pid}/mem", "rb", buffering=0) as memory:
+    of = Path(f"/proc/{pid}")
+    with (of / "maps").open() as maps, (of / "mem").open("rb", buffering=0) as memory:
         for line in maps:
             span, rights = line.split()[:2]
             begin, end = (int(n, 16) for n in span.split("-"))

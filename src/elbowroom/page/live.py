@@ -113,6 +113,8 @@ class Live:
                 self.page.explain(viewer, answered.told, number, changes)
                 told = answered.told
             self.page.fly(viewer, told["judged"]["verdicts"][number]["place_m"])
+        if asked["type"] == "ways":
+            self.page.stage.shows_clear = asked["all"] is True
         if asked["type"] == "depth":
             answered, name = self._images(), str(asked["camera"])
             frames = () if answered is None else answered.snapshot.frames

@@ -65,7 +65,7 @@ class Page:
         answers = answers_of(self.words, str(self.configuration.told.get("site")))
         reaches = () if self.service is None else (f"http://127.0.0.1:{self.service}",)
         self.server = guarded(Guarded(answers, {TEXT: self.talk.serve}, reaches=reaches), port)
-        self.stage = Stage(Scene(self.server.viser), self.configuration)
+        self.stage = Stage(Scene(self.server.viser), self.configuration, self.words("path.name"))
         self.stage.draw()
         _look_from_aside(self.server.viser, self.stage)
 

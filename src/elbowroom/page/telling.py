@@ -11,6 +11,7 @@ from elbowroom.page.story.cameras import Rates, camera_rows
 from elbowroom.page.story.gate import gate_said
 from elbowroom.page.story.headline import headline
 from elbowroom.page.story.motions import looked_at_of, motion_rows, with_reach
+from elbowroom.page.story.path import path_said
 from elbowroom.page.story.told import Told
 from elbowroom.page.story.why_text import why_text
 from elbowroom.page.words import Words
@@ -67,6 +68,7 @@ class Telling:
             "why": self._why(told, said.motion),
             "motions": motion_rows(told, self.words, self.looked_at),
             "gate": gate_said(told, self.words),
+            "path": path_said(told, self.words),
             "cameras": cameras,
             "cycle_ms": cycle_ms,
             "age_ms": None if oldest_ms is None else float(oldest_ms) + cycle_ms,

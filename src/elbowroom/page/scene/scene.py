@@ -145,6 +145,15 @@ class Scene:
         """
         self.show_points(f"/ways/{number}", points, colours.LEVELS[level], 0.012)
 
+    def show_path(self, points: NDArray[np.float64], level: Level) -> None:
+        """Shows the swept volume of the path that was asked for.
+
+        Args:
+            points: shape (n, 3), world frame [m]; none: it is not shown.
+            level: whose colour it has.
+        """
+        self.show_points("/path", points, colours.LEVELS[level], 0.022)
+
     def show_contacts(self, contacts: Sequence[tuple[str, tuple[float, float, float]]]) -> None:
         """Marks where motions first meet something.
 
