@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from elbowroom.monitor import Gate
     from elbowroom.monitor.blackbox.recorder import Recorder
     from elbowroom.monitor.serving import Serving
+    from elbowroom.page.early import Early
     from elbowroom.page.opened import OpenedPage
     from elbowroom.sensing import MeantPaths
     from elbowroom.site import Site
@@ -196,6 +197,9 @@ def monitor(
 
     Not a certified safety function.
     """
+    from elbowroom.page.early import early_page
+
+    early = None if no_page else early_page()
     positions = parse_joints(joints)
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
@@ -224,23 +228,26 @@ def monitor(
         recorder = recorder_of(room, record, black_box)
         decides = gate_of(room, gate, callback)
         serving = None if service is None else _serving(decides, service, token, service_origin or ())
-        pages = [] if no_page else [_page(shown, page_port, language, service)]
+        pages = [] if no_page else [_page(shown, (page_port, service), language, early)]
         pages += [_foxglove(shown, foxglove_port)] if foxglove else []
         _watch(shown, seconds, (json, out), Run(decides, recorder, _paths(path), serving, pages))
 
 
-def _page(room: "Room", port: int | None, language: str, service: int | None) -> "OpenedPage | str":
+def _page(
+    room: "Room", ports: tuple[int | None, int | None], language: str, early: "Early | None"
+) -> "OpenedPage | str":
     """The page of a run, not opened yet; or why there is none, a line.
 
     Args:
         room: that is watched.
-        port: of the page.
+        ports: of the page, and of the control service; None: any, and that there is none.
         language: of its words.
-        service: port of the control service; None: there is none.
+        early: its process, if it was begun.
     """
     from elbowroom.page.opened import OpenedPage, missing
 
-    return missing() or OpenedPage(room, port, language, service=service)
+    port, service = ports
+    return missing() or OpenedPage(room, port, language, service=service, early=early)
 
 
 def _foxglove(room: "Room", port: int) -> "OpenedPage | str":

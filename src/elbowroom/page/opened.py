@@ -3,9 +3,6 @@
 import contextlib
 import json
 import shutil
-import subprocess
-import sys
-import tempfile
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -18,12 +15,12 @@ from urllib.parse import urlsplit
 from elbowroom.extras import install_command
 from elbowroom.monitor.blackbox.configuration import Configuration, plain_cycle
 from elbowroom.page.board.board import Board, Sizes
+from elbowroom.page.early import PAGE, Early
 from elbowroom.page.face import PageFace
 from elbowroom.page.server.door import HOSTS
 from elbowroom.page.words import words_of
 from elbowroom.sources import Room
 
-LOG = "page.log"
 OPENS_S = 90.0
 """So long it may take until the page says where it is [s]."""
 
@@ -46,6 +43,7 @@ class OpenedPage:
         name: what it is called when something is said of it.
         program: the module that runs in its process.
         service: port of the control service, which browsers ask themselves; None: it is not started.
+        early: its process, where it was begun before; None: it is begun when this is entered.
 
     Raises:
         InputError: no such language.
@@ -55,8 +53,9 @@ class OpenedPage:
     port: int | None = None
     language: str = "en"
     name: str = "page"
-    program: str = "elbowroom.page.process"
+    program: str = PAGE
     service: int | None = None
+    early: Early | None = None
     face: PageFace = field(init=False)
     _folder: Path = field(init=False)
     _process: Any = field(default=None, init=False)
@@ -70,19 +69,12 @@ class OpenedPage:
         room = self.room
         board = Board.made(Sizes.of(room.grid, room.cameras))
         self.face = PageFace(board)
-        self._folder = Path(tempfile.mkdtemp(prefix="elbowroom-page-"))
+        early = Early.begun(self.program) if self.early is None else self.early
+        self._folder, self._process = early.folder, early.process
         for part in Configuration.of(room, plain_cycle(room)).attached():
             (self._folder / part.name).write_bytes(part.data)
         said = {"board": board.said(), "folder": str(self._folder), "language": self.language}
         said |= {"port": self.port, "service": self.service}
-        with (self._folder / LOG).open("w") as log:
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", self.program],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=log,
-                text=True,
-            )
         with contextlib.suppress(OSError):
             self._process.stdin.write(json.dumps(said) + "\n")
             self._process.stdin.flush()

@@ -4,6 +4,7 @@ Read from standard input: one line of JSON that says what to show. Written to st
 """
 
 import contextlib
+import importlib
 import json
 import os
 import sys
@@ -29,11 +30,21 @@ NICE = 10
 def main() -> None:
     """Serves the page until standard input ends."""
     os.environ.setdefault("NUMBA_NUM_THREADS", "1")
-    said = json.loads(sys.stdin.readline())
+    _get_ready()
+    line = sys.stdin.readline()
+    if not line:  # whoever began it has ended
+        return
     try:
-        serve(said)
+        serve(json.loads(line))
     except ElbowroomError as error:
         _say({"error": str(error)})
+
+
+def _get_ready() -> None:
+    """Imports what is going to be needed, before it is said what to show."""
+    with contextlib.suppress(ImportError):  # what is missing is said by who needs it
+        importlib.import_module("elbowroom.page.live")
+        importlib.import_module("viser")
 
 
 def serve(said: Mapping[str, Any]) -> None:
