@@ -13,10 +13,10 @@ from elbowroom.monitor.blackbox.recording import Recording
 from elbowroom.monitor.blackbox.sinks import WholeRun
 from elbowroom.motion import Level
 from elbowroom.page.scene.bodies import points_in_world
-from elbowroom.page.scene.requested import AHEAD_S, end_of_path, level_of_path, poses_of_path
 from elbowroom.page.scene.ways import CELL_M
 from elbowroom.page.stage import Stage
 from elbowroom.page.story.path import path_said
+from elbowroom.page.story.requested import AHEAD_S, end_of_path, level_of_path, poses_of_path
 from elbowroom.page.story.told import told_of, told_of_recorded
 from elbowroom.page.words import words_of
 from elbowroom.sensing import MeantPath

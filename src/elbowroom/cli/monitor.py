@@ -197,10 +197,7 @@ def monitor(
 
     Not a certified safety function.
     """
-    from elbowroom.page.early import early_page
-
-    early = None if no_page else early_page()
-    positions = parse_joints(joints)
+    early, positions = _early(no_page), parse_joints(joints)
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
 
@@ -231,6 +228,13 @@ def monitor(
         pages = [] if no_page else [_page(shown, (page_port, service), language, early)]
         pages += [_foxglove(shown, foxglove_port)] if foxglove else []
         _watch(shown, seconds, (json, out), Run(decides, recorder, _paths(path), serving, pages))
+
+
+def _early(no_page: bool) -> "Early | None":
+    """The process of the page, begun before all else; None: nobody wants one, or packages are missing."""
+    from elbowroom.page.early import early_page
+
+    return None if no_page else early_page()
 
 
 def _page(

@@ -73,7 +73,7 @@ class OpenedPage:
         self._folder, self._process = early.folder, early.process
         for part in Configuration.of(room, plain_cycle(room)).attached():
             (self._folder / part.name).write_bytes(part.data)
-        said = {"board": board.said(), "folder": str(self._folder), "language": self.language}
+        said: dict[str, Any] = {"board": board.said(), "folder": str(self._folder), "language": self.language}
         said |= {"port": self.port, "service": self.service}
         with contextlib.suppress(OSError):
             self._process.stdin.write(json.dumps(said) + "\n")

@@ -13,10 +13,10 @@ from elbowroom.monitor.blackbox.configuration import Configuration
 from elbowroom.motion import Level
 from elbowroom.page.scene.bodies import link_points, points_in_world
 from elbowroom.page.scene.near import Near, Planes, near_of
-from elbowroom.page.scene.requested import end_of_path, level_of_path, poses_of_path
 from elbowroom.page.scene.scene import Scene
 from elbowroom.page.scene.ways import swept_points, way_points
 from elbowroom.page.story.phrases import level_of, name_of
+from elbowroom.page.story.requested import end_of_path, level_of_path, poses_of_path
 from elbowroom.page.story.told import Told
 
 

@@ -16,10 +16,10 @@ from elbowroom.page.replay.again import Again, Judge
 from elbowroom.page.report.packed import Pack, steps_of
 from elbowroom.page.report.span import Span
 from elbowroom.page.scene.bodies import light_mesh
-from elbowroom.page.scene.requested import end_of_path, level_of_path
 from elbowroom.page.scene.scene import FRUSTUM_M, KINDS
 from elbowroom.page.stage import Stage
 from elbowroom.page.story.phrases import level_of
+from elbowroom.page.story.requested import end_of_path, level_of_path
 from elbowroom.page.story.told import Told
 from elbowroom.page.telling import Telling
 from elbowroom.view.draw.site import frustum_in_world

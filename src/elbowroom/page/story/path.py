@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from elbowroom.page.scene.requested import end_of_path, level_of_path
 from elbowroom.page.story.phrases import meets
+from elbowroom.page.story.requested import end_of_path, level_of_path
 from elbowroom.page.story.told import Told
 from elbowroom.page.words import Words
 
