@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from elbowroom.errors import ElbowroomError, InputError
+from elbowroom.guard.priority import step_back
 
 if TYPE_CHECKING:
     from elbowroom.page.page import Page
@@ -70,7 +71,7 @@ def serve(said: Mapping[str, Any]) -> None:
     _say({"url": page.server.url})
     over = threading.Event()
     threading.Thread(target=_wait_for_end, args=(over,), daemon=True).start()
-    Live(page, board, over.is_set, _step_back).run()
+    Live(page, board, over.is_set, lambda: step_back(NICE)).run()
     page.talk.tell({"type": "ended"})
     time.sleep(STAYS_S)
     page.server.stop()
@@ -96,12 +97,6 @@ def _wait_for_end(over: threading.Event) -> None:
     while sys.stdin.readline():
         pass
     over.set()
-
-
-def _step_back() -> None:
-    """Lets the monitor go first."""
-    if hasattr(os, "nice"):
-        os.nice(NICE)
 
 
 def _say(what: Mapping[str, Any]) -> None:

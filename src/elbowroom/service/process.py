@@ -8,7 +8,6 @@ output it says, a line of JSON each, `ready` or `trouble`.
 
 import asyncio
 import json
-import os
 import signal
 import sys
 import time
@@ -18,6 +17,7 @@ from typing import Any
 
 from elbowroom.errors import ElbowroomError
 from elbowroom.guard.control import ask
+from elbowroom.guard.priority import step_back
 from elbowroom.service.door import Door, Now, Refusal
 from elbowroom.service.metrics import KIND, Metrics
 from elbowroom.service.openapi import openapi
@@ -144,7 +144,7 @@ def _say(told: Mapping[str, Any]) -> None:
 def main() -> int:
     """Runs the service; 1: it could not begin, and a line says why."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the monitor, with which this ends
-    os.nice(NICE)
+    step_back(NICE)
     try:
         asyncio.run(_run(json.loads(sys.argv[1])))
     except (OSError, ElbowroomError) as error:
