@@ -1,5 +1,7 @@
 """Planning in a real browser: dragged, clicked, typed; saved, and refused."""
 
+import json
+import struct
 import time
 from collections.abc import Callable, Iterator
 from itertools import combinations, cycle
@@ -8,17 +10,21 @@ import numpy as np
 import pytest
 
 from elbowroom.page.plan import drawn
+from elbowroom.page.plan.furniture import MOST_BYTES
 from elbowroom.page.plan.ground import Ground
 from elbowroom.page.plan.opened import open_plan
+from elbowroom.page.plan.room_file import write_room
 from elbowroom.page.plan.saved import kept
 from elbowroom.page.plan.session import Session
 from elbowroom.page.words import words_of
+from elbowroom.simulate.shapes import box, join
+from elbowroom.simulate.solid import Solid
 from elbowroom.site import Site
 from page.plan.conftest import ROOM
 from reference.browser import SOFTWARE_WEBGL, browsers, frames_go_by, serious, settled
 from reference.colour import APART, CONES, lab
 
-WAITS_S = 60.0
+WAITS_S = 30.0
 
 
 @pytest.fixture(scope="module")
@@ -176,17 +182,89 @@ def test_what_the_plan_draws_is_told_apart_by_every_eye(session, panel) -> None:
             assert np.linalg.norm(lab(dots[one], seen) - lab(dots[other], seen)) > APART, (cones, one, other)
 
 
-def test_a_file_that_cannot_be_placed_is_said_and_the_work_is_kept(session, panel) -> None:
+ASSET = {"asset": {"version": "2.0"}}
+NASTY = "<img src=x onerror=window.top.hit=1>"
+
+
+def chair(folder, scale: float = 1.0, name: str = "chair") -> bytes:
+    """A GLB of a chair, modelled in so many metres a unit."""
+    shape = join([box((0, 0, 0), (0.5 * scale, 0.5 * scale, 0.9 * scale))])
+    return write_room([Solid(name, shape, np.eye(4))], folder / "chair.glb").read_bytes()
+
+
+def glb_of(told: dict[str, object]) -> bytes:
+    """A GLB of one piece of JSON, without geometry."""
+    text = json.dumps(told).encode()
+    text += b" " * (-len(text) % 4)
+    return struct.pack("<4sII", b"glTF", 2, 20 + len(text)) + struct.pack("<I4s", len(text), b"JSON") + text
+
+
+def upload(panel, name: str, content: bytes) -> None:
     frame, tab = panel
-    layout = session.planner.layout
-    # in several messages, each within what the door lets through
     with tab.expect_file_chooser() as chooser:
         frame.get_by_role("button", name="Place a mesh").click()
-    chooser.value.set_files(
-        {"name": "broken.glb", "mimeType": "model/gltf-binary", "buffer": b"glTF nothing" * 200_000}
-    )
-    says(panel, "broken.glb")
+    chooser.value.set_files({"name": name, "mimeType": "model/gltf-binary", "buffer": content})
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "text"),
+    [
+        # in several messages, each within what the door lets through
+        ("broken.glb", lambda _: b"glTF nothing" * 200_000, "broken.glb"),
+        ("large.glb", lambda _: bytes(MOST_BYTES + 1), "at most 30 MB"),
+        ("millimetres.glb", lambda folder: chair(folder, 1000.0), "export it in metres"),
+        ("tiny.glb", lambda folder: chair(folder, 1e-3), "export it in metres"),
+        ("nothing.glb", lambda _: glb_of(ASSET), "nothing.glb"),
+        (
+            "bare.glb",
+            lambda _: glb_of(
+                {"asset": {"version": "2.0"}, "nodes": [{"mesh": 7}], "scenes": [{"nodes": [0]}]}
+            ),
+            "bare.glb",
+        ),
+        (f"{NASTY}.glb", lambda _: b"glTF" + bytes(60), NASTY),
+    ],
+    ids=lambda value: value if isinstance(value, str) and value.endswith(".glb") else "",
+)
+def test_a_file_that_cannot_be_placed_is_said_and_the_work_is_kept(
+    session, panel, tmp_path, name, content, text
+) -> None:
+    layout = session.planner.layout
+    session.panel.say("nothing yet")
+    unfold(panel, "People and furniture", "Place a person")
+    upload(panel, name, content(tmp_path))
+    says(panel, text)
     assert session.planner.layout is layout
+    assert panel[1].evaluate("window.hit") is None and panel[0].locator("img[src=x]").count() == 0
+
+
+def test_names_with_html_in_them_are_shown_as_text(session, panel, tmp_path) -> None:
+    unfold(panel, "People and furniture", "Place a person")
+    upload(panel, f"{NASTY} 1.glb", chair(tmp_path, name=NASTY))
+    waited(lambda: session.planner.layout.things)
+    (thing,) = session.planner.layout.things
+    settled(panel[1], panel[1].locator("iframe"))
+    assert panel[1].evaluate("window.hit") is None and panel[0].locator("img[src=x]").count() == 0
+    session.planner.remove(thing.name)
+
+
+def test_a_plan_that_is_no_site_is_said_and_the_work_is_kept(session, panel) -> None:
+    frame, _ = panel
+    layout = session.planner.layout
+    centre = next(placed.camera for placed in layout.cameras if placed.name == "a").world_from_camera.copy()
+    centre[:3, 3] = (0.8, 0.8, 0.8)  # within the shelf
+    session.planner.place_camera("a", centre)
+    says(panel, "inside shelf")
+    waited(lambda: session.newest.trouble is not None)
+    click(panel, "Undo")
+    waited(lambda: session.newest.figures is not None and session.newest.layout is session.planner.layout)
+    while session.planner.layout.cameras:
+        session.planner.remove_camera(session.planner.layout.camera_names[0])
+    click(panel, "Save as site file")
+    waited(lambda: "nothing yet" not in session.panel.at["message"].content)
+    assert not (session.out.parent / "planned.yaml").exists() or frame.get_by_text("Saved as").count()
+    while not session.planner.layout.cameras or len(session.planner.layout.cameras) < len(layout.cameras):
+        session.planner.undo()
 
 
 def test_what_is_saved_is_a_site_and_what_cannot_be_is_said(session, panel) -> None:
