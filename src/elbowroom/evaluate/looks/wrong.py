@@ -154,6 +154,8 @@ WRONG: Mapping[str, Wrong] = {
     ),
     "bytes exchanged": Wrong(of_codes(lambda raw, unit, rng: raw.byteswap()), ("byte order", "no surfaces")),
     "no return is 10 m": Wrong(sentinel(value_m=10.0), SENTINEL),
+    "no return is 2 m": Wrong(sentinel(value_m=2.0), SENTINEL),
+    "no return is 2047 mm": Wrong(sentinel(value_m=2.047), SENTINEL),
     "no return is 65533": Wrong(sentinel(code=65533), SENTINEL),
     "no return is 32767": Wrong(sentinel(code=32767), ("sentinel", "unit")),
     "no return is random codes above 65000": Wrong(
