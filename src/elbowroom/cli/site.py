@@ -166,7 +166,8 @@ def _of_the_model(site: "Site", found: "Sequence[Finding]") -> "Sequence[Finding
     snapshot = next(iter(room.source), None)
     if snapshot is None:
         return ()
-    return machine_there(machine, room.cameras, snapshot) or model_findings(machine, room.cameras, snapshot)
+    there = machine_there(machine, room.cameras, snapshot)
+    return (*there, *([] if any(each.stops for each in there) else model_findings(machine, room.cameras, snapshot)))
 
 
 def _coverage(grid: "VoxelGrid", cameras: "Sequence[DepthCamera]") -> dict[str, float]:

@@ -14,6 +14,7 @@ from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.nothing_seen import nothing_seen
 from elbowroom.sensing import DepthFrame
 from elbowroom.sensing.values import look_at_images, look_at_setting
+from elbowroom.sensing.values.scatter import look_at_scatter
 
 FIRST = 3
 """Moments of the same cameras and grid that are looked at; then they are known to be usable."""
@@ -50,7 +51,9 @@ def found_at(
         return setting
     found = (*setting, *look_at_images(grid, cameras, frames, units_m))
     found = (*found, *contradictions(cameras, frames, margin or Margin(), found))
-    return (*found, *nothing_seen(grid, cameras, frames, margin, found))
+    found = (*found, *nothing_seen(grid, cameras, frames, margin, found))
+    stops = any(finding.stops for finding in found)
+    return found if stops else (*found, *look_at_scatter(cameras, frames, margin or Margin()))
 
 
 def require_plausible(

@@ -47,7 +47,7 @@ def machine_there(machine: Machine, cameras: Sequence[DepthCamera], snapshot: Sn
 
     found = seen_if(machine)
     if not found.links:
-        return _unseen(machine, found)
+        return _unseen(machine, found) or _a_little(machine, found)
     stops = found.cameras > 1 and (
         found.share >= MOST or (len(found.links) > 1 and found.share >= MANY)
     )
@@ -61,6 +61,18 @@ def _unseen(machine: Machine, found: Elsewhere) -> tuple[Finding, ...]:
     text = (
         f"no camera sees anything of {machine.name} where it is said to be: nothing says that it is there. Check "
         "world_from_base and the world that camera poses are given in, or turn a camera to it"
+    )
+    return (Finding(KIND, (machine.name,), text, stops=False),)
+
+
+def _a_little(machine: Machine, found: Elsewhere) -> tuple[Finding, ...]:
+    """That a part of each link is seen through: something is off by a little."""
+    if found.share < MANY:
+        return ()
+    text = (
+        f"{found.share:.0%} of {found.through + found.agree} pixels see through {machine.name} where it is said to be: "
+        "world_from_base, joints, or the cameras' poses or lenses (images that were cropped or scaled) are a little off, "
+        "or its model is larger than it is"
     )
     return (Finding(KIND, (machine.name,), text, stops=False),)
 

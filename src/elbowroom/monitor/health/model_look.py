@@ -29,5 +29,6 @@ class ModelLook:
         """That the machine is elsewhere, which stops; else warnings about links, which stop nothing, since what is seen does."""
         if self.found is None and snapshot.joints is not None and snapshot.frames:
             there = machine_there(self.machine, self.cameras, snapshot)
-            self.found = there or model_findings(self.machine, self.cameras, snapshot)
+            stops = any(finding.stops for finding in there)
+            self.found = there if stops else (*there, *model_findings(self.machine, self.cameras, snapshot))
         return self.found or ()
