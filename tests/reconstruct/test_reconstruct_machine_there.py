@@ -36,7 +36,9 @@ def arm(tmp_path_factory):
 def cameras():
     k = Intrinsics(90, 90, 63.5, 47.5)
     return [
-        DepthCamera(f"c{n}", 128, 96, looking_at(eye, (0, 0.3, 0.2)), k, noise=NOISE_PRESETS["realsense_d435"])
+        DepthCamera(
+            f"c{n}", 128, 96, looking_at(eye, (0, 0.3, 0.2)), k, noise=NOISE_PRESETS["realsense_d435"]
+        )
         for n, eye in enumerate(EYES)
     ]
 
@@ -82,7 +84,9 @@ def test_joints_that_are_others_name_the_links_behind_them(arm, cameras):
 
 
 def test_one_link_that_is_not_there_is_a_warning(arm, cameras):
-    (found,) = machine_there(arm, cameras, seen(arm, cameras, {"turn": 0.3, "bend": 0.9}, {"turn": 0.3, "bend": -0.9}))
+    (found,) = machine_there(
+        arm, cameras, seen(arm, cameras, {"turn": 0.3, "bend": 0.9}, {"turn": 0.3, "bend": -0.9})
+    )
     assert found.about == ("fore",) and not found.stops
 
 

@@ -51,7 +51,9 @@ _ANOTHER_NUMBER = re.compile(r"[-+]?0[0-9_]+|.*[0-9]_|.*[0-9]:[0-9]")
 def _number(loader: _Loader, node: yaml.ScalarNode) -> int | float:
     if _ANOTHER_NUMBER.match(node.value):
         read = (
-            yaml.SafeLoader.construct_yaml_int if node.tag.endswith("int") else yaml.SafeLoader.construct_yaml_float
+            yaml.SafeLoader.construct_yaml_int
+            if node.tag.endswith("int")
+            else yaml.SafeLoader.construct_yaml_float
         )
         raise yaml.constructor.ConstructorError(
             None,

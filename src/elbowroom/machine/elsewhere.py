@@ -1,7 +1,7 @@
 """Whether cameras see through links where the machine is said to be: then it stands elsewhere, or otherwise.
 
-Cameras that agree with each other say nothing of where the machine stands among them: a base that is turned, a world that
-is another one, joints in another order or unit read as valid. The machine's own pixels tell.
+Cameras that agree with each other say nothing of where the machine stands among them: a base that is turned, a world
+that is another one, joints in another order or unit read as valid. The machine's own pixels tell.
 """
 
 from collections.abc import Sequence

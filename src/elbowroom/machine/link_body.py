@@ -24,8 +24,6 @@ SUSPECT_LINK_M = 2.0
 """From this length on, a mesh is compared with the rest of the machine [m]."""
 SMALLEST_MESH_M = 0.001
 """A smaller mesh is said: it may have been scaled twice [m]."""
-UNITS = {0.001: "millimetres", 0.01: "centimetres", 0.0254: "inches"}
-"""Metres a unit of meshes that have no scale."""
 WITHOUT_BODY = "or name links that may move without a body in machine.without_body (without_body= in Python)"
 
 
@@ -217,7 +215,7 @@ def _check_sizes(
         rest = max((other for at, other in lengths.items() if at != name), default=np.inf)
         if length > limit:
             raise report.error(
-                of, f"the link is {length:.4g} m long, at most {limit:g} m may be; {_meant(length, unscaled, rest)}"
+                of, f"the link is {length:.4g} m long, at most {limit:g} m may be; {_meant(length, unscaled)}"
             )
         away = float(np.abs(by_name[name].vertices).max()) - length
         if away > limit:
@@ -229,29 +227,19 @@ def _check_sizes(
             raise report.error(
                 of,
                 f"the link is {length:.4g} m long, the next one {rest:.2g} m, and all joints reach {reach_m:.2g} m; "
-                f"{_meant(length, unscaled, rest)}",
+                f"{_meant(length, unscaled)}",
             )
         if length < SMALLEST_MESH_M and any(shape.kind == "mesh" for shape in shapes[name]):
             report.warn("unit", of, f"the link is {1e3 * length:.2g} mm long; is its mesh scaled twice?")
 
 
-def _meant(length: float, unscaled: bool, rest: float) -> str:
-    """What a length most likely is, and what to do.
-
-    Args:
-        length: of the link [m].
-        unscaled: whether it has a mesh without a scale.
-        rest: the longest other link [m]; infinity: there is none.
-    """
+def _meant(length: float, unscaled: bool) -> str:
+    """What a length most likely is, and what to do."""
     if unscaled:
-        # millimetres are the usual ones, unless another unit fits the other links much better
-        like = rest if np.isfinite(rest) and rest < length / 10 else length / 1000
-        fit = {factor: abs(np.log(length * factor / like)) for factor in UNITS}
-        factor = min(fit, key=lambda each: fit[each])
-        if fit[factor] > fit[0.001] - np.log(3) and length / 1000 > 0.002:
-            factor = 0.001
+        factor = "0.001" if length / 1000 > 0.002 else "0.01"
         return (
-            f'is its mesh in {UNITS[factor]}? scale="{factor:g} {factor:g} {factor:g}" makes it {length * factor:.3g} m; '
+            f'is its mesh in millimetres? scale="{factor} {factor} {factor}" makes it {length * float(factor):.3g} m '
+            f"(centimetres: 0.01 {length * 0.01:.3g} m, inches: 0.0254 {length * 0.0254:.3g} m); "
             "if it is so long, say largest_link_m"
         )
     return "sizes are in metres; if it is so long, say largest_link_m"

@@ -1,4 +1,4 @@
-"""Whether the machine is where it is said to be, by the images of one moment; what would fit better, if anything does."""
+"""Whether the machine is where it is said to be, by the images of one moment; what would fit better, if anything."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -20,7 +20,9 @@ FITS = 0.1
 """Another place of the base is named where so many of the pixels still see through the machine, at most."""
 
 
-def machine_there(machine: Machine, cameras: Sequence[DepthCamera], snapshot: Snapshot) -> tuple[Finding, ...]:
+def machine_there(
+    machine: Machine, cameras: Sequence[DepthCamera], snapshot: Snapshot
+) -> tuple[Finding, ...]:
     """A finding where cameras see through links of the machine: a verdict would be on another machine.
 
     It stops where two cameras or more see through most of the machine, or through several links. One link may be of
@@ -48,9 +50,7 @@ def machine_there(machine: Machine, cameras: Sequence[DepthCamera], snapshot: Sn
     found = seen_if(machine)
     if not found.links:
         return _unseen(machine, found) or _a_little(machine, found)
-    stops = found.cameras > 1 and (
-        found.share >= MOST or (len(found.links) > 1 and found.share >= MANY)
-    )
+    stops = found.cameras > 1 and (found.share >= MOST or (len(found.links) > 1 and found.share >= MANY))
     return (Finding(KIND, found.links, _text(machine, found, seen_if), stops),)
 
 
@@ -70,9 +70,9 @@ def _a_little(machine: Machine, found: Elsewhere) -> tuple[Finding, ...]:
     if found.share < MANY:
         return ()
     text = (
-        f"{found.share:.0%} of {found.through + found.agree} pixels see through {machine.name} where it is said to be: "
-        "world_from_base, joints, or the cameras' poses or lenses (images that were cropped or scaled) are a little off, "
-        "or its model is larger than it is"
+        f"{found.share:.0%} of {found.through + found.agree} pixels see through {machine.name} where it is said to "
+        "be: world_from_base, joints, or the cameras' poses or lenses (images that were cropped or scaled) are a "
+        "little off, or its model is larger than it is"
     )
     return (Finding(KIND, (machine.name,), text, stops=False),)
 
@@ -81,24 +81,24 @@ def _text(machine: Machine, found: Elsewhere, seen_if: Callable[[Machine], Elsew
     links = f"link {found.links[0]}" if len(found.links) == 1 else f"links {', '.join(found.links)}"
     return (
         f"{links} of {machine.name}: cameras see through the place where it is said to be, {found.share:.0%} of "
-        f"{found.through + found.agree} pixels through the machine: verdicts would be on a machine that stands elsewhere. "
-        f"{_likely(machine, found, seen_if)}"
+        f"{found.through + found.agree} pixels through the machine: verdicts would be on a machine that stands "
+        f"elsewhere. {_likely(machine, found, seen_if)}"
     )
 
 
 def _likely(machine: Machine, found: Elsewhere, seen_if: Callable[[Machine], Elsewhere]) -> str:
     if found.links != found.shown and found.shown[0] not in found.links and found.share < MOST:
         return (
-            "Where the machine begins it is seen: check the joints' values, their order, unit, sign and zero, and at which "
-            "time they were so; or what is mounted on it"
+            "Where the machine begins it is seen: check the joints' values, their order, unit, sign and zero, and at "
+            "which time they were so; or what is mounted on it"
         )
     for words, base in _other_bases(machine):
         other = seen_if(machine.at(base))
         if not other.links and other.share <= FITS and other.agree > found.agree:
-            return f"With {words} {other.share:.0%} would: correct world_from_base, or give all camera poses in its world"
+            return f"With {words} {other.share:.0%} would: correct world_from_base, or give all poses in its world"
     return (
-        "Check world_from_base, the world that all camera poses are given in, and the joints' values, their order, unit "
-        "and sign"
+        "Check world_from_base, the world that all camera poses are given in, and the joints' values, their order, "
+        "unit and sign"
     )
 
 

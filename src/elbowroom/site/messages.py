@@ -38,7 +38,7 @@ def one_line(path: Path, model: type[BaseModel], error: ValidationError) -> Site
 def _most_useful(details: Sequence[ErrorDetails]) -> ErrorDetails:
     """The one that most likely is the reason of others: a key that is misspelt, where one is missing."""
     unknown = [each for each in details if each["type"] == "extra_forbidden"]
-    commas = [each for each in unknown if str(each["loc"][-1]).isdigit()]
+    commas = [each for each in details if each["type"] == "invalid_key" and isinstance(each["input"], int)]
     if commas:
         return commas[0]
     return unknown[0] if unknown and details[0]["type"] == "missing" else details[0]
@@ -63,10 +63,10 @@ def _said(first: ErrorDetails, model: type[BaseModel], location: Sequence[Any]) 
     context = first.get("ctx", {})
     if first["type"] == "missing":
         return "missing; it must be given"
+    if first["type"] == "invalid_key":
+        return f"key {found}, allowed: words; in braces a comma parts entries, and decimals have a dot: 0.3, not 0,3"
     if first["type"] == "extra_forbidden":
         allowed = keys_at(model, location[:-1])
-        if str(location[-1]).isdigit():
-            return "unknown key; in braces a comma parts entries, and decimals have a dot: 0.3, not 0,3"
         near = difflib.get_close_matches(str(location[-1]), allowed, n=1)
         meant = f" (did you mean {near[0]}?)" if near else ""
         return f"unknown key{meant}, allowed: {', '.join(allowed)}"
@@ -104,7 +104,11 @@ def _hint_of_number(value: str) -> str:
     number = re.match(r"[-+]?[0-9]*\.?[0-9]+(e[-+]?[0-9]+)?", text, re.IGNORECASE)
     if number is None:
         return ""
-    return "; write it without quotes" if number.end() == len(text) else "; a number alone, its unit is in the key's name"
+    return (
+        "; write it without quotes"
+        if number.end() == len(text)
+        else "; a number alone, its unit is in the key's name"
+    )
 
 
 def _short(value: Any) -> str:

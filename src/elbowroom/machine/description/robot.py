@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from elbowroom.machine.description.document import Document
 from elbowroom.machine.description.numbers import number, numbers
 from elbowroom.machine.description.report import Report, quoted, tag_of
-from elbowroom.machine.description.shapes import SIZES, Shape, children, origin_of, require_known, shapes_of, walk
+from elbowroom.machine.description.shapes import (
+    SIZES,
+    Shape,
+    children,
+    origin_of,
+    require_known,
+    shapes_of,
+    walk,
+)
 
 OF_A_LINK = ("inertial", "visual", "collision", "contact", "sensor", "verbose")
 OF_A_JOINT = (
@@ -32,7 +40,7 @@ LOST_IN = {
     "link": ("origin", "pose", "mesh", *SIZES),
     "joint": ("pose", "rpy", "xyz", "lower", "upper"),
 }
-"""What nobody reads where it stands directly in a link or joint: it belongs into an element of its own, or is of SDF."""
+"""What nobody reads where it stands directly in a link or joint: it belongs into another element, or is of SDF."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -108,9 +108,12 @@ def _require_mesh_words(element: etree._Element, report: Report) -> None:
     for name in element.attrib:
         if name in ("scale", "filename", "uri") or "}" in str(name):
             continue
-        if name in ("unit", "units", "size") or difflib.get_close_matches(str(name).lower(), ("scale",), cutoff=0.6):
+        if name in ("unit", "units", "size") or difflib.get_close_matches(
+            str(name).lower(), ("scale",), cutoff=0.6
+        ):
             raise report.error(
-                element, f'{name} is no attribute of a mesh; its size is set by scale="0.001 0.001 0.001" and the like'
+                element,
+                f'{name} is no attribute of a mesh; its size is set by scale="0.001 0.001 0.001" and the like',
             )
 
 
@@ -130,7 +133,11 @@ def _scale(element: etree._Element, report: Report) -> tuple[float, ...]:
         raise report.error(element, "a scale of 0 leaves nothing of the mesh")
     least, most = min(map(abs, scale)), max(map(abs, scale))
     if most >= UNEVEN * least:
-        report.warn("unit", element, f"scale differs by a factor of {most / least:.4g} between the axes; is that meant?")
+        report.warn(
+            "unit",
+            element,
+            f"scale differs by a factor of {most / least:.4g} between the axes; is that meant?",
+        )
     return scale if count == 3 else scale * 3
 
 

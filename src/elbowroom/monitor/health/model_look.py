@@ -26,7 +26,7 @@ class ModelLook:
     found: tuple[Finding, ...] | None = field(default=None, init=False)
 
     def hear(self, snapshot: Snapshot) -> Sequence[Finding]:
-        """That the machine is elsewhere, which stops; else warnings about links, which stop nothing, since what is seen does."""
+        """That the machine is elsewhere, which stops; else warnings about links, which stop nothing."""
         if self.found is None and snapshot.joints is not None and snapshot.frames:
             there = machine_there(self.machine, self.cameras, snapshot)
             stops = any(finding.stops for finding in there)

@@ -1,5 +1,7 @@
-"""A look at whether anything that stands in the grid is seen: at the first moments, and as long as nothing is. And, once,
-at how much depths scatter."""
+"""A look at whether anything that stands in the grid is seen: at the first moments, and as long as nothing is.
+
+And, once, at how much depths scatter.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

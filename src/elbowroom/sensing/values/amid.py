@@ -8,7 +8,7 @@ from elbowroom.finding import Finding
 from elbowroom.sensing.values.sentinel import JOINED, KIND, LEAST_PIXELS, SHARE, joined
 from elbowroom.sensing.values.thinned import Thinned
 
-OVER_NEXT = 20
+OVER_NEXT = 8
 """So many times as often as the values next to it: sensors scatter, so a surface fills neighbours as well."""
 NEXT = 3
 """So many values on either side are looked at."""
@@ -17,8 +17,8 @@ NEXT = 3
 def look_amid(images: Sequence[Thinned], findings: Sequence[Finding]) -> list[Finding]:
     """Numbers that are no surface, also where others are greater; it stops, for all before them would read free.
 
-    Rooms give two cameras no exact number in common that fills a part of both, stands alone among the values next to it,
-    and ends everywhere at a step.
+    Rooms give two cameras no exact number in common that fills a part of both, stands alone among the values next to
+    it, and ends everywhere at a step.
 
     Args:
         images: one of each camera.
@@ -52,6 +52,7 @@ def _alone(image: Thinned) -> Mapping[float, float]:
 
 def _text(value_m: float, share: float) -> str:
     return (
-        f"{share:.0%} of the pixels are exactly {value_m:.6g} m, as in another camera's image, and no surface leads up to "
-        "them: most likely what the driver writes where there is no return, and all before it would read free. Write 0 there"
+        f"{share:.0%} of the pixels are exactly {value_m:.6g} m, as in another camera's image, and no surface leads up "
+        "to them: most likely what the driver writes where there is no return, and all before it would read free. "
+        "Write 0 there"
     )

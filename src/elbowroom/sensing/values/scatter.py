@@ -47,8 +47,8 @@ def look_at_scatter(
         if SIGMAS * sigma_m > max(OVER * trusted, LEAST_M):
             text = (
                 f"depths scatter by {1e3 * sigma_m:.0f} mm (standard deviation at {at_m:.1f} m), and are trusted to "
-                f"{1e3 * trusted:.0f} mm: what is measured too far by chance reads free. Say noise: a preset of the sensor, or "
-                "constant_m, linear, quadratic; or a wider margin"
+                f"{1e3 * trusted:.0f} mm: what is measured too far by chance reads free. Say noise: a preset of the "
+                "sensor, or constant_m, linear, quadratic; or a wider margin"
             )
             findings.append(Finding(KIND, (image.camera.name,), text, stops=False))
     return together(findings, len(cameras))
