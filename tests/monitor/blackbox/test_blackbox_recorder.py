@@ -13,16 +13,21 @@ from elbowroom.guard.fault import Fault
 from elbowroom.guard.reason import Reason
 from elbowroom.monitor import CycleResult, Decision, Loop, Pass
 from elbowroom.monitor.blackbox import recorder as recorder_file
+from elbowroom.monitor.blackbox.behind import BehindFile
+from elbowroom.monitor.blackbox.kept_pass import KeptPass
 from elbowroom.monitor.blackbox.made import recorder_of
+from elbowroom.monitor.blackbox.pass_file import Head, PassFile
 from elbowroom.monitor.blackbox.recorder import Recorder, require_new
 from elbowroom.monitor.blackbox.recording import Recording
-from elbowroom.monitor.blackbox.sinks import BlackBox, PassFile, WholeRun
+from elbowroom.monitor.blackbox.sinks import BlackBox, WholeRun
 from elbowroom.monitor.blackbox.stops import Stops
 from elbowroom.monitor.gate.state import Allowed, Phase
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.sensing import DepthFrame, Snapshot
 from elbowroom.site import Site
 from elbowroom.sources import Room, open_room
+from elbowroom.wire.mcap_writer import Told
+from elbowroom.wire.ros_schemas import SCHEMAS
 from reference.small_room import SMALL_ROOM
 
 MOTION = Motion("long", 1, 0.1)
@@ -120,7 +125,52 @@ def test_who_shows_a_pass_never_waits_and_what_is_lost_is_said(room, tmp_path):
     kept = kept_in(tmp_path / "run.mcap")
     assert len(kept) == last + 1 - recorder.lost and kept[-1] == last
     with Recording(tmp_path / "run.mcap") as recording:
-        assert recording.at(len(kept) - 1).lost == recorder.lost
+        assert sum(recording.at(number).lost for number in range(len(kept))) == recorder.lost
+
+
+def test_a_disk_that_stalls_loses_nothing_while_what_is_packed_has_room(room, tmp_path, monkeypatch):
+    """Longer than the queue of images lasts, which is of four passes here."""
+    add, stalls = PassFile.add, threading.Event()
+
+    def stalling(self, one):
+        stalls.wait(30)
+        add(self, one)
+
+    monkeypatch.setattr(PassFile, "add", stalling)
+    recorder = Recorder([WholeRun(tmp_path / "run.mcap")], most_bytes=4 * 4 * 48 * 36 * 8)
+    recorder.begin(room)
+    for number in range(40):
+        recorder.show(a_pass(number))
+        until = time.monotonic() + 5
+        while recorder._queue and time.monotonic() < until:
+            time.sleep(0.005)
+    assert recorder.lost == 0 and not recorder.troubles
+    stalls.set()
+    recorder.end()
+    assert kept_in(tmp_path / "run.mcap") == list(range(40))
+
+
+def test_where_nothing_more_may_wait_for_the_disk_who_packs_waits_and_the_order_stays(tmp_path, monkeypatch):
+    add, begun, stalls, written = PassFile.add, threading.Event(), threading.Event(), []
+
+    def stalling(self, one):
+        begun.set()
+        stalls.wait(30)
+        written.append(one.sequence)
+        add(self, one)
+
+    monkeypatch.setattr(PassFile, "add", stalling)
+    told = Told("/x", next(iter(SCHEMAS)), bytes(1000))
+    file = BehindFile(tmp_path / "run.mcap", Head([], []), most_bytes=3000)
+    passes = [KeptPass(n, n, n, n, (), (told,), ()) for n in range(9)]
+    adding = threading.Thread(target=lambda: [file.add(one) for one in passes])
+    adding.start()
+    assert begun.wait(10)
+    adding.join(0.3)
+    assert adding.is_alive() and len(file._queue) == 3
+    stalls.set()
+    adding.join(10)
+    assert "9 passes" in file.end() and written == list(range(9)) and file.busy_ns > 0
 
 
 @pytest.fixture

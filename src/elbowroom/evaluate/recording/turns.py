@@ -3,12 +3,15 @@
 At full rate half an hour is more than a hundred gigabytes; so much no disk has to have free to be measured.
 """
 
+import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from elbowroom.monitor.blackbox.kept_pass import KeptPass
-from elbowroom.monitor.blackbox.sinks import Head, WholeRun
+from elbowroom.monitor.blackbox.pass_file import Head
+from elbowroom.monitor.blackbox.sinks import WholeRun
 
 
 @dataclass(slots=True, eq=False)
@@ -31,6 +34,8 @@ class InTurns:
     _head: Head | None = field(default=None, init=False)
     _turn: WholeRun | None = field(default=None, init=False)
     _begun_ns: int = field(default=0, init=False)
+    _ending: list[threading.Thread] = field(default_factory=list, init=False)
+    _spent_ns: int = field(default=0, init=False)
 
     def begin(self, head: Head) -> None:
         """Remembers what each file begins with."""
@@ -40,7 +45,7 @@ class InTurns:
         """Writes the pass."""
         assert self._head is not None
         if self._turn is not None and one.heard_ns - self._begun_ns >= self.turn_ns:
-            self.end()
+            self._turn_over()
         if self._turn is None:
             self._turn, self._begun_ns = WholeRun(self.folder / f"run-{self.files}.mcap"), one.heard_ns
             self._turn.begin(self._head)
@@ -53,11 +58,27 @@ class InTurns:
         return False
 
     def end(self) -> None:
-        """Ends the file that is open."""
+        """Ends the file that is open, and waits until it is on the disk."""
+        self._turn_over()
+        for each in self._ending:
+            each.join()
+
+    @property
+    def busy_ns(self) -> int:
+        """Processor time that threads of all files have taken [ns]."""
+        return self._spent_ns + (0 if self._turn is None else self._turn.busy_ns)
+
+    def _turn_over(self) -> None:
+        """Lets the open file be ended beside the run, as that of a whole run is after it."""
         if self._turn is None:
             return
-        self._turn.end()
-        self.trouble = self.trouble or self._turn.trouble
-        self.bytes += self._turn.path.stat().st_size
-        path, self._turn = self._turn.path, None
-        self.done(path)
+        self._ending.append(threading.Thread(target=self._ended, args=(self._turn,)))
+        self._turn = None
+        self._ending[-1].start()
+
+    def _ended(self, turn: WholeRun) -> None:
+        turn.end()
+        self.trouble = self.trouble or turn.trouble
+        self.bytes += turn.path.stat().st_size
+        self._spent_ns += turn.busy_ns + time.thread_time_ns()
+        self.done(turn.path)

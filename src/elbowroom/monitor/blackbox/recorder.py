@@ -12,7 +12,8 @@ from elbowroom.errors import InputError
 from elbowroom.finding import Finding
 from elbowroom.monitor.blackbox.configuration import Configuration, plain_cycle
 from elbowroom.monitor.blackbox.kept_pass import Keeping, Moment, still_messages
-from elbowroom.monitor.blackbox.sinks import Head, Sink
+from elbowroom.monitor.blackbox.pass_file import Head
+from elbowroom.monitor.blackbox.sinks import Sink
 from elbowroom.monitor.blackbox.stops import Stops
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.face import Pass
@@ -50,7 +51,7 @@ class Recorder:
     name: str = field(default="recording", init=False)
     lost: int = field(default=0, init=False)
     busy_ns: int = field(default=0, init=False)
-    """Processor time that its thread has taken [ns]."""
+    """Processor time that its thread and those of its sinks have taken [ns]."""
     _queue: deque[tuple[Moment, int]] = field(default_factory=deque, init=False)
     _waits: threading.Condition = field(default_factory=threading.Condition, init=False)
     _bytes: int = field(default=0, init=False)
@@ -139,10 +140,13 @@ class Recorder:
                 break
             is_done = self._guarded(self._take, moment)
             is_idle = moment is None and not is_done
-            self.busy_ns = time.thread_time_ns()
+            self.busy_ns = self._spent_ns()
         for sink in self.sinks:
             self._guarded(partial(_end, sink), None)
-        self.busy_ns = time.thread_time_ns()
+        self.busy_ns = self._spent_ns()
+
+    def _spent_ns(self) -> int:
+        return time.thread_time_ns() + sum(sink.busy_ns for sink in self.sinks)
 
     def _take(self, moment: Moment | None) -> bool:
         """Keeps a pass; without one, does a little of what is left to do. Whether something was done."""

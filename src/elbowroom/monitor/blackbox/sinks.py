@@ -2,26 +2,15 @@
 
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
+from elbowroom.monitor.blackbox.behind import BehindFile
 from elbowroom.monitor.blackbox.kept_pass import KeptFrame, KeptPass
-from elbowroom.wire.mcap_writer import Attached, McapWriter, Told
-
-
-class Head(NamedTuple):
-    """What each file begins with.
-
-    Args:
-        attached: files within it.
-        still: messages that are said once.
-    """
-
-    attached: Sequence[Attached]
-    still: Sequence[Told]
+from elbowroom.monitor.blackbox.pass_file import Head
 
 
 class Sink(Protocol):
@@ -47,41 +36,9 @@ class Sink(Protocol):
     def said(self) -> list[str]:
         """What was written, a line each."""
 
-
-class PassFile:
-    """A file that passes are added to; a frame is written with the first pass that it is part of.
-
-    Args:
-        path: of a file that is not there yet.
-        head: what it begins with.
-
-    Raises:
-        OSError: it cannot be written; here and in every call.
-    """
-
-    def __init__(self, path: Path, head: Head) -> None:
-        self._writer = McapWriter(path, head.attached)
-        self._still = list(head.still)
-        self._newest: dict[str, int] = {}
-        self.path, self.passes = path, 0
-
-    def add(self, one: KeptPass) -> None:
-        """Writes a pass."""
-        new = [frame for frame in one.frames if self._newest.get(frame.camera) != frame.number]
-        try:
-            self._writer.step([*self._still, *(frame.told for frame in new), *one.messages], one.time_ns)
-        except OSError:
-            self._writer.drop()
-            raise
-        self._still = []
-        self._newest |= {frame.camera: frame.number for frame in new}
-        self.passes += 1
-
-    def end(self) -> str:
-        """Ends it; what is said of it."""
-        self._writer.end()
-        megabytes = self._writer.length / 1e6
-        return f"{self.path}: {self.passes} passes, {megabytes:.1f} MB, sum {self._writer.sum[:16]}"
+    @property
+    def busy_ns(self) -> int:
+        """Processor time that threads of its own have taken [ns]."""
 
 
 @dataclass(slots=True, eq=False)
@@ -95,35 +52,41 @@ class WholeRun:
     path: Path
     trouble: str | None = field(default=None, init=False)
     said: list[str] = field(default_factory=list, init=False)
-    _file: PassFile | None = field(default=None, init=False)
+    _file: BehindFile | None = field(default=None, init=False)
+    _spent_ns: int = field(default=0, init=False)
+
+    @property
+    def busy_ns(self) -> int:
+        """Processor time that the file's thread has taken [ns]."""
+        return self._spent_ns if self._file is None else self._file.busy_ns
 
     def begin(self, head: Head) -> None:
         """Begins the file."""
-        self._file = PassFile(self.path, head)
+        self._file = BehindFile(self.path, head)
 
     def take(self, one: KeptPass) -> None:
         """Writes the pass. A file that could not be written is left as it is, and no more is added."""
-        if self._file is None:
-            return
-        try:
-            self._file.add(one)
-        except OSError as error:
-            passes, self._file = self._file.passes, None
-            self.trouble = f"{self.path}: {why(error)}; it ends after {passes} passes"
+        self._guarded(lambda file: file.add(one))
 
     def work(self) -> bool:
-        """Nothing is left."""
+        """Nothing is left, but to say what went wrong."""
+        self._guarded(BehindFile.check)
         return False
 
     def end(self) -> None:
         """Ends the file."""
+        self._guarded(lambda file: self.said.append(file.end()))
+        self._spent_ns, self._file = self.busy_ns, None
+
+    def _guarded(self, what: Callable[[BehindFile], None]) -> None:
+        """Does something with the file, if there is one still."""
         if self._file is None:
             return
         try:
-            self.said.append(self._file.end())
+            what(self._file)
         except OSError as error:
-            self.trouble = f"{self.path}: {why(error)}; it has no end"
-        self._file = None
+            passes, self._spent_ns, self._file = self._file.passes, self.busy_ns, None
+            self.trouble = f"{self.path}: {why(error)}; it ends after {passes} passes"
 
 
 @dataclass(slots=True, eq=False)
@@ -152,10 +115,16 @@ class BlackBox:
     _kept: deque[KeptPass] = field(default_factory=deque, init=False)
     _size: int = field(default=0, init=False)
     _users: dict[int, int] = field(default_factory=dict, init=False)
-    _file: PassFile | None = field(default=None, init=False)
+    _file: BehindFile | None = field(default=None, init=False)
     _waiting: deque[KeptPass] = field(default_factory=deque, init=False)
     _until_ns: int = field(default=0, init=False)
     _is_over: bool = field(default=False, init=False)
+    _spent_ns: int = field(default=0, init=False)
+
+    @property
+    def busy_ns(self) -> int:
+        """Processor time that threads of its files have taken [ns]."""
+        return self._spent_ns + (0 if self._file is None else self._file.busy_ns)
 
     @property
     def trouble(self) -> str | None:
@@ -190,6 +159,7 @@ class BlackBox:
             if self._waiting:
                 self._file.add(self._waiting.popleft())
                 return True
+            self._file.check()
             if not self._is_over and self.clock_ns() < self._until_ns:
                 return False
             self._end_file()
@@ -231,7 +201,7 @@ class BlackBox:
         day = time.strftime("%Y%m%dT%H%M%SZ", time.gmtime(one.wall_ns / 1e9))
         path = self.folder / f"stop-{day}-{one.sequence}.mcap"
         try:
-            self._file = PassFile(path, self._head)
+            self._file = BehindFile(path, self._head)
             self._waiting = deque(self._kept)
         except OSError as error:
             self._give_up(path, error)
@@ -239,12 +209,13 @@ class BlackBox:
     def _end_file(self) -> None:
         assert self._file is not None
         said = self._file.end()
+        self._spent_ns += self._file.busy_ns
         self._file, self._trouble = None, None
         self.said.append(said)
 
     def _give_up(self, path: Path, error: OSError) -> None:
         self._trouble = f"{path}: {why(error)}; this stop is not kept, or not all of it"
-        self._file = None
+        self._spent_ns, self._file = self.busy_ns, None
         self._waiting.clear()
 
 

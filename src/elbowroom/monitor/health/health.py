@@ -50,6 +50,8 @@ class CameraHealth:
         share_seen: of its reference, how much is in view and near where it should be.
         share_hidden: of its reference, before how much there is something nearer, or no return; 1 where it is silent.
         doubt: why it may be elsewhere, after its name, though no test has decided that; None: nothing says so.
+        shows: the camera on whose reference its image lies though not on its own, so that the two were exchanged;
+            None: none.
     """
 
     camera: str
@@ -58,6 +60,7 @@ class CameraHealth:
     share_seen: float
     share_hidden: float
     doubt: str | None = None
+    shows: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -46,6 +46,19 @@ def test_where_the_monitor_stalled_and_the_image_is_there_nothing_is_late(stall_
     assert not arrivals.passing(stall_ms * MS, False).is_gone or MOST_A_PASS_NS >= 1_000 * MS
 
 
+@given(st.integers(10, 20), st.integers(0, 8), st.integers(1, 3), st.integers(300, 2_000))
+def test_stalls_of_the_monitor_lend_no_camera_more_time(many, at, stalls, stall_ms):
+    """Whenever they were, also while it was learnt how often images come."""
+    arrivals = Arrivals()
+    for number in range(many):
+        went_ms = stall_ms if at <= number < at + stalls else 60
+        arrivals = arrivals.passing(went_ms * MS, True)
+    assert arrivals.usual_ns == 60 * MS
+    for waited_ms in range(10, 400, 10):
+        arrivals = arrivals.passing(10 * MS, False)
+        assert arrivals.is_overdue == (waited_ms * MS > OVERDUE_STEPS * 60 * MS)
+
+
 def test_gaps_never_become_the_rule():
     *_, arrivals = heard([60] * 10 + [400] * 50)
     assert arrivals.usual_ns == 60 * MS

@@ -52,6 +52,33 @@ def test_an_image_of_another_camera_is_swapped():
     assert odd(SENSOR.image() * 4, others=others) is HealthCause.CAMERA_WRONG_SCALE
 
 
+def test_bytes_of_a_flat_wall_are_found_swapped_though_neighbours_stay_alike():
+    # of a wall at one distance the swapped bytes make another wall, a little rougher
+    wall = np.float32(3.9 + SENSOR.random.normal(size=(48, 64)) * 0.002)
+    swapped = (1000 * wall).astype(np.uint16).byteswap() / 1000
+    assert odd(swapped, old=wall) is HealthCause.CAMERA_WRONG_ENCODING
+
+
+@pytest.mark.parametrize(
+    ("rows", "columns", "how"),
+    [(-1, -1, "turned by 180 degrees"), (1, -1, "mirrored"), (-1, 1, "upside down")],
+)
+def test_a_picture_that_is_turned_about_in_its_frame_is_a_wrong_encoding(rows, columns, how):
+    slope = 1 + np.linspace(0, 2, 64)[None, :] + np.linspace(0, 1, 48)[:, None]
+    old, new = (Thumb.of(np.float32(image)) for image in (slope, slope[::rows, ::columns]))
+    found = oddity(new, old, pairs_of(new, old, STRETCH), {})
+    assert found is not None and found.cause is HealthCause.CAMERA_WRONG_ENCODING and found.text.endswith(how)
+
+
+def test_the_camera_that_is_named_is_the_one_whose_image_fits_best():
+    mine, close = SENSOR.image(), SENSOR.image() * np.linspace(1.3, 2.6, 64, dtype=np.float32)
+    alike = np.float32(close * np.where(np.arange(64) % 3, 1, 1.1))
+    others = {"c1": Thumb.of(alike), "c2": Thumb.of(close), "c3": Thumb.of(mine)}
+    new, old = Thumb.of(close + np.float32(0.001)), Thumb.of(mine)
+    found = oddity(new, old, pairs_of(new, old, STRETCH), others)
+    assert found is not None and found.cause is HealthCause.CAMERA_SWAPPED and "camera c2" in found.text
+
+
 @settings(max_examples=50)
 @given(st.integers(0, 40), st.integers(8, 24), st.integers(20, 48), st.floats(0.4, 1.4))
 def test_a_person_who_walks_by_is_nothing_odd(at, wide, high, depth_m):

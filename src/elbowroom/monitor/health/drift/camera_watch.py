@@ -1,12 +1,14 @@
 """Watches whether one camera stands where it was commissioned."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.errors import InputError
 from elbowroom.geometry import DepthCamera
-from elbowroom.monitor.health.drift.doubt import WORTH_A_FIT, Doubt, Shares, shares_of
+from elbowroom.monitor.health.drift.doubt import ANOTHERS, WORTH_A_FIT, Doubt, Shares, shares_of
 from elbowroom.monitor.health.drift.fit import MOVE_PRIOR_M, TURN_PRIOR_RAD, convinces
 from elbowroom.monitor.health.drift.kernels.watch import Counts, Fit, Gate, Memory, Spots, judge_image
 from elbowroom.monitor.health.drift.lasting import Lasting
@@ -84,7 +86,7 @@ class CameraWatch:
             self._stop_if_too_long()
             return self._silent if frame is None else self.newest
         now = self._judge(frame)
-        shares = shares_of(frame.depth_m.ravel(), self._spots, self._gate)
+        shares = self._shares(frame.depth_m.ravel())
         self._doubt.hear(*self._contradiction(frame, now, shares))
         now = replace(now, doubt=self._doubt.text)
         self._newest = frame.stamp_ns, now
@@ -102,6 +104,29 @@ class CameraWatch:
             return self.hear(frame, now_ns)
         self._lasting.not_silent()
         return self.newest
+
+    def shows(self, frame: DepthFrame, others: Sequence["CameraWatch"]) -> str | None:
+        """The camera on whose reference an image lies that does not lie on its own; None: none.
+
+        Args:
+            frame: of this camera.
+            others: the watches of the other cameras.
+        """
+        image = frame.depth_m.ravel()
+        own = self._shares(image)
+        off = {}
+        for other in others:
+            reference = other.reference
+            if (reference.width, reference.height) == (self.reference.width, self.reference.height):
+                shares = other._shares(image)
+                if other._can_tell(shares):
+                    off[other.camera.name] = shares.off
+        name = min(off, key=lambda each: off[each], default=None)
+        is_its = name is not None and own.off >= WORTH_A_FIT and off[name] <= ANOTHERS * own.off
+        return name if is_its else None
+
+    def _shares(self, image: NDArray[np.float32]) -> Shares:
+        return shares_of(image, self._spots, self._gate)
 
     def _was_heard(self, frame: DepthFrame) -> bool:
         return self._newest is not None and frame.stamp_ns is not None and self._newest[0] == frame.stamp_ns

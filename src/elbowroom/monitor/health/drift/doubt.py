@@ -23,6 +23,8 @@ GONE = 0.36
 """Where so many are off while it sees through, and it lasts, the camera no longer sees what it was commissioned on."""
 WORTH_A_FIT = 0.10
 """From so many on a motion is fitted to this image alone."""
+ANOTHERS = 0.25
+"""An image is another camera's where of that one's spots so small a part of the share is off that is of its own."""
 CLEARS_AFTER = 3
 """So many images in a row that contradict nothing take a doubt back,"""
 DECIDES = 30

@@ -1,6 +1,7 @@
 """The watch over cameras and machine while the monitor runs: it remembers what it found, until it is made anew."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.parallel import spread, thread_count
@@ -97,8 +98,28 @@ class Watch:
 
         shares = [turn[first::many] for first in range(many)]
         heard = {health.camera: health for part in spread(hear, shares) for health in part}
-        return tuple(
+        cameras = tuple(
             heard[name] if name in heard else watch.pass_over(newest.get(name), now_ns)
             for watch in self._watches
             for name in [watch.camera.name]
         )
+        shown = self._shown(cameras, newest)
+        return tuple(replace(each, shows=shown.get(each.camera)) for each in cameras)
+
+    def _shown(self, cameras: Sequence[CameraHealth], newest: Mapping[str, DepthFrame]) -> dict[str, str]:
+        """Whose image the cameras show that may be elsewhere, and those whose image they show in turn."""
+        watches = {watch.camera.name: watch for watch in self._watches}
+        asked = [
+            each.camera for each in cameras if each.doubt is not None or watches[each.camera].stop is not None
+        ]
+        shown: dict[str, str] = {}
+        while asked:
+            name = asked.pop()
+            if name in shown or name not in newest:
+                continue
+            others = [watch for watch in self._watches if watch.camera.name != name]
+            other = watches[name].shows(newest[name], others)
+            if other is not None:
+                shown[name] = other
+                asked.append(other)
+        return shown

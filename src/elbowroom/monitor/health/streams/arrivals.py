@@ -24,12 +24,15 @@ class Arrivals:
         passed_ns: likewise; a pass counts as `A_PASS_NS` or a usual step at most.
         steps_ns: the latest steps between things that came [ns], as `waited_ns`.
         came: how many did.
+        usual_ns: the mean of the latest steps [ns], as passes fall as they fall but their sum is sure; without those
+            that are long beside the middle one, in which the monitor itself stalled; None: too few are known.
     """
 
     waited_ns: int = 0
     passed_ns: int = 0
     steps_ns: tuple[int, ...] = ()
     came: int = 0
+    usual_ns: int | None = None
 
     def passing(self, went_ns: int, is_new: bool) -> Self:
         """The same after one more pass.
@@ -45,14 +48,10 @@ class Arrivals:
         # a gap is no step: else what comes with gaps would soon have them by right
         is_step = self.came > 0 and not self._is_over(passed_ns)
         steps_ns = (*self.steps_ns, waited_ns)[-REMEMBERED:] if is_step or self._learns else self.steps_ns
-        return replace(self, waited_ns=0, passed_ns=0, steps_ns=steps_ns, came=self.came + 1)
-
-    @property
-    def usual_ns(self) -> int | None:
-        """The mean of the latest steps [ns], as passes fall as they fall but their sum is sure; None: too few known."""
-        if len(self.steps_ns) < LEAST_STEPS:
-            return None
-        return sum(self.steps_ns) // len(self.steps_ns)
+        usual_ns = _usual_ns(steps_ns)
+        return replace(
+            self, waited_ns=0, passed_ns=0, steps_ns=steps_ns, came=self.came + 1, usual_ns=usual_ns
+        )
 
     @property
     def is_overdue(self) -> bool:
@@ -71,3 +70,11 @@ class Arrivals:
     def _is_over(self, passed_ns: int) -> bool:
         usual_ns = self.usual_ns
         return usual_ns is not None and passed_ns > max(OVERDUE_NS, OVERDUE_STEPS * usual_ns)
+
+
+def _usual_ns(steps_ns: tuple[int, ...]) -> int | None:
+    if len(steps_ns) < LEAST_STEPS:
+        return None
+    middle_ns = sorted(steps_ns)[len(steps_ns) // 2]
+    usual_ns = [step_ns for step_ns in steps_ns if step_ns <= OVERDUE_STEPS * middle_ns]
+    return sum(usual_ns) // len(usual_ns)

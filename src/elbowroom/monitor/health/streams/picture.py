@@ -1,4 +1,4 @@
-"""What a camera's image is beside its last good one: the same, another scale, another kind of number, another's."""
+"""What a camera's image is beside its last good one: the same, turned, of another scale or kind, another camera's."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,8 +14,8 @@ NEAR_SHARE, NEAR_M = 0.03, 0.03
 """Two depths agree that differ by less than this share and length: more than any sensor scatters."""
 AGREES = 0.5
 """An image is what its camera gives where so many of its pixels agree with the last good one: walls stand still."""
-ANOTHERS, NOT_ITS_OWN = 0.6, 0.3
-"""It is another's where so many agree with that one's, and fewer than this with its own."""
+ANOTHERS, OF_OTHERS = 0.6, 0.5
+"""It is another's where so many agree with that one's, and with its own at most so large a part of that."""
 UNIFORM = 0.6
 """One rule holds for an image where it holds for so many of its pixels."""
 SCALED = 0.1
@@ -23,6 +23,8 @@ SCALED = 0.1
 ROUGH = 0.6
 """Of the neighbours that were alike before so few are alike where numbers are no depths."""
 LEAST_PAIRS = 100
+UNITS_M = (1e-3, 1e-4, 2e-4, 2.5e-4, 1.25e-4)
+"""Of raw values, those that drivers give [m]."""
 EQUAL_TILES = 0.25
 """A sensor stands still where so many of its tiles are what they were, bit by bit."""
 LEAST_TILES = 4
@@ -123,15 +125,50 @@ def oddity(new: Thumb, old: Thumb, pairs: Pairs, others: Mapping[str, Thumb]) ->
         pairs: of both.
         others: the last good images of the other cameras.
     """
-    if pairs.agreeing < NOT_ITS_OWN:
-        for name, other in others.items():
-            found = pairs_of(new, other, np.ones_like(new.depth_m))
-            if found is not None and found.agreeing >= ANOTHERS:
-                return Odd(
-                    HealthCause.CAMERA_SWAPPED,
-                    f"shows what camera {name} gave: {found.agreeing:.0%} of its pixels",
-                )
-    return _other_scale(pairs) or _other_kind(pairs) or _no_depths(new, old)
+    return (
+        _anothers(new, pairs, others)
+        or _turned(new, old, pairs)
+        or _other_scale(pairs)
+        or _other_kind(pairs)
+        or _no_depths(new, old)
+    )
+
+
+def _anothers(new: Thumb, pairs: Pairs, others: Mapping[str, Thumb]) -> Odd | None:
+    """The image of another camera: of the one that it agrees with most."""
+    agreeing = {name: _agreeing(new, other) for name, other in others.items()}
+    name = max(agreeing, key=lambda each: agreeing[each], default=None)
+    if name is None or not _is_rather(agreeing[name], pairs):
+        return None
+    text = f"shows what camera {name} gave: {agreeing[name]:.0%} of its pixels"
+    return Odd(HealthCause.CAMERA_SWAPPED, text)
+
+
+def _turned(new: Thumb, old: Thumb, pairs: Pairs) -> Odd | None:
+    """The same image, turned about in its frame, or mirrored."""
+    agreeing = {
+        how: _agreeing(new, Thumb(np.ascontiguousarray(old.depth_m[::rows, ::columns]), old.step))
+        for rows, columns, how in (
+            (-1, -1, "turned by 180 degrees"),
+            (1, -1, "mirrored"),
+            (-1, 1, "upside down"),
+        )
+    }
+    how = max(agreeing, key=lambda each: agreeing[each])
+    if not _is_rather(agreeing[how], pairs):
+        return None
+    return Odd(HealthCause.CAMERA_WRONG_ENCODING, f"gives its image {how}")
+
+
+def _agreeing(new: Thumb, other: Thumb) -> float:
+    """The share of pixels that agree; 0 where too few can be compared."""
+    found = pairs_of(new, other, np.ones_like(new.depth_m))
+    return 0.0 if found is None else found.agreeing
+
+
+def _is_rather(agreeing: float, pairs: Pairs) -> bool:
+    """Whether an image that agrees so well with another is rather that one than its camera's own."""
+    return agreeing >= ANOTHERS and pairs.agreeing <= OF_OTHERS * agreeing
 
 
 def _other_scale(pairs: Pairs) -> Odd | None:
@@ -147,17 +184,30 @@ def _other_scale(pairs: Pairs) -> Odd | None:
 
 
 def _other_kind(pairs: Pairs) -> Odd | None:
-    """Disparity for depth, or distance from the centre for planar depth, or the other way round."""
+    """Disparity for depth, bytes in another order, or distance from the centre for planar depth, or the other way."""
     inverse = pairs.new * pairs.old
     if _holds(inverse / np.median(inverse)):
         return Odd(
             HealthCause.CAMERA_WRONG_ENCODING, "reads less where it read more: disparity, and no depth"
         )
+    if _has_swapped_bytes(pairs):
+        return Odd(HealthCause.CAMERA_WRONG_ENCODING, "gives 16-bit numbers with their two bytes swapped")
     for stretch in (pairs.stretch, 1 / pairs.stretch):
         if _holds(pairs.new / (pairs.old * stretch)):
             text = "gives distance from its centre for depth along its axis, or the other way round"
             return Odd(HealthCause.CAMERA_WRONG_ENCODING, text)
     return None
+
+
+def _has_swapped_bytes(pairs: Pairs) -> bool:
+    """Whether depths are what they were once the two bytes of their raw values are put the other way round."""
+    for unit_m in UNITS_M:
+        raw = np.rint(pairs.new / np.float32(unit_m))
+        if raw.max() <= 0xFFFF:
+            swapped_m = raw.astype(np.uint16).byteswap() * np.float32(unit_m)
+            if _near(swapped_m, pairs.old).mean() >= UNIFORM:
+                return True
+    return False
 
 
 def _no_depths(new: Thumb, old: Thumb) -> Odd | None:

@@ -1,7 +1,7 @@
 """All streams of a room: what is wrong with each source now, and what is left of a snapshot without the sick ones."""
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -73,7 +73,7 @@ class Streams:
         self._joints = None if machine is None else JointStream(machine, self._ways.greatest)
         self._now_ns: int | None = None
         self._health: Health | None = None
-        self._since_ns: dict[tuple[HealthCause, str], int] = {}
+        self._since_heard, self._since_known = _Since(), _Since()
 
     def hear(self, snapshot: Snapshot, found: Sequence[Finding] = ()) -> tuple[Sick, ...]:
         """What is wrong now, cameras in the room's order, then joints.
@@ -102,7 +102,7 @@ class Streams:
             stream.hear(frames.get(name), moment, others)
         if self._joints is not None:
             self._joints.hear(_heard(snapshot, went_ns, self._health))
-        return self._lasting(tuple(self._sick()))
+        return self._since_heard.lasting(self._sick(), self._clock_ns())
 
     def knowing(self, sick: Sequence[Sick], health: Health) -> tuple[Sick, ...]:
         """The same with cameras that the watch found elsewhere, or doubts; joints are heard with it at the next pass.
@@ -112,7 +112,9 @@ class Streams:
             health: what the watch says of this pass.
         """
         self._health = health
-        return (*sick, *_elsewhere(health))
+        swapped = {each.source for each in sick if each.cause is HealthCause.CAMERA_SWAPPED}
+        elsewhere = (self._tolerated(each) for each in _elsewhere(health, swapped))
+        return (*sick, *self._since_known.lasting(elsewhere, self._clock_ns()))
 
     def usable(self, snapshot: Snapshot) -> Snapshot:
         """What can be looked at: images of the right size, and joints where the machine can be."""
@@ -147,15 +149,29 @@ class Streams:
         for name, camera in self._cameras.items():
             for cause in camera.causes:
                 text = f"camera {name} {camera.texts[cause]}"
-                tolerated = cause.word in self._ways.tolerated
-                yield Sick(cause, name, text, CAMERA_CLEARS[cause], tolerated=tolerated)
+                yield self._tolerated(Sick(cause, name, text, CAMERA_CLEARS[cause]))
         if self._joints is not None:
             for cause in self._joints.causes:
                 yield Sick(cause, SOURCE, f"joints: {self._joints.texts[cause]}", JOINT_CLEARS[cause])
 
-    def _lasting(self, sick: Sequence[Sick]) -> tuple[Sick, ...]:
-        """The same with how long each has been there, by this computer's clock."""
-        now_ns = self._clock_ns()
+    def _tolerated(self, sick: Sick) -> Sick:
+        """The same, if the site says so without a latch."""
+        return replace(sick, tolerated=sick.cause.word in self._ways.tolerated)
+
+
+@dataclass(slots=True, eq=False)
+class _Since:
+    """Since when each cause is there, by this computer's clock."""
+
+    _since_ns: dict[tuple[HealthCause, str], int] = field(default_factory=dict)
+
+    def lasting(self, sick: Iterable[Sick], now_ns: int) -> tuple[Sick, ...]:
+        """The same with how long each has been there; those that are not among them are over.
+
+        Args:
+            sick: all that is wrong now.
+            now_ns: the time [ns].
+        """
         before, self._since_ns = self._since_ns, {}
         told = []
         for each in sick:
@@ -193,15 +209,27 @@ def _about(found: Sequence[Finding], camera: str, kinds: Sequence[str]) -> str |
     return texts[0] if texts else None
 
 
-def _elsewhere(health: Health) -> Iterator[Sick]:
-    """Cameras for which the watch stops since they are elsewhere, or that may be; of others all is said already."""
-    cause, doubted = HealthCause.CAMERA_MOVED, HealthCause.CAMERA_DOUBTED
+def _elsewhere(health: Health, swapped: Set[str]) -> Iterator[Sick]:
+    """Cameras for which the watch stops since they are elsewhere, or that may be; of others all is said already.
+
+    Args:
+        health: what the watch says.
+        swapped: cameras of which it is said already that they show what another one gave.
+    """
     for camera in health.cameras:
-        if camera.doubt is not None and camera.camera not in health.stops:
-            text = f"camera {camera.camera} {camera.doubt}"
-            yield Sick(doubted, camera.camera, text, CAMERA_CLEARS[doubted])
-        if camera.camera in health.stops and camera.condition in (Condition.MOVED, Condition.CHANGED):
-            yield Sick(cause, camera.camera, health.stops[camera.camera], CAMERA_CLEARS[cause])
+        name, is_stopped = camera.camera, camera.camera in health.stops
+        if camera.shows is not None:
+            if name not in swapped:
+                text = f"camera {name} shows what camera {camera.shows} was commissioned on, not its own: exchanged?"
+                yield _sick(HealthCause.CAMERA_SWAPPED, name, text)
+        elif camera.doubt is not None and not is_stopped:
+            yield _sick(HealthCause.CAMERA_DOUBTED, name, f"camera {name} {camera.doubt}")
+        elif is_stopped and camera.condition in (Condition.MOVED, Condition.CHANGED):
+            yield _sick(HealthCause.CAMERA_MOVED, name, health.stops[name])
+
+
+def _sick(cause: HealthCause, camera: str, text: str) -> Sick:
+    return Sick(cause, camera, text, CAMERA_CLEARS[cause])
 
 
 def _spots(reference: CameraReference) -> Thumb:
