@@ -20,8 +20,8 @@ OVER = 2.5
 LEAST_M = 0.01
 """and more than this [m]."""
 LEAST_PLACES = 300
-NORMAL = 0.6745
-"""The median of the size of normal errors, in standard deviations."""
+QUARTER, NORMAL = 0.25, 0.3186
+"""So large a share of normal errors is no larger than so many standard deviations. What is no plane enters the larger."""
 
 
 def look_at_scatter(
@@ -68,10 +68,9 @@ def scatter_of(image: Thinned) -> tuple[float, float] | None:
         _differences(image.here, image.right, image.here[:, :-1], image.here[:, 1:], columns=True),
         _differences(image.here, image.below, image.here[:-1], image.here[1:], columns=False),
     ]
-    off, depth = (np.concatenate(each) for each in zip(*differences, strict=True))
-    if off.size < LEAST_PLACES:
+    if min(off.size for off, _ in differences) < LEAST_PLACES:
         return None
-    return float(np.median(off)) / (2 * NORMAL), float(np.median(depth))
+    return min((float(np.quantile(off, QUARTER)) / (2 * NORMAL), float(np.median(at))) for off, at in differences)
 
 
 def _differences(
