@@ -20,8 +20,10 @@ OVER = 2.5
 LEAST_M = 0.01
 """and more than this [m]."""
 LEAST_PLACES = 300
+TOGETHER = 0.25
+"""Of the cameras: where fewer scatter so, what they look at is rough."""
 QUARTER, NORMAL = 0.25, 0.3186
-"""So large a share of normal errors is no larger than so many standard deviations. What is no plane enters the larger."""
+"""So large a share of normal errors is no larger than so many standard deviations. What is no plane is larger."""
 
 
 def look_at_scatter(
@@ -35,11 +37,12 @@ def look_at_scatter(
         margin: of cameras without one of their own.
     """
     by_name = {camera.name: camera for camera in cameras}
-    findings = []
+    findings, measured = [], 0
     for image in (thinned(by_name[frame.camera], frame) for frame in frames if frame.camera in by_name):
         scatter = scatter_of(image)
         if scatter is None:
             continue
+        measured += 1
         sigma_m, at_m = scatter
         of = image.camera.margin or margin
         sensor = 0.0 if image.camera.noise is None else float(image.camera.noise.sigma(at_m))
@@ -51,7 +54,7 @@ def look_at_scatter(
                 "sensor, or constant_m, linear, quadratic; or a wider margin"
             )
             findings.append(Finding(KIND, (image.camera.name,), text, stops=False))
-    return together(findings, len(cameras))
+    return together(findings, len(cameras)) if len(findings) >= TOGETHER * measured else ()
 
 
 def scatter_of(image: Thinned) -> tuple[float, float] | None:
@@ -70,7 +73,9 @@ def scatter_of(image: Thinned) -> tuple[float, float] | None:
     ]
     if min(off.size for off, _ in differences) < LEAST_PLACES:
         return None
-    return min((float(np.quantile(off, QUARTER)) / (2 * NORMAL), float(np.median(at))) for off, at in differences)
+    return min(
+        (float(np.quantile(off, QUARTER)) / (2 * NORMAL), float(np.median(at))) for off, at in differences
+    )
 
 
 def _differences(
