@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
-from elbowroom.reconstruct.contradiction.findings import contradictions
+from elbowroom.reconstruct.contradiction.findings import with_contradictions
 from elbowroom.reconstruct.nothing_seen import nothing_seen
 from elbowroom.sensing.never import Never
 from elbowroom.sensing.values import look_at_images, look_at_setting
@@ -38,7 +38,7 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
             frames = [image.read() for image in group]
             units_m = {image.camera.name: image.unit_m for image in group}
             of_values = look_at_images(grid, cameras, frames, units_m)
-            found += [*of_values, *contradictions(cameras, frames, site.margin(), of_values)]
+            found += with_contradictions(cameras, frames, site.margin(), of_values)
             found += nothing_seen(grid, cameras, frames, site.margin(), found)
             found += look_at_scatter(cameras, frames, site.margin())
     return once(found)
