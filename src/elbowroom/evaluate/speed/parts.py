@@ -62,10 +62,10 @@ def parts_rows(
         for tree, process in zip(trees, looked, strict=True):
             _said(process, tree)
         for number in range(rounds):
-            order = range(len(trees)) if number % 2 == 0 else reversed(range(len(trees)))
-            for tree in order:
-                for case, spent in _asked(looked[tree], trees[tree]).items():
-                    found[tree].setdefault(case, []).append(Spent(*spent))
+            turn = list(range(len(trees)))
+            for which in turn if number % 2 == 0 else turn[::-1]:
+                for case, spent in _asked(looked[which], trees[which]).items():
+                    found[which].setdefault(case, []).append(Spent(*spent))
     said = {"voxel_size_m": VOXEL_M, "cameras": 21, "threads": threads, "rounds": rounds}
     for case in found[0]:
         yield {"case": case, **said, **_row([one[case] for one in found])}
