@@ -74,7 +74,13 @@ def _path(machine: Machine, joints: dict[str, float]) -> Trajectory:
 
 
 def main(scene_file: str, voxel_m: str, threads: str) -> None:
-    """As the module says."""
+    """Looks at the parts as often as a line comes in.
+
+    Args:
+        scene_file: .npz of poses, lens, depths and joints (`bench.save_scenes`).
+        voxel_m: edge of a voxel [m].
+        threads: over so many the work is spread.
+    """
     scene = Scene.load(Path(scene_file), NOISE_PRESETS["tof"])
     with parallel.threads(int(threads)):
         parts = parts_of(scene, float(voxel_m))
