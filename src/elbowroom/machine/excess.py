@@ -6,17 +6,19 @@ does a hand in it. This says of which links that is so, and by how much.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine.joint_state import Joints
 from elbowroom.machine.machine import Machine
 from elbowroom.machine.rasterise import rasterise
 from elbowroom.machine.samples import BodySamples, body_samples
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 BLOCK_PX = 5
 """Pixels along the edge of a block, of which the middling depth counts: noise is less by that."""
@@ -145,8 +147,8 @@ class _Body:
     """
 
     link: NDArray[np.int32]
-    all: KDTree
-    surface: KDTree
+    all: "KDTree"
+    surface: "KDTree"
 
     @classmethod
     def of(cls, samples: BodySamples, world_from_link: NDArray[np.float64]) -> Self:
@@ -156,6 +158,8 @@ class _Body:
             samples: of the body.
             world_from_link: shape (links, 4, 4).
         """
+        from scipy.spatial import KDTree  # slow to load, and no pass needs it
+
         link = np.concatenate([samples.point_link, samples.interior_link])
         within = np.concatenate([samples.points, samples.interior]).astype(np.float64)
         pose = world_from_link[link]
