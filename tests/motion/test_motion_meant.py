@@ -1,5 +1,7 @@
 """The rest of a path from where the machine is, and what it leaves of the motions: never more than they had."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,13 +13,14 @@ from elbowroom.motion import (
     Cause,
     Level,
     Motion,
+    PathVerdict,
     Trajectory,
     check_motions,
     check_rest,
     rest_of,
     with_path,
 )
-from elbowroom.motion.meant import LAG_S
+from elbowroom.motion.meant import HORIZON_S, LAG_S, share_of
 from elbowroom.reconstruct.free_space import FreeSpace
 from reference import motion_machines as machines
 from reference.motion_machines import HOME, nothing_in, room, touched_by_box
@@ -84,6 +87,7 @@ def test_only_motions_that_the_path_makes_are_held_back_and_none_gains(arm, slid
 def test_a_path_meets_the_wall_when_the_hand_gets_there(arm) -> None:
     space = FreeSpace.from_occupied(GRID, nothing_in(GRID) | WALL).without(arm, HOME)
     path = check_rest(space, arm, HOME, rest_of(sliding(0.0), HOME), FULL)
+    assert path.looked_until_s == pytest.approx(HORIZON_S)
     truth_s = (0.951 - 0.69) / 0.2
     assert path.first is not None and 0.5 < path.first.time_s <= truth_s + 0.05
     levels = []
@@ -92,3 +96,40 @@ def test_a_path_meets_the_wall_when_the_hand_gets_there(arm) -> None:
         rest = rest_of(sliding(-slide / 0.2), joints)
         levels.append(check_rest(space, arm, joints, rest, FULL).level.rank)
     assert levels == sorted(levels, reverse=True) and levels[-1] == Level.STOP.rank
+
+
+@given(st.floats(0.0, 3.0), st.floats(0.01, 1.0), st.floats(0.0, 3.0))
+def test_a_path_is_slowed_by_the_stops_that_are_left_before_one_has_to_be_commanded(begin_s, stop_s, left_s):
+    path = sliding(begin_s, seconds=9.0)
+    follow_s = begin_s + left_s
+    verdict = PathVerdict(path, Level.DECELERATE, None, None, follow_s, follow_s + stop_s, 9.0)
+    assert share_of(verdict) == pytest.approx(min(1.0, left_s / stop_s), rel=1e-6, abs=1e-6)
+    assert (
+        share_of(replace(verdict, level=Level.INFORM)) == share_of(replace(verdict, level=Level.CLEAR)) == 1
+    )
+    assert share_of(replace(verdict, level=Level.STOP)) == 0
+    assert share_of(replace(verdict, rests_by_s=follow_s)) == 0
+
+
+def test_before_a_wall_the_motion_that_the_path_makes_is_slowed_more_and_more(arm) -> None:
+    levels, speeds = [], []
+    for slide in np.linspace(-0.3, 0.24, 28):
+        joints = {**HOME, "slide": float(slide)}
+        space = FreeSpace.from_occupied(GRID, nothing_in(GRID) | WALL).without(arm, joints)
+        path = check_rest(space, arm, joints, rest_of(sliding_from(float(slide)), joints), FULL)
+        (was,) = check_motions(space, arm, joints, MOTIONS[:1])
+        (now,) = with_path(
+            [replace(was, level=Level.CLEAR, free_travel=9.0)], path, rest_of(sliding_from(0), HOME)
+        )
+        braking = now.motion.braking_distance
+        levels.append(path.level)
+        speeds.append(now.free_travel / braking)
+        due = {Level.STOP: 0, Level.DECELERATE: 1 + share_of(path), Level.INFORM: 5, Level.CLEAR: 9 / braking}
+        assert speeds[-1] == pytest.approx(due[path.level])
+    assert {Level.STOP, Level.DECELERATE, Level.INFORM} <= set(levels)
+    assert speeds == sorted(speeds, reverse=True)
+
+
+def sliding_from(slide: float) -> Trajectory:
+    """At full speed from where it is."""
+    return Trajectory(("slide",), [0.0, (0.5 - slide) / 0.2], [[slide], [0.5]])

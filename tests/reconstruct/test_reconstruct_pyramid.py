@@ -20,6 +20,11 @@ def counting(margin=NO_MARGIN, quantum=QUANTUM, least=0.0, greatest=np.inf):
     return Counting(least, greatest, quantum, margin)
 
 
+def all_of(image):
+    """All pixels of an image: first row, one past the last, first column, one past the last."""
+    return 0, image.shape[0], 0, image.shape[1]
+
+
 def random_texels(shape, seed=0):
     rng = np.random.default_rng(seed)
     least = rng.integers(0, 60000, shape)
@@ -31,7 +36,9 @@ def test_texels_bound_a_depth_by_at_most_three_quanta():
     quantum = 8e-5
     depth = np.random.default_rng(0).uniform(0.001, 5.2, (40, 50)).astype(np.float32)
     trust = np.zeros(depth.shape, dtype=np.uint32)
-    texels.texels_of_frame((depth, depth), counting(quantum=quantum), NO_MODEL, trust, NO_TEXELS)
+    texels.texels_of_frame(
+        (depth, depth), counting(quantum=quantum), NO_MODEL, (trust, NO_TEXELS), all_of(depth)
+    )
     least, greatest = bounds_of(trust)
     exact = depth.astype(float) / quantum
     assert ((exact - 3 < least) & (least <= exact)).all()
@@ -43,7 +50,7 @@ def test_what_is_no_depth_within_range_is_no_return(depth):
     image = np.full((2, 3), depth, dtype=np.float32)
     trust = np.ones(image.shape, dtype=np.uint32)
     within = counting(least=0.2, greatest=4.0)
-    texels.texels_of_frame((image, image), within, NO_MODEL, trust, NO_TEXELS)
+    texels.texels_of_frame((image, image), within, NO_MODEL, (trust, NO_TEXELS), all_of(image))
     least, greatest = bounds_of(trust)
     assert (least == 0).all()
     assert (greatest == NO_RETURN).all()
@@ -52,7 +59,7 @@ def test_what_is_no_depth_within_range_is_no_return(depth):
 def test_a_depth_beyond_what_can_be_counted_is_far_and_not_missing():
     image = np.array([[1e6]], dtype=np.float32)
     trust = np.zeros(image.shape, dtype=np.uint32)
-    texels.texels_of_frame((image, image), counting(), NO_MODEL, trust, NO_TEXELS)
+    texels.texels_of_frame((image, image), counting(), NO_MODEL, (trust, NO_TEXELS), all_of(image))
     least, greatest = bounds_of(trust)
     assert 65000 < least[0, 0] <= greatest[0, 0] < NO_RETURN
 
@@ -83,12 +90,12 @@ def test_levels_and_windows_are_minima_over_pixels(shape):
     for k in range(int(np.ceil(np.log2(max(shape)))) + 2):
         if k:
             coarse = np.zeros(tuple(-(-n // 2) for n in fine.shape), dtype=np.uint32)
-            pyramid.halve(fine, coarse)
+            pyramid.halve(fine, (0, 0), all_of(fine), coarse)
             fine = coarse
         for got, expected in zip(bounds_of(fine), naive.level(least, greatest, k), strict=True):
             np.testing.assert_array_equal(got, expected)
         windows = np.zeros_like(fine)
-        pyramid.windows_of(fine.view(np.uint16), np.zeros_like(fine).view(np.uint16), windows.view(np.uint16))
+        pyramid.windows_of(fine, (0, 0), all_of(fine), windows)
         low, high = bounds_of(windows)
         for v, u in np.ndindex(shape):
             assert (low[v >> k, u >> k], high[v >> k, u >> k]) == naive.window(least, greatest, k, u, v)
@@ -191,13 +198,15 @@ def test_doubt_differs_from_trust_within_the_rectangle_alone():
         v, u = rng.integers(0, 50, 3), rng.integers(0, 200, 3)
         model[v, u] = depth[v, u]
         trust, doubt = (np.zeros(depth.shape, dtype=np.uint32) for _ in range(2))
-        top, bottom, left, right = texels.texels_of_frame((depth, depth), within, model, trust, doubt)
+        top, bottom, left, right = texels.texels_of_frame(
+            (depth, depth), within, model, (trust, doubt), all_of(depth)
+        )
         differs = trust != doubt
         assert differs[v, u].all()
         differs[top:bottom, left:right] = False
         assert not differs.any()
         plain = np.zeros_like(trust)
-        texels.texels_of_frame((depth, depth), within, NO_MODEL, plain, NO_TEXELS)
+        texels.texels_of_frame((depth, depth), within, NO_MODEL, (plain, NO_TEXELS), all_of(depth))
         np.testing.assert_array_equal(plain[model == 0], trust[model == 0])
         np.testing.assert_array_equal(plain[model == 0], doubt[model == 0])
 
@@ -238,26 +247,96 @@ def test_the_least_of_a_rectangle_of_tiles_is_the_least_of_all_in_it():
         assert bounds_of(np.uint32(got)) == (least[here].min(), greatest[here].max())
 
 
-@pytest.mark.parametrize(("rows", "columns"), [(1, 9), (3, 3), (23, 40), (24, 17), (25, 64), (77, 130)])
-def test_flying_pixels_some_rows_at_a_time_are_one_pass_after_the_other(rows, columns):
+def in_passes(depth, counted, model, step, within):
+    """Level 0 of a part of an image whose pixels fly, one pass after the other; trust, doubt, and where they differ."""
+    top, bottom, left, right = within
+    depth, model = (np.ascontiguousarray(image[top:bottom, left:right]) for image in (depth, model))
+    plain, neutral, between, lowered = (np.zeros(depth.shape, dtype=np.uint32) for _ in range(4))
+    apart = texels.texels_of_frame((depth, depth), counted, model, (plain, neutral), all_of(depth))
+    flying.pass_over_specks(plain, 0.01, model, counted, between)
+    flying.lower_at_steps(between, neutral, counted.quantum, step, lowered)
+    for v in range(len(depth)):
+        texels.mark_row(model[v], counted, lowered[v], neutral[v])
+    return lowered, neutral, (apart[0] + top, apart[1] + top, apart[2] + left, apart[3] + left)
+
+
+def flying_image(rows, columns):
+    """Depth with holes, a step and noise; a machine in some of it, or in none at all where there is one row."""
     rng = np.random.default_rng(rows)
     depth = (2.0 + 0.3 * rng.random((rows, columns))).astype(np.float32)
     depth[rng.random(depth.shape) < 0.1] = 0
     depth[:, columns // 2 :] += 1
     model = np.where(rng.random(depth.shape) < 0.3, rng.choice([-2.5, -1e-6, 2.1, np.inf], depth.shape), 0)
-    model, margin = model.astype(np.float32), DepthMargin(0.01, 0.002, 0.0, 0.0, 0.0)
-    for image in (depth, model):
+    model[rows // 3 : rows // 2] = 0
+    for image in (depth, model := model.astype(np.float32)):
         image.setflags(write=False)
-    trust, doubt, raw, passed = (np.zeros(depth.shape, dtype=np.uint32) for _ in range(4))
-    step = DepthMargin(0.05, 0.0, 0.0, 0.0, 0.0)
-    counted = counting(margin)
-    got = flying.fly((depth, depth), counted, model, (0.01, step), (raw, passed), (trust, doubt))
-    plain, neutral, between, lowered = (np.zeros(depth.shape, dtype=np.uint32) for _ in range(4))
-    due = texels.texels_of_frame((depth, depth), counted, model, plain, neutral)
-    flying.pass_over_specks(plain, 0.01, model, counted, between)
-    flying.lower_at_steps(between, neutral, counted.quantum, step, lowered)
-    for v in range(rows):
-        texels.mark_row(model[v], counted, lowered[v], neutral[v])
-    assert got == due
-    np.testing.assert_array_equal(trust, lowered)
-    np.testing.assert_array_equal(doubt, neutral)
+    return depth, model
+
+
+@pytest.mark.parametrize(
+    ("rows", "columns"), [(1, 9), (2, 8), (3, 3), (4, 5), (5, 4), (6, 6), (23, 40), (25, 64), (77, 130)]
+)
+def test_flying_pixels_row_by_row_are_one_pass_after_the_other(rows, columns):
+    depth, model = flying_image(rows, columns)
+    step, counted = DepthMargin(0.05, 0.0, 0.0, 0.0, 0.0), counting(DepthMargin(0.01, 0.002, 0.0, 0.0, 0.0))
+    trust, doubt = (np.zeros(depth.shape, dtype=np.uint32) for _ in range(2))
+    got = flying.fly((depth, depth), counted, model, (0.01, step), (trust, doubt), all_of(depth))
+    due = in_passes(depth, counted, model, step, all_of(depth))
+    assert got == due[2]
+    np.testing.assert_array_equal(trust, due[0])
+    np.testing.assert_array_equal(doubt, due[1])
+
+
+def test_a_part_of_an_image_is_as_in_all_of_it_but_at_sides_of_its_own():
+    depth, model = flying_image(77, 130)
+    step, counted = DepthMargin(0.05, 0.0, 0.0, 0.0, 0.0), counting(DepthMargin(0.01, 0.002, 0.0, 0.0, 0.0))
+    whole = in_passes(depth, counted, model, step, all_of(depth))
+    rng = np.random.default_rng(9)
+    for _ in range(30):
+        top, left = rng.integers(0, 77), rng.integers(0, 130)
+        bottom, right = rng.integers(top, 77) + 1, rng.integers(left, 130) + 1
+        part = int(top), int(bottom), int(left), int(right)
+        trust, doubt = (np.full(depth.shape, 7, dtype=np.uint32) for _ in range(2))
+        got = flying.fly((depth, depth), counted, model, (0.01, step), (trust, doubt), part)
+        due = in_passes(depth, counted, model, step, part)
+        assert got == due[2]
+        outside = np.ones(depth.shape, dtype=bool)
+        outside[top:bottom, left:right] = False
+        assert (trust[outside] == 7).all()
+        assert (doubt[outside] == 7).all()
+        np.testing.assert_array_equal(trust[top:bottom, left:right], due[0])
+        np.testing.assert_array_equal(doubt[top:bottom, left:right], due[1])
+        rows, columns = (
+            slice(begin + flying.SPREAD * (begin > 0), end - flying.SPREAD * (end < size))
+            for begin, end, size in ((top, bottom, 77), (left, right, 130))
+        )
+        np.testing.assert_array_equal(trust[rows, columns], whole[0][rows, columns])
+        np.testing.assert_array_equal(doubt[rows, columns], whole[1][rows, columns])
+
+
+def test_levels_of_a_part_of_an_image_are_minima_over_pixels_of_that_part():
+    shape = (37, 54)
+    fine = random_texels(shape, 2)
+    least, greatest = bounds_of(fine)
+    rng = np.random.default_rng(10)
+    for _ in range(10):
+        top, left = rng.integers(0, shape[0]), rng.integers(0, shape[1])
+        bottom, right = rng.integers(top, shape[0]) + 1, rng.integers(left, shape[1]) + 1
+        outside = np.ones(shape, dtype=bool)
+        outside[top:bottom, left:right] = False
+        low, high = np.where(outside, NO_RETURN, least), np.where(outside, 0, greatest)
+        level, origin, within = fine, (0, 0), tuple(map(int, (top, bottom, left, right)))
+        for k in range(6):
+            if k:
+                above = within[0] // 2, -(-within[1] // 2), within[2] // 2, -(-within[3] // 2)
+                coarse = np.zeros((above[1] - above[0], above[3] - above[2]), dtype=np.uint32)
+                pyramid.halve(level, origin, within, coarse)
+                level, origin, within = coarse, (above[0], above[2]), above
+            windows = np.full(tuple(-(-n // 2**k) for n in shape), 7, dtype=np.uint32)
+            pyramid.windows_of(level, origin, within, windows)
+            got = bounds_of(windows)
+            for v in range(within[0], within[1]):
+                for u in range(within[2], within[3]):
+                    assert (got[0][v, u], got[1][v, u]) == naive.window(low, high, k, u << k, v << k)
+            windows[within[0] : within[1], within[2] : within[3]] = 7
+            assert (windows == 7).all()

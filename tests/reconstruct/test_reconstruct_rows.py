@@ -16,7 +16,7 @@ from elbowroom.reconstruct.kernels.cone import VOXEL
 from elbowroom.reconstruct.kernels.outline import OUTLINES, settle_block
 from elbowroom.reconstruct.kernels.pixel import settle_word
 from elbowroom.reconstruct.kernels.place import cube_at, voxels_of
-from elbowroom.reconstruct.kernels.rows import short_of, telling
+from elbowroom.reconstruct.kernels.rows import short_of, shorts_of, tellings_of
 from elbowroom.reconstruct.layout import layout_of
 from elbowroom.reconstruct.views import fill
 from elbowroom.sensing import DepthFrame
@@ -27,25 +27,41 @@ depth = st.integers(0, 65535)
 
 
 @njit
-def marks_of(texels, at, clear_from, hidden_to):
-    """Both marks from compiled code."""
-    return short_of(texels, at, clear_from), telling(texels, at, clear_from, hidden_to)
+def marks_of(texels, places, clear_from, hidden_to):
+    """All marks from compiled code."""
+    at, stride, last = places
+    return (
+        short_of(texels, at, clear_from),
+        shorts_of(texels, at, stride, last, clear_from),
+        tellings_of(texels, at, stride, last, (clear_from, hidden_to)),
+    )
 
 
-@given(st.lists(texel, min_size=11, max_size=11), st.integers(0, 3), depth, depth)
+@given(
+    st.lists(texel, min_size=80, max_size=80),
+    st.integers(0, 2),
+    st.integers(8, 10),
+    st.integers(0, 7),
+    depth,
+    depth,
+)
 @settings(max_examples=200, deadline=None)
-def test_marks_of_eight_texels_are_those_of_each(texels, at, clear_from, hidden_to):
+def test_marks_of_eight_rows_of_eight_texels_are_those_of_each(
+    texels, at, stride, last, clear_from, hidden_to
+):
     short = tell = 0
-    for n in range(8):
-        least, greatest = texels[at + n] >> 16, 65535 - (texels[at + n] & 0xFFFF)
-        short |= (least < clear_from) << n
-        tell |= (not (least >= clear_from or greatest <= hidden_to)) << n
-    given_texels = np.array(texels, dtype=np.uint32)
-    asked = given_texels, at, np.uint32(clear_from), np.uint32(hidden_to)
-    assert tuple(map(int, marks_of(*asked))) == (short, tell)
+    for row, n in product(range(8), range(8)):
+        one = texels[at + min(row, last) * stride + n]
+        least, greatest = one >> 16, 65535 - (one & 0xFFFF)
+        short |= (least < clear_from) << (8 * row + n)
+        tell |= (not (least >= clear_from or greatest <= hidden_to)) << (8 * row + n)
+    given_texels, limits = np.array(texels, dtype=np.uint32), (np.uint32(clear_from), np.uint32(hidden_to))
+    due = short & 0xFF, short, tell
+    assert tuple(map(int, marks_of(given_texels, (at, stride, last), *limits))) == due
     # as they stand, without the compiler
-    assert int(short_of(*asked[:3])) == short
-    assert int(telling(*asked)) == tell
+    assert int(short_of(given_texels, at, limits[0])) == due[0]
+    assert int(shorts_of(given_texels, at, stride, last, limits[0])) == due[1]
+    assert int(tellings_of(given_texels, at, stride, last, limits)) == due[2]
 
 
 def compare(views, lattice):

@@ -15,7 +15,6 @@ from numba import config
 from elbowroom.errors import PackageError
 from elbowroom.extras import package
 from elbowroom.geometry.kernels.bits import lowest_bit
-from elbowroom.reconstruct.kernels.rows import EIGHT, short_of, telling
 
 SIMULATED = bool(getattr(config, "ENABLE_CUDASIM", 0))
 """Whether numba runs threads of the GPU as threads of Python."""
@@ -63,25 +62,6 @@ def _kernel(thread: Callable[..., None]) -> Any:
     return cuda().jit(thread)
 
 
-def _short_of_each(texels, at, limit):  # type: ignore[no-untyped-def]
-    """As `rows.short_of`."""
-    found = np.uint64(0)
-    for n in range(EIGHT):
-        if texels[at + n] >> np.uint32(16) < limit:
-            found |= np.uint64(1) << np.uint64(n)
-    return found
-
-
-def _telling_each(texels, at, clear_from, hidden_to):  # type: ignore[no-untyped-def]
-    """As `rows.telling`."""
-    found, low = np.uint64(0), np.uint32(0xFFFF)
-    for n in range(EIGHT):
-        texel = texels[at + n]
-        if texel >> np.uint32(16) < clear_from and low - (texel & low) > hidden_to:
-            found |= np.uint64(1) << np.uint64(n)
-    return found
-
-
 def _teach(numba_cuda: Any) -> None:
     """Adds what our kernels use and numba-cuda lacks, and takes fusing away."""
     import numba.cuda.cudadrv.nvvm as nvvm
@@ -91,15 +71,6 @@ def _teach(numba_cuda: Any) -> None:
     @extending.overload(lowest_bit, target="cuda")  # type: ignore[attr-defined]
     def _lowest_bit(word):  # type: ignore[no-untyped-def]
         return lambda word: np.int64(numba_cuda.ffs(word) - 1)
-
-    # eight texels at once on the processor; a thread of the GPU looks at them one by one
-    @extending.overload(short_of, target="cuda")  # type: ignore[attr-defined]
-    def _short_of(texels, at, limit):  # type: ignore[no-untyped-def]
-        return _short_of_each
-
-    @extending.overload(telling, target="cuda")  # type: ignore[attr-defined]
-    def _telling(texels, at, clear_from, hidden_to):  # type: ignore[no-untyped-def]
-        return _telling_each
 
     known = ufuncs.ufunc_db()
     for function, emit in (

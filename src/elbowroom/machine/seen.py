@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from elbowroom.machine.description.shapes import Shape
 from elbowroom.machine.link import Surface
@@ -88,6 +87,8 @@ def outside(visual: Surface, shapes: Sequence[NDArray[np.float64]]) -> float:
 
 def _beyond(points: NDArray[np.float64], shape: NDArray[np.float64]) -> NDArray[np.float64]:
     """How far points lie beyond the faces of the convex hull of a shape, or if it is flat, of the box about it [m]."""
+    from scipy.spatial import ConvexHull, QhullError  # slow to load, and few machines need it
+
     try:
         planes = ConvexHull(shape).equations
     except QhullError:

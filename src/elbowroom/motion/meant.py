@@ -52,8 +52,8 @@ def rest_of(meant: Trajectory, joints: Mapping[str, float]) -> Rest | None:
     whole = meant.straightened()
     if whole.end_s < -LAG_S:
         return None
-    begin_s = min(max(whole.begin_s, 0.0), whole.end_s)
-    if whole.begin_s < 0:
+    begin_s = whole.begin_s
+    if begin_s < 0:
         looked = np.clip(np.linspace(-LAG_S, 0.0, STEPS + 1), whole.begin_s, whole.end_s)
         now = np.array([joints[name] for name in whole.joint_names])
         there = np.column_stack([np.interp(looked, whole.times_s, column) for column in whole.positions.T])
@@ -108,11 +108,10 @@ def share_of(verdict: PathVerdict) -> float:
     Args:
         verdict: of the path.
     """
-    if verdict.follow_until_s is None or verdict.level is Level.STOP:
-        return 0.0
     if verdict.level is not Level.DECELERATE:
-        return 1.0
-    stop_s = (verdict.rests_by_s or verdict.follow_until_s) - verdict.follow_until_s
+        return 0.0 if verdict.level is Level.STOP else 1.0
+    assert verdict.follow_until_s is not None and verdict.rests_by_s is not None  # else it were stop
+    stop_s = verdict.rests_by_s - verdict.follow_until_s
     left_s = verdict.follow_until_s - verdict.path.begin_s
     return min(1.0, left_s / stop_s) if stop_s > 0 else 0.0
 

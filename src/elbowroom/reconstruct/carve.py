@@ -22,6 +22,7 @@ from elbowroom.reconstruct.kernels.planes import PLANES, Answers
 from elbowroom.reconstruct.kernels.points import carve_points
 from elbowroom.reconstruct.layout import layout_of
 from elbowroom.reconstruct.parts import KeptViews, widened
+from elbowroom.reconstruct.regions import regions
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.reconstruct.views import fill
 from elbowroom.reconstruct.witnesses import as_one, witnesses
@@ -162,7 +163,9 @@ class _Carve:
         answers = _no_answers(asked, self.terms.detail, self.complete)
         lattice, worth = bits.lattice(self.grid), np.flatnonzero(asked.reshape(-1, 64).any(axis=1))
         carver = self.carver or (_by_points if self.terms.detail == "point" else _by_voxels)
-        views, buffers = fill(layout, images, explained.model_depth)
+        # of other details windows decide, and they reach beyond what the pixel test asks
+        within = regions(layout, asked, worth, images.aged_m) if self.terms.detail == "pixel" else None
+        views, buffers = fill(layout, images, explained.model_depth, within)
         carved = KeptViews(views if kept is None else widened(views), self.as_one)
         # its memory is used again when nobody has it any more
         finalize(carved, layout.give_back, buffers)

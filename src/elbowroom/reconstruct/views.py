@@ -1,6 +1,7 @@
 """Images of a moment as the arrays that carving kernels take."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +9,6 @@ from numpy.typing import NDArray
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.parallel import spread
-from elbowroom.machine.buffers import spare_image
 from elbowroom.reconstruct.images import Image, RoomImages
 from elbowroom.reconstruct.kernels import flying as flying
 from elbowroom.reconstruct.kernels import pyramid as pyramid
@@ -17,6 +17,7 @@ from elbowroom.reconstruct.kernels.camera import Views
 from elbowroom.reconstruct.kernels.texels import Counting
 from elbowroom.reconstruct.layout import SQUARES, Buffers, Layout
 from elbowroom.reconstruct.records import aged, margin_of, pitch_of
+from elbowroom.reconstruct.regions import Rectangle
 
 STEP = Margin(sigmas=3.0)
 STEP_WITHOUT_NOISE = Margin(range_linear=0.005)
@@ -27,8 +28,6 @@ Were it the margin of the carve, a wider margin would lower fewer pixels and so 
 
 NO_IMAGE = np.zeros((0, 0), dtype=np.float32)
 NO_TEXELS = np.zeros((0, 0), dtype=np.uint32)
-Rectangle = tuple[int, int, int, int]
-"""First row, one past the last, first column, one past the last."""
 NOTHING_FREE = np.uint32(0)
 """The texel of a pixel without a return."""
 NOWHERE: Rectangle = (0, 0, 0, 0)
@@ -36,13 +35,20 @@ Pair = tuple[NDArray[np.uint32], NDArray[np.uint32]]
 """Of trust and of doubt."""
 
 
-def fill(layout: Layout, images: RoomImages, model_depth: Mapping[str, Image]) -> tuple[Views, Buffers]:
+def fill(
+    layout: Layout,
+    images: RoomImages,
+    model_depth: Mapping[str, Image],
+    within: Sequence[Rectangle] | None = None,
+) -> tuple[Views, Buffers]:
     """Builds the windows of all cameras; a camera without images is blank.
 
     Args:
         layout: cameras in a grid.
         images: of those cameras.
         model_depth: by camera, depth up to which the machine explains the pixel [m], 0 where it does not.
+        within: by camera the pixels that the pixel test may ask, all else is left as it was in memory (`regions`);
+            None: all pixels, and squares of tiles, which only the test of footprints asks.
 
     Returns:
         What kernels take, and the buffers behind it, to be given back after the carve.
@@ -56,21 +62,25 @@ def fill(layout: Layout, images: RoomImages, model_depth: Mapping[str, Image]) -
     def build(c: int) -> None:
         name, record = layout.cameras[c].name, records[c]
         own = _own_texels(layout, buffers, c)
+        here = _all_of(own[0]) if within is None else within[c]
         apart = NOWHERE
         if name in images.least_m:
             bounds_m = images.least_m[name], images.greatest_m[name]
             record["explained"], apart = texels_of(
-                layout.cameras[c], layout.counting[c], bounds_m, model_depth.get(name), own
+                layout.cameras[c], layout.counting[c], bounds_m, model_depth.get(name), own, here
             )
             mask = layout.cameras[c].mask
             if mask is not None:
                 put_mask(mask, own)
-                record["explained"], apart = True, (0, mask.shape[0], 0, mask.shape[1])
+                record["explained"], apart = True, here
             record["aged_m"] = images.aged_m.get(name, 0.0)
         else:
             record["blank"] = True
-            own[0][:], own[1][:] = 0, 0
-        _fill_levels(record, buffers, layout.tiles[c], own, apart)
+            part = slice(*here[:2]), slice(*here[2:])
+            own[0][part], own[1][part] = 0, 0
+        _fill_levels(record, buffers, layout.tiles[c], own, (here, apart))
+        if within is None and buffers.split:
+            _fill_squares(buffers, layout.tiles[c], own[0].shape)
 
     spread(build, range(len(layout.cameras)))
     order = np.argsort(records["aged_m"], kind="stable")
@@ -84,29 +94,55 @@ def _own_texels(layout: Layout, buffers: Buffers, c: int) -> Pair:
     return trust, buffers.texels.doubt_texels[layout.texels[c]].reshape(shape) if buffers.split else trust
 
 
-def _fill_levels(record: np.record, buffers: Buffers, here: slice, own: Pair, apart: Rectangle) -> None:
-    """Builds what stands above one camera's texels: windows, tiles and squares of tiles.
+def _all_of(image: NDArray[Any]) -> Rectangle:
+    """All pixels of an image."""
+    return 0, image.shape[0], 0, image.shape[1]
+
+
+def _tiles_of(shape: tuple[int, int]) -> tuple[int, int]:
+    """Rows and columns of tiles of an image of so many rows and columns."""
+    return -(-shape[0] // 4), -(-shape[1] // 4)
+
+
+def _fill_levels(
+    record: np.record, buffers: Buffers, here: slice, own: Pair, pixels: tuple[Rectangle, Rectangle]
+) -> None:
+    """Builds what stands above one camera's texels: windows and tiles.
 
     Args:
         record: of the camera.
         buffers: written.
         here: where its tiles are.
         own: its texels.
-        apart: a rectangle outside of which doubt is as trust.
+        pixels: those that are worked on, and a rectangle in them outside of which doubt is as trust.
     """
     trust, doubt = own
-    tiles = buffers.texels.trust_tiles[here]
-    pyramid.fill_levels(trust, record, tiles, buffers.windows)
+    within, apart = pixels
+    shape = _tiles_of((trust.shape[0], trust.shape[1]))
+    tiles = buffers.texels.trust_tiles[here].reshape(shape)
+    pyramid.fill_levels(trust, record, tiles, buffers.windows, within)
     if buffers.split:
-        shape = (-(-trust.shape[0] // 4), -(-trust.shape[1] // 4))
         doubt_tiles = buffers.texels.doubt_tiles[here].reshape(shape)
-        doubt_tiles.reshape(-1)[:] = tiles
+        top, bottom, left, right = within
+        part = slice(top // 4, -(-bottom // 4)), slice(left // 4, -(-right // 4))
+        doubt_tiles[part] = tiles[part]
         pyramid.fill_tiles(doubt, apart, doubt_tiles)
-        smaller = doubt_tiles
-        for level in range(SQUARES):
-            larger = buffers.texels.doubt_squares[level, here].reshape(shape)
-            pyramid.squares_of(smaller, 2 << level, larger)
-            smaller = larger
+
+
+def _fill_squares(buffers: Buffers, here: slice, shape: tuple[int, ...]) -> None:
+    """Builds squares of tiles of doubt of one camera.
+
+    Args:
+        buffers: written.
+        here: where its tiles are.
+        shape: of its image.
+    """
+    of_tiles = _tiles_of((shape[0], shape[1]))
+    smaller = buffers.texels.doubt_tiles[here].reshape(of_tiles)
+    for level in range(SQUARES):
+        larger = buffers.texels.doubt_squares[level, here].reshape(of_tiles)
+        pyramid.squares_of(smaller, 2 << level, larger)
+        smaller = larger
 
 
 def _read_only(image: Image) -> Image:
@@ -136,6 +172,7 @@ def texels_of(
     bounds_m: tuple[Image, Image],
     model_m: Image | None,
     own: Pair,
+    within: Rectangle,
 ) -> tuple[bool, Rectangle]:
     """Level 0 of one camera: what its pixels free, and what they measured.
 
@@ -144,6 +181,8 @@ def texels_of(
         bounds_m: least and greatest depth per pixel, all of the image or a part of it [m].
         model_m: up to where the machine explains each pixel [m], 0 where it does not; None: it explains nothing.
         own: texels of trust and of doubt, written; may be one array where nothing is explained and no pixels fly.
+        within: the pixels that are worked on. Of a camera whose pixels fly, those within `flying.SPREAD` pixels of
+            its sides are as if nothing lay beyond.
 
     Returns:
         Whether the machine explains any pixels, and a rectangle outside of which both are the same.
@@ -155,9 +194,8 @@ def texels_of(
     least_m, greatest_m = bounds_m
     bounds_m = _read_only(least_m), _read_only(greatest_m)
     if not camera.flying_pixels:
-        apart = texels.texels_of_frame(bounds_m, counting, model, trust, other)
+        apart = texels.texels_of_frame(bounds_m, counting, model, (trust, other), within)
         return apart[0] < apart[1], apart
     step = margin_of(camera, STEP if camera.noise is not None else STEP_WITHOUT_NOISE)
-    scratch = spare_image(*trust.shape), spare_image(*trust.shape)
-    apart = flying.fly(bounds_m, counting, model, (pitch_of(camera), step), scratch, own)
-    return apart[0] < apart[1], (0, trust.shape[0], 0, trust.shape[1])
+    apart = flying.fly(bounds_m, counting, model, (pitch_of(camera), step), own, within)
+    return apart[0] < apart[1], within

@@ -29,7 +29,7 @@ from elbowroom.reconstruct.kernels.pixel import (
     settle_voxel,
 )
 from elbowroom.reconstruct.kernels.place import box_in
-from elbowroom.reconstruct.kernels.rows import EIGHT, short_of, telling
+from elbowroom.reconstruct.kernels.rows import EIGHT, short_of, shorts_of, tellings_of
 from elbowroom.reconstruct.kernels.texels import NO_RETURN, greatest_of
 
 OUTLINES = np.dtype(
@@ -37,7 +37,7 @@ OUTLINES = np.dtype(
         np.record,
         [(name, "i4", 64) for name in ("left", "right", "top", "bottom")]
         + [(name, "u4", 64) for name in ("clear_from", "hidden_to", "stopped_to")]
-        + [(name, "f4", 64) for name in ("u", "v", "inner_u", "inner_v", "near", "far", "middle")],
+        + [(name, "f4", 64) for name in ("u", "v", "inner_u", "inner_v", "near", "far", "middle", "per_far")],
     )
 )
 """Scratch memory for 64 voxels, one in each lane.
@@ -45,12 +45,16 @@ OUTLINES = np.dtype(
 left, right, top, bottom: pixels whose cones may meet it, ends included. clear_from: what is free from there on is free
 beyond it; hidden_to: what is measured up to there is before it; stopped_to: what is free up to there and meets its
 middle is not free beyond it [quanta]. u, v: the place of its middle; inner_u, inner_v: how far from there pixels surely
-see it [px]. near, far, middle: its depth [m].
+see it [px]. near, far, middle: its depth [m]. per_far: one by the depth of its farthest corner along the axis [1/m].
 """
 SEEN, NOTHING_SAID, UNKNOWN = 0, 1, 2
 """What the rectangle about a voxel says: all is free beyond it; not that, and no pixel says anything of it; neither."""
 MOST_PIXELS = 24
 """Wider rectangles are left to the pixel test, which passes over tiles of pixels at once."""
+MOST_OF_BLOCK = 48
+"""Of blocks that cover more pixels either way each voxel is asked for itself."""
+IN_EACH_ROW = np.uint64(0x0101010101010101)
+"""Times the bits of one row, the same bits in each of eight."""
 SPARE = np.float32(2.0) * SLOP_PX
 """By so much rectangles are wider [px]."""
 
@@ -66,11 +70,8 @@ def outlines(camera, first, edge, out):
         out: a record of `OUTLINES`, written.
     """
     px, py, pz = first
-    m, half = camera.camera_from_world, 0.5 * edge
-    # half edges in the camera's axes, x times fx and y times fy
-    ax, ay, az = _half_edges(m, 0, half * camera.fx)
-    bx, by, bz = _half_edges(m, 1, half * camera.fy)
-    dx, dy, dz = _half_edges(m, 2, half)
+    half = 0.5 * edge
+    (ax, ay, az), (bx, by, bz), (dx, dy, dz) = _half_edges(camera, edge)
     reach_z = abs(dx) + abs(dy) + abs(dz)
     cx, cy = np.float32(camera.cx), np.float32(camera.cy)
     wide = np.float32(0.5 + camera.lateral_px) + SPARE
@@ -97,15 +98,22 @@ def outlines(camera, first, edge, out):
         out.near[lane] = z - reach_z
         out.far[lane] = z + reach_z
         out.middle[lane] = z
+        out.per_far[lane] = one / (z + reach_z)
     if camera.radial:
         _from_centre(camera, first, edge, out)
     _depths(camera, out)
 
 
 @njit(inline="always")
-def _half_edges(m, axis, scale):
-    """A voxel's half edges along one axis of the camera, times a scale, in float32."""
-    return np.float32(m[axis, 0] * scale), np.float32(m[axis, 1] * scale), np.float32(m[axis, 2] * scale)
+def _half_edges(camera, edge):
+    """A voxel's three half edges along each axis of the camera, x times fx and y times fy, in float32."""
+    m, half = camera.camera_from_world, 0.5 * edge
+    x, y = half * camera.fx, half * camera.fy
+    return (
+        (np.float32(m[0, 0] * x), np.float32(m[0, 1] * x), np.float32(m[0, 2] * x)),
+        (np.float32(m[1, 0] * y), np.float32(m[1, 1] * y), np.float32(m[1, 2] * y)),
+        (np.float32(m[2, 0] * half), np.float32(m[2, 1] * half), np.float32(m[2, 2] * half)),
+    )
 
 
 @uncounted(cache=True, error_model="numpy")
@@ -175,35 +183,87 @@ def _is_stopped(camera, texels, block, lane):
 
 
 @uncounted(cache=True, error_model="numpy", forceinline=True)
-def _settled(camera, texels, block, lane, stopped):
+def _some_meet(camera, block, lane, edge, pixels):
+    """Whether the widened cone of some pixels surely meets a voxel.
+
+    Its half edges, seen from as far away as its farthest corner, span a hexagon that lies in its outline. That and a
+    widened pixel have a point in common unless a line along a side of one of them parts them (separating axes).
+
+    Args:
+        camera: its record.
+        block, lane: outlines of the voxels, and which of them.
+        edge: of a voxel [m].
+        pixels: a word of 8 x 8, and column and row of the first.
+    """
+    (ax, ay, az), (bx, by, bz), (dx, dy, dz) = _half_edges(camera, edge)
+    u, v, per_far = block.u[lane], block.v[lane], block.per_far[lane]
+    x, y = u - np.float32(camera.cx), v - np.float32(camera.cy)
+    au, av = (ax - x * dx) * per_far, (bx - y * dx) * per_far
+    bu, bv = (ay - x * dy) * per_far, (by - y * dy) * per_far
+    cu, cv = (az - x * dz) * per_far, (bz - y * dz) * per_far
+    wide = np.float32(0.5 + camera.lateral_px) - SPARE
+    # how far a pixel's middle may be from the voxel's along the normal of each side
+    ab, ac, bc = abs(au * bv - av * bu), abs(au * cv - av * cu), abs(bu * cv - bv * cu)
+    of_a, of_b, of_c = (
+        ab + ac + wide * (abs(au) + abs(av)),
+        ab + bc + wide * (abs(bu) + abs(bv)),
+        ac + bc + wide * (abs(cu) + abs(cv)),
+    )
+    across, down = abs(au) + abs(bu) + abs(cu) + wide, abs(av) + abs(bv) + abs(cv) + wide
+    rest, left, top = pixels
+    while rest:
+        n = lowest_bit(rest)
+        rest &= rest - np.uint64(1)
+        du, dv = np.float32(left + (n & 7)) - u, np.float32(top + (n >> 3)) - v
+        if (
+            (abs(du) <= across)
+            & (abs(dv) <= down)
+            & (abs(au * dv - av * du) <= of_a)
+            & (abs(bu * dv - bv * du) <= of_b)
+            & (abs(cu * dv - cv * du) <= of_c)
+        ):
+            return True
+    return False
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _settled(camera, texels, block, lane, edge, stopped):
     """What the rectangle about a voxel settles: SEEN, NOTHING_SAID, or UNKNOWN.
 
     Args:
         camera, texels: its record; those of all cameras.
         block: outlines of its voxels.
         lane: of the voxel.
+        edge: of a voxel [m].
         stopped: whether it is known that the camera does not see through it.
     """
     left, right = np.int64(block.left[lane]), np.int64(block.right[lane])
     top, bottom = np.int64(block.top[lane]), np.int64(block.bottom[lane])
     if right - left >= MOST_PIXELS or bottom - top >= MOST_PIXELS:
         return UNKNOWN
-    clear_from, hidden_to = block.clear_from[lane], block.hidden_to[lane]
-    short, tell = np.uint64(0), np.uint64(0)
-    for column in range(left, right + 1, EIGHT):
-        begin = min(column, camera.width - EIGHT)
-        columns = _run(begin, column, right)
-        at = camera.first_texel + top * camera.width + begin
-        for _ in range(bottom - top + 1):
-            here = short_of(texels.trust_texels, at, clear_from) & columns
-            short |= here
-            tell |= telling(texels.doubt_texels, at, clear_from, hidden_to) & here
-            at += camera.width
-    if not short:
-        return SEEN
-    if tell:
-        return UNKNOWN
-    return NOTHING_SAID if stopped or _is_stopped(camera, texels, block, lane) else UNKNOWN
+    clear_from, between = block.clear_from[lane], (block.clear_from[lane], block.hidden_to[lane])
+    short, tell, width = np.uint64(0), np.uint64(0), camera.width
+    for row in range(top, bottom + 1, EIGHT):
+        last = bottom - row
+        for column in range(left, right + 1, EIGHT):
+            begin = min(column, width - EIGHT)
+            at = camera.first_texel + row * width + begin
+            columns = _run(begin, column, right) * IN_EACH_ROW
+            if not stopped:
+                short |= shorts_of(texels.trust_texels, at, width, last, clear_from) & columns
+            tell |= tellings_of(texels.doubt_texels, at, width, last, between) & columns
+    if stopped or not short or tell:
+        return UNKNOWN if tell and (stopped or short) else (NOTHING_SAID if stopped else SEEN)
+    if right - left < EIGHT and bottom - top < EIGHT:
+        # what is free no farther than before the voxel is not free beyond it, if it meets it at all
+        begin, last = min(left, width - EIGHT), bottom - top
+        at = camera.first_texel + top * width + begin
+        before = shorts_of(texels.trust_texels, at, width, last, block.hidden_to[lane])
+        before &= _run(begin, left, right) * (IN_EACH_ROW >> np.uint64(8 * (EIGHT - 1 - last)))
+        if before:
+            meets = _some_meet(camera, block, lane, edge, (before, begin, top))
+            return NOTHING_SAID if meets else UNKNOWN
+    return NOTHING_SAID if _is_stopped(camera, texels, block, lane) else UNKNOWN
 
 
 @uncounted(cache=True, error_model="numpy")
@@ -227,12 +287,12 @@ def _settle_few(camera, texels, box, stopped, voxel):
         _run(left, pixels.left, pixels.right),
         camera.first_texel + pixels.top * camera.width + left,
     )
-    short, tell, at = np.uint64(0), np.uint64(0), corner
-    for row in range(pixels.bottom - pixels.top + 1):
-        here = np.uint64(8 * row)
-        short |= (short_of(texels.trust_texels, at, depths.clear_from) & columns) << here
-        tell |= (telling(texels.doubt_texels, at, depths.clear_from, depths.hidden_to) & columns) << here
-        at += camera.width
+    width, last = camera.width, pixels.bottom - pixels.top
+    between = depths.clear_from, depths.hidden_to
+    # of rows past the last the texels of the last would be counted again
+    own = columns * (IN_EACH_ROW >> np.uint64(8 * (EIGHT - 1 - last)))
+    short = shorts_of(texels.trust_texels, corner, width, last, depths.clear_from) & own
+    tell = tellings_of(texels.doubt_texels, corner, width, last, between) & own
     tell &= short
     if not short:
         return THROUGH
@@ -262,6 +322,34 @@ def _settle_few(camera, texels, box, stopped, voxel):
 
 
 @uncounted(cache=True, error_model="numpy")
+def _is_silent(camera, texels, boxes):
+    """Whether no pixel that may see any voxel of a block says anything of what lies as deep as the block.
+
+    Then none of its voxels, all wholly in view, is disputed: their pixels are among these, their depths within its.
+    """
+    m, edge = camera.camera_from_world, 4.0 * boxes.edge
+    aside = 1.5 * boxes.edge
+    middle = moved(m, boxes.x + aside, boxes.y + aside, boxes.z + aside)
+    u0, u1, v0, v1 = outline_of(camera, middle, 0.5 * edge)
+    spare = np.float64(SPARE)
+    pixels = pixels_within(camera, (u0 - spare, u1 + spare, v0 - spare, v1 + spare))
+    if pixels.right - pixels.left >= MOST_OF_BLOCK or pixels.bottom - pixels.top >= MOST_OF_BLOCK:
+        return False
+    reach_z = 0.5 * edge * (abs(m[2, 0]) + abs(m[2, 1]) + abs(m[2, 2]))
+    depths = depths_of(camera, middle, edge, reach_z)
+    # a quantum more to both sides than of a voxel: rounding may go either way
+    between = np.uint32(min(depths.clear_from + 1, 65535)), np.uint32(max(np.int64(depths.hidden_to) - 1, 0))
+    for row in range(pixels.top, pixels.bottom + 1, EIGHT):
+        for column in range(pixels.left, pixels.right + 1, EIGHT):
+            begin = min(column, camera.width - EIGHT)
+            at = camera.first_texel + row * camera.width + begin
+            tell = tellings_of(texels.doubt_texels, at, camera.width, pixels.bottom - row, between)
+            if tell & (_run(begin, column, pixels.right) * IN_EACH_ROW):
+                return False
+    return True
+
+
+@uncounted(cache=True, error_model="numpy")
 def settle_block(camera, texels, asked, stopped, boxes, scratch):
     """As `kernels.pixel.settle_word`, faster.
 
@@ -275,6 +363,8 @@ def settle_block(camera, texels, asked, stopped, boxes, scratch):
     first, state = place_boxes(camera, boxes)
     by_outlines = state == INSIDE and camera.width >= EIGHT
     lanes, voxel = scratch
+    if by_outlines and stopped and _is_silent(camera, texels, boxes):
+        return answers
     if by_outlines:
         outlines(camera, first, boxes.edge, lanes)
     rest, through = asked, np.uint64(0)
@@ -285,7 +375,7 @@ def settle_block(camera, texels, asked, stopped, boxes, scratch):
         if not by_outlines:
             answers = add_answer(answers, bit, settle_voxel(camera, texels, box_in(boxes, lane), voxel))
             continue
-        known = _settled(camera, texels, lanes, lane, stopped)
+        known = _settled(camera, texels, lanes, lane, boxes.edge, stopped)
         if known == SEEN:
             through |= bit
         elif known == UNKNOWN:

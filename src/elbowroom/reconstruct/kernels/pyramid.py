@@ -25,54 +25,67 @@ def both_least(a, b):
 
 
 @njit(cache=True, nogil=True)
-def halve(fine, coarse):
-    """The next level of texels: each is the least of 2 x 2, of fewer at an odd image's edge."""
-    rows, columns = fine.shape
-    halves = fine.view(np.uint16)
+def halve(fine, origin, within, coarse):
+    """The next level of texels: each is the least of 2 x 2, of fewer at the edge of what is worked on.
+
+    Args:
+        fine: (rows, columns) of a level, or of a part of it.
+        origin: row and column of the level that come first in it.
+        within: first row, one past the last, first column, one past the last of the level that are worked on.
+        coarse: written, those of the next level that hold any of these.
+    """
+    top, bottom, left, right = within
     # two rows into one, both halves of a texel side by side, then pairs of texels, which lie in one word
-    least = np.empty((columns + 1) // 2 * 2, dtype=np.uint32)
-    least_halves, pairs = least.view(np.uint16), least.view(np.uint64)
+    least = np.full(2 * coarse.shape[1], NEUTRAL, dtype=np.uint32)
+    begin, end = left - origin[1], right - origin[1]
+    odd = left % 2
+    least_halves, pairs = least[odd : odd + right - left].view(np.uint16), least.view(np.uint64)
     for v in range(coarse.shape[0]):
-        upper, lower, out = halves[2 * v], halves[min(2 * v + 1, rows - 1)], coarse[v]
-        for n in range(2 * columns):
+        row = 2 * (top // 2 + v)
+        upper = fine[max(row, top) - origin[0], begin:end].view(np.uint16)
+        lower = fine[min(row + 1, bottom - 1) - origin[0], begin:end].view(np.uint16)
+        for n in range(upper.size):
             u = np.uint64(n)
             least_halves[u] = min(upper[u], lower[u])
-        for n in range(columns // 2):
+        out = coarse[v]
+        for n in range(out.size):
             u = np.uint64(n)
             out[u] = both_least(np.uint32(pairs[u]), np.uint32(pairs[u] >> np.uint64(32)))
-        if columns % 2:
-            out[coarse.shape[1] - 1] = least[columns - 1]
 
 
 @njit(cache=True, nogil=True)
-def windows_of(texels, across, windows):
-    """The least of 5 x 5 texels around each, of fewer at the edge.
+def windows_of(texels, origin, within, windows):
+    """The least of 5 x 5 texels around each, of fewer at the edge of what is worked on.
 
     Args:
-        texels: (rows, 2 columns) uint16 view of a level: both halves of a texel side by side.
-        across: (rows, 2 columns) uint16 scratch.
-        windows: (rows, 2 columns) uint16, written.
+        texels: (rows, columns) of a level, or of a part of it.
+        origin, within: as of `halve`.
+        windows: (rows, columns) of the level, written in what is worked on.
     """
-    rows, width = texels.shape
+    top, bottom, left, right = within
+    rows, columns = bottom - top, right - left
+    # a row with texels beside it on either side than which nothing is less; both halves side by side
+    padded = np.full(columns + 2 * REACH, NEUTRAL, dtype=np.uint32)
+    row, halves = padded[REACH : REACH + columns], padded.view(np.uint16)
+    across = np.empty((rows, 2 * columns), dtype=np.uint16)
     for v in range(rows):
-        source, target = texels[v], across[v]
-        for x in range(width):
-            target[x] = source[x]
-        for step in range(1, REACH + 1):
-            shift = 2 * step
-            for x in range(width - shift):
-                target[x] = min(target[x], source[x + shift])
-            for x in range(width - shift):
-                target[x + shift] = min(target[x + shift], source[x])
+        source, target = texels[top + v - origin[0], left - origin[1] : right - origin[1]], across[v]
+        for n in range(columns):
+            u = np.uint64(n)
+            row[u] = source[u]
+        for n in range(2 * columns):
+            u = np.uint64(n)
+            outer = min(halves[u], halves[u + np.uint64(8)])
+            inner = min(halves[u + np.uint64(2)], halves[u + np.uint64(6)])
+            target[u] = min(halves[u + np.uint64(4)], min(outer, inner))
     for v in range(rows):
-        out = windows[v]
-        first = across[max(v - REACH, 0)]
-        for x in range(width):
-            out[x] = first[x]
-        for other in range(max(v - REACH, 0) + 1, min(v + REACH + 1, rows)):
-            row = across[other]
-            for x in range(width):
-                out[x] = min(out[x], row[x])
+        out = windows[top + v, left:right].view(np.uint16)
+        above, over = across[max(v - 2, 0)], across[max(v - 1, 0)]
+        under, below = across[min(v + 1, rows - 1)], across[min(v + 2, rows - 1)]
+        here = across[v]
+        for n in range(2 * columns):
+            u = np.uint64(n)
+            out[u] = min(here[u], min(min(above[u], over[u]), min(under[u], below[u])))
 
 
 @njit(cache=True, nogil=True)
@@ -98,29 +111,36 @@ def squares_of(tiles, edge, squares):
 
 
 @njit(cache=True, nogil=True)
-def fill_levels(texels, camera, tiles, windows):
+def fill_levels(texels, camera, tiles, windows, within):
     """All levels of one camera: its tiles, and its windows from the lowest level on.
 
     Args:
         texels: (rows, columns) of level 0.
         camera: its record: where each level begins in `windows`.
-        tiles: (tiles,), written.
+        tiles: (rows / 4, columns / 4), rounded up, written.
         windows: of all cameras, written.
+        within: first row, one past the last, first column and one past the last of the pixels that are worked on, as
+            if they were all of the image. What stands above others is left as it is.
     """
-    fine = texels
+    top, bottom, left, right = within
+    if top >= bottom or left >= right:
+        return
+    fine, origin = texels, (0, 0)
     for level in range(camera.levels):
         if level:
-            coarse = np.empty(((fine.shape[0] + 1) // 2, (fine.shape[1] + 1) // 2), dtype=np.uint32)
-            halve(fine, coarse)
-            fine = coarse
-        rows, columns = fine.shape
+            # a texel more than half of them, where the first is an odd one
+            above = top // 2, (bottom + 1) // 2, left // 2, (right + 1) // 2
+            coarse = np.empty((above[1] - above[0], above[3] - above[2]), dtype=np.uint32)
+            halve(fine, origin, (top, bottom, left, right), coarse)
+            top, bottom, left, right = above
+            fine, origin = coarse, (top, left)
         if level == TILE_LEVEL:
-            tiles[:] = fine.reshape(rows * columns)
+            for v in range(fine.shape[0]):
+                tiles[top + v, left:right] = fine[v]
         if level >= camera.lowest:
-            first = camera.level_first[level]
-            out = windows[first : first + rows * columns].reshape((rows, columns))
-            across = np.empty((rows, 2 * columns), dtype=np.uint16)
-            windows_of(fine.view(np.uint16), across, out.view(np.uint16))
+            first, stride = camera.level_first[level], camera.level_stride[level]
+            out = windows[first : first + bottom * stride].reshape((bottom, stride))
+            windows_of(fine, origin, (top, bottom, left, right), out)
 
 
 @njit(cache=True, nogil=True)

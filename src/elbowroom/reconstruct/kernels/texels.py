@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.bits import uncounted
 from elbowroom.geometry.kernels.noise import DepthMargin, in_float32, margin_at
 
 NO_RETURN = 65535
@@ -30,7 +31,7 @@ class Counting(NamedTuple):
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def texels_of_frame(bounds_m, counting, model_m, trust, doubt):
+def texels_of_frame(bounds_m, counting, model_m, own, within):
     """Level 0: each pixel's bounds in quanta; no return where a depth is not a number within the camera's range.
 
     Pixels that see the machine are marked (`mark_row`). Arrays by pixel, (rows, columns).
@@ -39,42 +40,46 @@ def texels_of_frame(bounds_m, counting, model_m, trust, doubt):
         bounds_m: least and greatest depth, two arrays [m].
         counting: of the camera.
         model_m: as `machine.explain` gives it [m], or of no size: nothing is explained.
-        trust, doubt: written; doubt may be of no size where nothing is explained.
+        own: trust and doubt, written; doubt may be of no size where nothing is explained.
+        within: first row, one past the last, first column and one past the last of the pixels that are worked on.
 
     Returns:
         First row, one past the last, first column and one past the last of a rectangle about all marked pixels.
     """
     least_m, greatest_m = bounds_m
-    rows, columns = least_m.shape
-    top, bottom, left, right = rows, 0, columns, 0
-    for v in range(rows):
-        if doubt.shape[0]:
-            start, stop = texels_of_row((least_m[v], greatest_m[v]), counting, model_m, v, trust[v], doubt[v])
+    trust, doubt = own
+    first_row, last_row, first, end = within
+    top, bottom, left, right = last_row, first_row, end, first
+    for v in range(first_row, last_row):
+        depths = least_m[v, first:end], greatest_m[v, first:end]
+        if not doubt.shape[0]:
+            _bounds_of_row(depths[0], depths[1], counting, trust[v, first:end])
+            continue
+        texels_of_row(depths, counting, trust[v, first:end], doubt[v, first:end])
+        if model_m.shape[0]:
+            start, stop = mark_row(model_m[v, first:end], counting, trust[v, first:end], doubt[v, first:end])
             if start < stop:
-                top, bottom, left, right = min(top, v), v + 1, min(left, start), max(right, stop)
-        else:
-            _bounds_of_row(least_m[v], greatest_m[v], counting, trust[v])
+                top, bottom = min(top, v), v + 1
+                left, right = min(left, first + start), max(right, first + stop)
     return top, bottom, left, right
 
 
-@njit(nogil=True, error_model="numpy")
-def texels_of_row(bounds_m, counting, model_m, v, trust, doubt):
-    """One row of `texels_of_frame`; first column and one past the last of marked pixels, none if not before it.
+@uncounted(error_model="numpy")
+def texels_of_row(bounds_m, counting, trust, doubt):
+    """One row of `texels_of_frame`, without the machine.
 
     Args:
         bounds_m: least and greatest depth of the row [m].
-        counting, model_m: as there.
-        v: which row.
+        counting: of the camera.
         trust, doubt: of the row, written.
     """
     _bounds_of_row(bounds_m[0], bounds_m[1], counting, trust)
-    doubt[:] = trust
-    if model_m.shape[0]:
-        return mark_row(model_m[v], counting, trust, doubt)
-    return 0, 0
+    for n in range(trust.size):
+        u = np.uint64(n)
+        doubt[u] = trust[u]
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def _bounds_of_row(least_m, greatest_m, counting, texels):
     """Bounds of one row in quanta."""
     low, high = np.float32(counting.min_depth), np.float32(counting.max_depth)
@@ -103,7 +108,7 @@ def free_to_model(depth, counting):
     return np.uint32(np.int32(min(max(quanta, 0.0), float(FAR_CLIP))))
 
 
-@njit(cache=True, nogil=True)
+@uncounted(cache=True)
 def any_of(row, start, stop):
     """The bits that any number of a part of a row has.
 
@@ -113,11 +118,12 @@ def any_of(row, start, stop):
     """
     some = np.uint32(0)
     for n in range(start, stop):
-        some |= row[np.uint64(n)]
+        # kept a word of 32 bits: as one of 64, half as many are looked at in one step
+        some = np.uint32(some | row[np.uint64(n)])
     return some
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def mark_row(model, counting, trust, doubt):
     """Pixels of a row that see the machine, as `machine.explain` tells: `NEUTRAL` in `doubt`; in `trust`, those with a
     depth of the model are free up to it, and hidden behind it. First column and one past the last of runs with any.

@@ -79,6 +79,23 @@ def test_the_camera_that_is_named_is_the_one_whose_image_fits_best():
     assert found is not None and found.cause is HealthCause.CAMERA_SWAPPED and "camera c2" in found.text
 
 
+@given(st.floats(0.0, 1.0), st.floats(0.0, 1.0))
+def test_an_image_is_anothers_only_where_it_agrees_with_that_one_twice_as_well_as_with_its_own(
+    own, others_share
+):
+    """Columns that agree with neither, with its own, with the other, or with both."""
+    column = np.arange(64) / 64
+    old, other = np.full((48, 64), 2.0), np.full((48, 64), 3.0)
+    new = np.where(column[None, :] < own, 2.0, 5.0 + np.sin(np.arange(48 * 64).reshape(48, 64)))
+    other = np.where(column[None, ::-1] < others_share, new, other)
+    thumbs = [Thumb.of(np.float32(image)) for image in (new, old, other)]
+    pairs = pairs_of(thumbs[0], thumbs[1], STRETCH)
+    found = oddity(thumbs[0], thumbs[1], pairs, {"c1": thumbs[2]})
+    agreeing = pairs_of(thumbs[0], thumbs[2], STRETCH).agreeing
+    is_anothers = agreeing >= 0.6 and pairs.agreeing <= agreeing / 2
+    assert (found is not None and found.cause is HealthCause.CAMERA_SWAPPED) == is_anothers
+
+
 @settings(max_examples=50)
 @given(st.integers(0, 40), st.integers(8, 24), st.integers(20, 48), st.floats(0.4, 1.4))
 def test_a_person_who_walks_by_is_nothing_odd(at, wide, high, depth_m):
