@@ -15,7 +15,7 @@ from elbowroom.sensing import Snapshot
 
 KIND = "machine"
 MOST, MANY = 0.5, 0.1
-"""Where so many of the pixels see through it, it stops; from the lesser share on, where several links are not there."""
+"""Where so many of the pixels see through it, its base is doubted first; from the lesser share on it stops."""
 FITS = 0.1
 """Another place of the base is named where so many of the pixels still see through the machine, at most."""
 
@@ -25,8 +25,8 @@ def machine_there(
 ) -> tuple[Finding, ...]:
     """A finding where cameras see through links of the machine: a verdict would be on another machine.
 
-    It stops where two cameras or more see through most of the machine, or through several links. One link may be of
-    glass, or was taken off: that is a warning.
+    It stops where two cameras or more see through several links, or through all that they should see. One link may be
+    of glass, was taken off, or is the hull of a frame that is mostly open: that is a warning.
 
     Args:
         machine: where it is said to be.
@@ -50,7 +50,8 @@ def machine_there(
     found = seen_if(machine)
     if not found.links:
         return _unseen(machine, found) or _a_little(machine, found)
-    stops = found.cameras > 1 and (found.share >= MOST or (len(found.links) > 1 and found.share >= MANY))
+    several = len(found.links) > 1 and found.share >= MANY
+    stops = found.cameras > 1 and (several or found.links == found.shown)
     return (Finding(KIND, found.links, _text(machine, found, seen_if), stops),)
 
 
