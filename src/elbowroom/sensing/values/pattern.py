@@ -57,4 +57,4 @@ def _is_comb(here: NDArray[np.float32], beside: NDArray[np.float32]) -> bool:
     one, other = here > 0, beside > 0
     some = np.count_nonzero(one | other)
     alone = np.count_nonzero(one ^ other)
-    return some >= LEAST_PIXELS and alone >= ONE_OF_TWO * some
+    return bool(some >= LEAST_PIXELS and alone >= ONE_OF_TWO * some)
