@@ -96,6 +96,13 @@ def test_the_excess_of_a_model_is_said_by_link(images, explained):
     assert [one.link for one in found] == ["c"]
     # the C stands 50 mm within the box about it
     assert 0.03 < found[0].excess_m < 0.07 and found[0].share > 0.3
+    # each camera's body is where the machine was at its own time
+    here, there, both = [JOINTS] * len(cameras), [{"turn": 0.2}] * len(cameras), (*cameras, *cameras)
+    one, other, still = (
+        excess_of(explained["collision"], both, [*given, *given], joints)
+        for joints in (here + there, there + here, here + here)
+    )
+    assert one == other != still
     assert excess_of(explained["auto"], cameras, given, [JOINTS] * len(cameras)) == ()
     nothing = [np.zeros_like(depth) for depth in given]
     assert excess_of(explained["collision"], cameras, nothing, [JOINTS] * len(cameras)) == ()

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from elbowroom.guard.control import ask
 from reference.browser import NO_WEBGL, browsers, serious, tab
 from reference.page_controls import PASS_S, controlled_page
 
@@ -29,6 +30,8 @@ def run():
 @pytest.fixture
 def page(browser, run):
     run.failing = False
+    run.until(lambda: len(run.held) > 2)
+    ask(run.gate.folder, "reset")  # the first run wants one, and so does one after silence
     for made in tab(browser(*NO_WEBGL)):
         made.goto(run.url)
         made.wait_for_selector("#controls:not([hidden])")
@@ -103,6 +106,14 @@ def test_it_creeps_while_the_button_is_pressed_and_no_longer(page, run):
     run.until(lambda: run.creeps)
     page.keyboard.up("Space")
     assert lasts_s(run, time.monotonic()) <= COUNTS_S + PASS_S
+
+
+def test_the_page_may_ask_by_each_of_its_names(page, run):
+    page.goto(run.url.replace("127.0.0.1", "localhost"))
+    page.wait_for_selector("#use:visible:not([disabled])")
+    give(page, run.token)
+    hold(page, run)
+    page.mouse.up()
 
 
 def test_it_ends_when_the_tab_closes(page, run, browser):

@@ -15,7 +15,7 @@ from elbowroom.sensing import Snapshot
 
 KIND = "machine"
 MOST, MANY = 0.5, 0.1
-"""Where so many of the pixels see through it, it stops; from the lesser share on, where several links are not there."""
+"""Where so many of the pixels see through it, its base is doubted first; from the lesser share on it stops."""
 FITS = 0.1
 """Another place of the base is named where so many of the pixels still see through the machine, at most."""
 
@@ -25,8 +25,9 @@ def machine_there(
 ) -> tuple[Finding, ...]:
     """A finding where cameras see through links of the machine: a verdict would be on another machine.
 
-    It stops where two cameras or more see through most of the machine, or through several links. One link may be of
-    glass, or was taken off: that is a warning.
+    It stops where two cameras or more see through several links, or through all that they should see, or where all are
+    seen with another base. One link may be of glass, was taken off, or is the hull of a frame that is mostly open: that
+    is a warning.
 
     Args:
         machine: where it is said to be.
@@ -50,8 +51,10 @@ def machine_there(
     found = seen_if(machine)
     if not found.links:
         return _unseen(machine, found) or _a_little(machine, found)
-    stops = found.cameras > 1 and (found.share >= MOST or (len(found.links) > 1 and found.share >= MANY))
-    return (Finding(KIND, found.links, _text(machine, found, seen_if), stops),)
+    better = _better(machine, found, seen_if)
+    several = len(found.links) > 1 and found.share >= MANY
+    stops = found.cameras > 1 and (several or bool(better) or found.links == found.shown)
+    return (Finding(KIND, found.links, _text(machine, found, better), stops),)
 
 
 def _unseen(machine: Machine, found: Elsewhere) -> tuple[Finding, ...]:
@@ -77,29 +80,35 @@ def _a_little(machine: Machine, found: Elsewhere) -> tuple[Finding, ...]:
     return (Finding(KIND, (machine.name,), text, stops=False),)
 
 
-def _text(machine: Machine, found: Elsewhere, seen_if: Callable[[Machine], Elsewhere]) -> str:
+def _text(machine: Machine, found: Elsewhere, better: str) -> str:
     links = f"link {found.links[0]}" if len(found.links) == 1 else f"links {', '.join(found.links)}"
     return (
         f"{links} of {machine.name}: cameras see through the place where it is said to be, {found.share:.0%} of "
         f"{found.through + found.agree} pixels through the machine: verdicts would be on a machine that stands "
-        f"elsewhere. {_likely(machine, found, seen_if)}"
+        f"elsewhere. {better or _likely(found)}"
     )
 
 
-def _likely(machine: Machine, found: Elsewhere, seen_if: Callable[[Machine], Elsewhere]) -> str:
-    if found.links != found.shown and found.shown[0] not in found.links and found.share < MOST:
+def _likely(found: Elsewhere) -> str:
+    """What to check where no other place of the base fits."""
+    if found.shown[0] not in found.links and found.share < MOST:
         return (
             "Where the machine begins it is seen: check the joints' values, their order, unit, sign and zero, and at "
             "which time they were so; or what is mounted on it"
         )
-    for words, base in _other_bases(machine):
-        other = seen_if(machine.at(base))
-        if not other.links and other.share <= FITS and other.agree > found.agree:
-            return f"With {words} {other.share:.0%} would: correct world_from_base, or give all poses in its world"
     return (
         "Check world_from_base, the world that all camera poses are given in, and the joints' values, their order, "
         "unit and sign"
     )
+
+
+def _better(machine: Machine, found: Elsewhere, seen_if: Callable[[Machine], Elsewhere]) -> str:
+    """A place of the base at which all links are seen, in words; "": none of those that are tried."""
+    for words, base in _other_bases(machine):
+        other = seen_if(machine.at(base))
+        if not other.links and other.share <= FITS and other.agree > found.agree:
+            return f"With {words} {other.share:.0%} would: correct world_from_base, or give all poses in its world"
+    return ""
 
 
 def _other_bases(machine: Machine) -> Iterator[tuple[str, NDArray[np.float64]]]:

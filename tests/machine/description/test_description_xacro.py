@@ -122,3 +122,26 @@ def test_places_in_an_expanded_file_are_said_to_be_such(tmp_path):
                 f"<xacro:property name='l' value='2'/><link name='a'>{BOX}</link>".replace("1 1 1", "${l} 1"),
             )
         )
+
+
+def test_an_argument_that_the_file_does_not_have_is_refused_with_those_that_it_has(tmp_path):
+    """A tool that is asked for by a misspelt argument would be left off without a word."""
+    part = f"<link name='tool'>{BOX}</link><joint name='j' type='fixed'><parent link='a'/><child link='tool'/></joint>"
+    path = written(
+        tmp_path,
+        "<xacro:arg name='with_tool' default='false'/>"
+        f"<link name='a'>{BOX}</link><xacro:if value='$(arg with_tool)'>{part}</xacro:if>",
+    )
+    assert Machine.from_urdf(path, xacro_arguments={"with_tool": "true"}).checked_links == ("a", "tool")
+    with pytest.raises(MachineError, match="the file has no argument tool; arguments are with_tool"):
+        Machine.from_urdf(path, xacro_arguments={"tool": "true"})
+
+
+def test_a_file_that_only_defines_macros_is_named_as_such(tmp_path):
+    macro = f"<xacro:macro name='arm' params='prefix'><link name='${{prefix}}a'>{BOX}</link></xacro:macro>"
+    with pytest.raises(
+        MachineError, match=r"only defines macros \(arm\) and calls none: the robot has no <link>"
+    ):
+        Machine.from_urdf(written(tmp_path, macro))
+    called = Machine.from_urdf(written(tmp_path, macro + "<xacro:arm prefix='l_'/>"))
+    assert called.checked_links == ("l_a",)

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from elbowroom.page.plan import drawn
-from elbowroom.page.plan.furniture import MOST_BYTES
 from elbowroom.page.plan.ground import Ground
 from elbowroom.page.plan.opened import open_plan
 from elbowroom.page.plan.room_file import write_room
 from elbowroom.page.plan.saved import kept
 from elbowroom.page.plan.session import Session
+from elbowroom.page.plan.uploads import limited
 from elbowroom.page.words import words_of
 from elbowroom.simulate.shapes import box, join
 from elbowroom.simulate.solid import Solid
@@ -211,9 +211,8 @@ def upload(panel, name: str, content: bytes) -> None:
     [
         # in several messages, each within what the door lets through
         ("broken.glb", lambda _: b"glTF nothing" * 200_000, "broken.glb"),
-        ("large.glb", lambda _: bytes(MOST_BYTES + 1), "at most 30 MB"),
-        ("millimetres.glb", lambda folder: chair(folder, 1000.0), "export it in metres"),
-        ("tiny.glb", lambda folder: chair(folder, 1e-3), "export it in metres"),
+        ("millimetres.glb", lambda folder: chair(folder, 1000.0), "900 m long"),
+        ("tiny.glb", lambda folder: chair(folder, 1e-3), "0.0009 m long"),
         ("nothing.glb", lambda _: glb_of(ASSET), "nothing.glb"),
         (
             "bare.glb",
@@ -238,6 +237,22 @@ def test_a_file_that_cannot_be_placed_is_said_and_the_work_is_kept(
     assert panel[1].evaluate("window.hit") is None and panel[0].locator("img[src=x]").count() == 0
 
 
+def test_a_file_that_is_too_large_is_said_and_the_next_one_is_taken(session, panel, tmp_path) -> None:
+    handlers = session.server._websock_server._incoming_handlers
+    before = dict(handlers)
+    limited(session.server, session._refused, 1_000_000)
+    try:
+        unfold(panel, "People and furniture", "Place a person")
+        upload(panel, "large.glb", bytes(1_100_000))
+        says(panel, "at most 1 MB")
+        assert not session.planner.layout.things
+        upload(panel, "chair.glb", chair(tmp_path))
+        waited(lambda: session.planner.layout.things)
+    finally:
+        handlers.update(before)
+    session.planner.remove(session.planner.layout.things[0].name)
+
+
 def test_names_with_html_in_them_are_shown_as_text(session, panel, tmp_path) -> None:
     unfold(panel, "People and furniture", "Place a person")
     upload(panel, f"{NASTY} 1.glb", chair(tmp_path, name=NASTY))
@@ -249,7 +264,6 @@ def test_names_with_html_in_them_are_shown_as_text(session, panel, tmp_path) -> 
 
 
 def test_a_plan_that_is_no_site_is_said_and_the_work_is_kept(session, panel) -> None:
-    frame, _ = panel
     layout = session.planner.layout
     centre = next(placed.camera for placed in layout.cameras if placed.name == "a").world_from_camera.copy()
     centre[:3, 3] = (0.8, 0.8, 0.8)  # within the shelf
@@ -260,9 +274,10 @@ def test_a_plan_that_is_no_site_is_said_and_the_work_is_kept(session, panel) -> 
     waited(lambda: session.newest.figures is not None and session.newest.layout is session.planner.layout)
     while session.planner.layout.cameras:
         session.planner.remove_camera(session.planner.layout.camera_names[0])
+    before = {path: path.read_bytes() for path in session.out.parent.glob("*.yaml")}
     click(panel, "Save as site file")
-    waited(lambda: "nothing yet" not in session.panel.at["message"].content)
-    assert not (session.out.parent / "planned.yaml").exists() or frame.get_by_text("Saved as").count()
+    says(panel, "a site needs one at least")
+    assert {path: path.read_bytes() for path in session.out.parent.glob("*.yaml")} == before
     while not session.planner.layout.cameras or len(session.planner.layout.cameras) < len(layout.cameras):
         session.planner.undo()
 

@@ -86,6 +86,25 @@ def test_an_exact_number_amid_one_image_alone_may_be_a_surface_and_of_two_is_non
         assert tuple(name for each in found if each.kind == "sentinel" for name in each.about) == told
 
 
+def test_a_picture_of_8_bits_that_was_scaled_is_said_and_finer_units_are_not():
+    scene = room.scene(noise_m=0.003)
+    coarse = {name: (raw // 25 * 25).astype(np.uint16) for name, raw in scene.codes.items()}
+    (found,) = replace(scene, codes=coarse).findings()
+    assert (found.kind, found.stops) == ("steps", False) and "multiples of 25 mm" in found.text
+    for unit_m in (0.01, 0.005, 0.00025):
+        assert not any(found.kind == "steps" for found in room.scene(unit_m=unit_m).findings())
+
+
+@pytest.mark.parametrize("cut", [np.s_[1::2], np.s_[::2], np.s_[:, 1::2], np.s_[:, ::2]])
+def test_every_second_row_or_column_without_a_return_is_said(cut):
+    scene = room.scene(noise_m=0.003)
+    codes = {name: raw.copy() for name, raw in scene.codes.items()}
+    for raw in codes.values():
+        raw[cut] = 0
+    found = [found for found in replace(scene, codes=codes).findings() if found.kind == "rows"]
+    assert found and not found[0].stops and "every second" in found[0].text
+
+
 def test_a_wall_that_fills_the_image_is_one_only_for_a_camera_that_faces_it():
     facing = room.camera_at("one", (0.0, 0.0, 1.4), (1.0, 0.0, 1.4))
     assert look_at_images(room.GRID, [facing], [DepthFrame("one", 0, np.full((120, 160), 1.8))]) == ()

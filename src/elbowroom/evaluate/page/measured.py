@@ -34,6 +34,7 @@ DUE = (
     Due("space_hz", "≥", 9.5, where(part="updates"), "blocked space, a second"),
     Due("joints_hz", "≥", 29.0, where(part="updates"), "joints, a second"),
     Due("sentence_ms", "≤", 200.0, where(part="click"), "click to sentence, what would change it in it"),
+    Due("worst_ms", "≤", 200.0, where(part="click"), "the same, worst"),
     Due("let_in", "≤", 0, where(part="attack"), "let in"),
     Due("later_ms", "≤", 5.0, where(part="flooded"), "p99 of the cycle, later while attacked"),
     Due("size_mb", "≤", 10.0, where(part="report"), "a report of 20 s"),

@@ -56,7 +56,7 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
         raise MachineError(f"{path}: {size:,} bytes, a URDF may have {MAX_URDF_BYTES:,}")
     report = Report(path)
     root = _parsed(path.read_bytes(), report)
-    sign = xacro.first_sign(root)
+    written, sign = root, xacro.first_sign(root)
     if sign is not None:
         text = xacro.expanded(path, report.said(sign.element, sign.text), packages, xacro_arguments)
         report.expanded, report.lines_before = True, 0
@@ -64,6 +64,7 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
         left = xacro.first_sign(root)
         if left is not None:
             raise report.error(left.element, f"{left.text}, also after xacro expanded the file")
+        _require_a_call(written, root, report)
     elif xacro_arguments:
         raise MachineError(f"{path}: arguments of xacro are given, and nothing in the file is xacro")
     if tag_of(root) != "robot":
@@ -73,6 +74,22 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
             + (f"; {hint}" if hint else "")
         )
     return Document(root, report)
+
+
+def _require_a_call(written: etree._Element, root: etree._Element, report: Report) -> None:
+    """Refuses a file that defines macros and calls none: the robot is in another file.
+
+    Args:
+        written: the file's outermost element, before it was expanded.
+        root: and after that.
+        report: names the file.
+    """
+    macros = [element.get("name") for element in written.iter(etree.Element) if tag_of(element) == "macro"]
+    if macros and not any(tag_of(child) == "link" for child in root.iterchildren(etree.Element)):
+        raise MachineError(
+            f"{report.path}: only defines macros ({', '.join(map(str, macros))}) and calls none: the robot has no "
+            "<link>. Give the file that includes this one and calls them"
+        )
 
 
 def _parsed(content: bytes, report: Report) -> etree._Element:

@@ -73,9 +73,10 @@ def expanded(path: Path, sign: str, packages: Packages, arguments: Mapping[str, 
             f"{install_command('xacro')}"
         ) from None
     missing_packages: list[MachineError] = []
+    given = _Arguments({name: str(value) for name, value in arguments.items()})
     try:
         with _finding(packages, missing_packages):
-            document = xacro.process_file(str(path), mappings={k: str(v) for k, v in arguments.items()})
+            document = xacro.process_file(str(path), mappings=given)
     except ExpatError as error:
         raise MachineError(f"{path}: xacro cannot expand it: not XML: {error}") from error
     except (
@@ -86,7 +87,29 @@ def expanded(path: Path, sign: str, packages: Packages, arguments: Mapping[str, 
         missing = re.search(r"Undefined substitution argument (\w+)", str(error))
         hint = f"; give {missing[1]} in xacro_arguments" if missing else ""
         raise MachineError(f"{path}: xacro cannot expand it: {' '.join(str(error).split())}{hint}") from error
+    for name in arguments:
+        if name not in given.asked:
+            known = ", ".join(sorted(given.asked)) or "none"
+            raise MachineError(
+                f"{path}: xacro_arguments: the file has no argument {name}; arguments are {known}"
+            )
     return bytes(document.toprettyxml(indent="  ", encoding="utf-8"))
+
+
+class _Arguments(dict[str, str]):
+    """Values of arguments, and the names that the files ask for: those that they declare or use."""
+
+    def __init__(self, given: Mapping[str, str]) -> None:
+        super().__init__(given)
+        self.asked: set[str] = set()
+
+    def __contains__(self, name: object) -> bool:
+        self.asked.add(str(name))
+        return super().__contains__(name)
+
+    def __getitem__(self, name: str) -> str:
+        self.asked.add(name)
+        return super().__getitem__(name)
 
 
 @contextmanager

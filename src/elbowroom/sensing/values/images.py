@@ -8,6 +8,7 @@ from elbowroom.sensing.frame import DepthFrame
 from elbowroom.sensing.values.amid import look_amid
 from elbowroom.sensing.values.content import look_at_content
 from elbowroom.sensing.values.inverse import look_at_inverses
+from elbowroom.sensing.values.pattern import look_at_patterns
 from elbowroom.sensing.values.sentinel import look_at_sentinels
 from elbowroom.sensing.values.thinned import Thinned, thinned
 from elbowroom.sensing.values.together import together
@@ -53,6 +54,7 @@ def found_in(images: Sequence[Thinned], grid: VoxelGrid, *, of_all: bool = True)
         return []
     findings = look_at_content(images, of_all=of_all)
     if of_all:
+        findings += look_at_patterns(images)
         findings += look_at_inverses(_returning(_without(images, findings)))
     findings += look_at_sentinels(_returning(_without(images, findings)), grid)
     if not of_all:

@@ -46,7 +46,7 @@ def _copied(cameras: Sequence[DepthCamera]) -> list[Finding]:
     """Cameras that are said to be at one and the same place, to the last digit: a pose that was copied."""
     by_pose: dict[bytes, list[str]] = {}
     for camera in cameras:
-        by_pose.setdefault(camera.world_from_camera.tobytes(), []).append(camera.name)
+        by_pose.setdefault((np.round(camera.world_from_camera, 9) + 0.0).tobytes(), []).append(camera.name)
     return [
         Finding(
             COPIED,
