@@ -17,7 +17,7 @@ from result_tables.robots import robot_tables
 from result_tables.service import service_tables
 from result_tables.skew import skew_tables
 from result_tables.space import room_tables, sevenscenes_tables
-from result_tables.speed import bench_tables, machine_tables, start_tables
+from result_tables.speed import bench_tables, machine_tables, parts_tables, start_tables
 from result_tables.verdicts import (
     alone_tables,
     cell_tables,
@@ -51,6 +51,7 @@ __all__ = [
     "malformed_tables",
     "own_links_tables",
     "page_tables",
+    "parts_tables",
     "path_tables",
     "placement_tables",
     "plan_table",

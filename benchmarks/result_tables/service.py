@@ -22,6 +22,8 @@ PASSES: dict[str, Cell] = {
     "worst left alone": of("alone_worst_ms", 1),
     "attacked": of("attacked_worst_ms", 1),
     "later": of("later_ms", 1, due=DUE),
+    "later, of a server that only closes": of("attacker_later_ms", 1),
+    "later than of that": of("service_later_ms", 1, due=DUE),
 }
 
 

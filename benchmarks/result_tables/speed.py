@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from elbowroom.evaluate.due import due_of
-from elbowroom.evaluate.speed import fine_machine, start
+from elbowroom.evaluate.speed import fine_machine, parts, start
 from elbowroom.evaluate.speed.bench import DUE
 from result_tables.cells import Cell, Row, centimetres, of, same, table
 
@@ -48,6 +48,21 @@ def start_tables(rows: Sequence[Row]) -> list[str]:
             "processor time, median ms": of("cpu_median_ms", 0),
             "before, median ms": of("before_ms", 0),
             "before, processor time ms": of("before_cpu_ms", 0),
+        },
+    )
+
+
+def parts_tables(rows: Sequence[Row]) -> list[str]:
+    """Times of the machine's parts of a pass, beside those of an earlier commit."""
+    return table(
+        rows,
+        {
+            **same("case", "threads", "rounds"),
+            "median ms": of("median_ms", 1, due=parts.DUE),
+            "99 % ms": of("p99_ms", 1),
+            "processor time, median ms": of("cpu_median_ms", 1),
+            "before, median ms": of("before_ms", 1),
+            "before, processor time ms": of("before_cpu_ms", 1),
         },
     )
 

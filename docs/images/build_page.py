@@ -8,10 +8,13 @@ import io
 import os
 import shutil
 import signal
+import socket
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from itertools import chain, repeat
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -24,6 +27,9 @@ from elbowroom.monitor.blackbox.configuration import plain_cycle
 from elbowroom.monitor.blackbox.recorder import Recorder
 from elbowroom.monitor.blackbox.recording import Recording
 from elbowroom.monitor.blackbox.sinks import WholeRun
+from elbowroom.monitor.gate.gate import Gate
+from elbowroom.monitor.gate.state import Rules
+from elbowroom.monitor.serving import Serving
 from elbowroom.motion import Level
 from elbowroom.page.opened import OpenedPage
 from elbowroom.page.page import Page
@@ -33,6 +39,7 @@ from elbowroom.page.replay.stops import stops_of
 from elbowroom.page.report.span import span_of
 from elbowroom.page.report.written import write_report
 from elbowroom.page.words import words_of
+from elbowroom.service.token import made_token
 from elbowroom.site import Site
 from elbowroom.sources import Room, open_room
 from elbowroom.sources.simulated import Simulated
@@ -49,7 +56,7 @@ def main() -> None:
     room = open_room(Site.simulated_room())
     passes, about = judged(room)
     with TemporaryDirectory() as folder, browser() as tab:
-        live(room, passes[about], tab)
+        live(room, passes, tab)
         path = Path(folder) / "run.mcap"
         record(room, passes, path)
         with Recording(path) as recording:
@@ -59,7 +66,7 @@ def main() -> None:
             write_report(report, judge, span_of(recording, about, 20.0), words_of("en"))
             tab.goto(report.as_uri())
             tab.wait_for_selector("#scene[data-drawn=yes]")
-            time.sleep(1.0)
+            settle(tab)
             keep(tab, "page_report")
 
 
@@ -76,33 +83,65 @@ def judged(room: Room) -> tuple[list[Pass], int]:
     return passes[-AROUND:], AROUND - 1
 
 
-def live(room: Room, done: Pass, tab: Any) -> None:
-    """The page of a run: as it is, why on a click, and when it is old."""
-    with OpenedPage(room, 0) as page:
+def live(room: Room, passes: list[Pass], tab: Any) -> None:
+    """The page of a run: as it is, why on a click, its controls, and when it is old."""
+    with TemporaryDirectory() as name, socket.create_server(("127.0.0.1", 0)) as free:
+        port, folder = free.getsockname()[1], Path(name)
+        free.close()
+        _live(room, passes, tab, (folder, port))
+
+
+def _live(room: Room, passes: list[Pass], tab: Any, served: tuple[Path, int]) -> None:
+    (folder, port), motions = served, passes[0].result.verdicts
+    gate = Gate(
+        folder / "gate", "room", Rules(tuple(verdict.motion.name for verdict in motions), 5_000_000_000)
+    )
+    token = made_token(folder / "token")
+    with OpenedPage(room, 0, service=port) as page:
         page.face.begin(room)
-        over = threading.Event()
+        over, controlled = threading.Event(), threading.Event()
+        url = page.said().removeprefix("page: ")
+        gate.begin()
+        serving = Serving(gate, port, folder / "token", page.origins)
 
         def run() -> None:
+            given = chain(passes, repeat(passes[-1]))
             while not over.wait(0.1):
+                done = next(given)
+                if controlled.is_set():
+                    done = replace(done, decision=gate.decide(done.result))
+                    serving.show(done)
                 page.face.show(done)
 
         thread = threading.Thread(target=run)
         thread.start()
-        tab.goto(page.said().removeprefix("page: "))
+        tab.goto(url)
         tab.wait_for_selector("body:not(.waiting)")
         tab.wait_for_selector("#scene[data-drawn=yes]")
-        time.sleep(6.0)
+        settle(tab, len(passes) * 0.1)
         keep(tab, "page_live")
         tab.click("#motions tr:has(.chip.stop) button")
         tab.wait_for_selector("#why[data-final=true]")
-        time.sleep(4.0)
+        settle(tab)
         keep(tab, "page_why")
+        serving.start()
+        controlled.set()
+        tab.wait_for_selector("#controls:not([hidden])")
+        tab.fill("#token", token)
+        tab.click("#use")
+        tab.hover("#hold")
+        tab.mouse.down()
+        tab.wait_for_selector("#controlsaid:has-text('Held')")
+        keep(tab.locator("#controls"), "page_controls")
+        tab.mouse.up()
         os.kill(page.pid, signal.SIGSTOP)
         time.sleep(2.5)
         keep(tab, "page_old")
         os.kill(page.pid, signal.SIGCONT)
         over.set()
         thread.join()
+        serving.end()
+        gate.end()
         page.face.end()
 
 
@@ -128,7 +167,8 @@ def replayed(recording: Recording, about: int, tab: Any) -> None:
     tab.goto(page.server.url)
     tab.wait_for_selector("body:not(.waiting)")
     tab.wait_for_selector("#scene[data-drawn=yes]")
-    time.sleep(6.0)
+    tab.wait_for_selector("#changes li")
+    settle(tab)
     keep(tab, "page_replay")
     over.set()
     thread.join()
@@ -147,6 +187,21 @@ def browser() -> Iterator[Any]:
         tab.set_default_timeout(60_000)
         yield tab
         opened.close()
+
+
+def settle(tab: Any, waits_s: float = 1.0) -> None:
+    """Waits until the room is drawn: three pictures of it in turn are alike.
+
+    Args:
+        tab: of the browser.
+        waits_s: before that [s].
+    """
+    time.sleep(waits_s)
+    until_s, alike, before = time.monotonic() + 90.0, 0, b""
+    while alike < 2 and time.monotonic() < until_s:
+        now = tab.locator("#scene").screenshot()
+        alike, before = (alike + 1 if now == before else 0), now
+        time.sleep(0.7)
 
 
 def keep(tab: Any, name: str) -> None:

@@ -68,6 +68,7 @@ def _plan(session: Session) -> None:
     planner.add_person((0.9, -0.9))
     planner.move("person 1", (0.9, -0.75), 2.2)
     planner.move_joint("larm", 0.35)
+    time.sleep(1.0)
     session.choose("cam02")
     _waited(lambda: _is_exact(session))
 
@@ -99,8 +100,13 @@ def _is_exact(session: Session) -> bool:
 
 
 def _kept(tab: object, name: str) -> None:
-    time.sleep(10.0)  # software drawing
-    tab.screenshot(path=str(HERE / name))  # type: ignore[attr-defined]
+    before, until = None, time.monotonic() + WAITS_S
+    while time.monotonic() < until:  # software drawing: until nothing changes for a while
+        time.sleep(3.0)
+        now = tab.screenshot(path=str(HERE / name))  # type: ignore[attr-defined]
+        if now == before:
+            break
+        before = now
     _smaller(HERE / name)
 
 

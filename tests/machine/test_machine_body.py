@@ -32,7 +32,7 @@ def covered(machine, where, grid, **more):
     return bits.unpack(body_words(machine, where, grid, **more), grid)
 
 
-@pytest.mark.parametrize("growth", [0.25, 0.4, 0.5, 0.8, 1.3])
+@pytest.mark.parametrize("growth", [0.25, 0.4, 0.5, 0.6, 0.8, 1.0, 1.3])
 @pytest.mark.parametrize("upper", [(1.0, 0.7, 1.4), (0.35, 0.05, 0.6)])
 def test_body_is_the_voxels_near_samples_one_by_one(arm, growth, upper):
     grid = grid_about(0.11, upper=upper)
@@ -41,6 +41,18 @@ def test_body_is_the_voxels_near_samples_one_by_one(arm, growth, upper):
     # half a micrometre is kept back for rounding
     expected = naive.body(samples, placed, grid, growth * 0.11 - 1e-6)
     assert np.array_equal(covered(arm, AT_REST, grid, growth_m=growth * 0.11), expected)
+
+
+@settings(max_examples=8, deadline=None)
+@given(joints, st.floats(0.3, 1.2), st.floats(0.08, 0.16))
+def test_body_is_the_voxels_near_samples_for_any_growth_and_voxel(arm, where, growth, edge):
+    grid = grid_about(edge, upper=(0.5, 0.3, 0.9))
+    samples = body_samples(arm, edge, unchecked=True)
+    placed = arm.world_from_link_array(arm.positions(where)[None])[0]
+    found = covered(arm, where, grid, growth_m=growth * edge)
+    # give or take what is kept back for rounding
+    assert not (naive.body(samples, placed, grid, growth * edge - 2e-6) & ~found).any()
+    assert not (found & ~naive.body(samples, placed, grid, growth * edge)).any()
 
 
 @settings(max_examples=6, deadline=None)

@@ -11,6 +11,7 @@ from elbowroom.errors import CameraError, FrameError, MachineError
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, bits, parallel
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.machine import Machine, body_words, ceiling_c_arm, explain_frames
+from elbowroom.machine.kernels.returns import least_from, most_to
 from elbowroom.machine.rasterise import mesh_of, rasterise
 from reference import machine_twins as naive
 
@@ -94,8 +95,19 @@ def test_pixels_are_explained_as_one_by_one(arm, view, noise, kind):
     assert (expected > 0).sum() > 100
     # only what lies on the very edge of the tolerance may differ
     assert ((found > 0) != (expected > 0)).sum() <= 1
+    # specks amid what is explained or farther, and what is not explained
+    assert ((found < -1e-5) != (expected < -1e-5)).sum() <= 1
+    assert ((found < 0) != (expected < 0)).sum() <= 1
     both = (found > 0) & (expected > 0)
     assert np.allclose(found[both], expected[both], rtol=1e-6)
+
+
+@given(st.floats(0, 1e7))
+def test_limits_are_the_float32_numbers_next_to_them(bound):
+    """So that a float32 depth is compared with them as with the limits themselves."""
+    low, high = np.float32(least_from(bound)), np.float32(most_to(bound))
+    assert float(np.nextafter(low, np.float32(-1))) < bound <= float(low)
+    assert float(high) <= bound < float(np.nextafter(high, np.float32(2e7)))
 
 
 @pytest.mark.parametrize("kind", ["planar", "radial"])

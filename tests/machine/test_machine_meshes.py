@@ -52,6 +52,27 @@ def test_a_small_part_in_millimetres_is_out_of_proportion(tmp_path):
     assert long.checked_links == ("a", "b")
 
 
+def test_a_mesh_in_another_unit_is_refused_with_the_units_that_it_may_have(tmp_path):
+    said = r"50 m long.*centimetres: 0.01 0.5 m, inches: 0.0254 1.27 m"
+    with pytest.raises(MachineError, match=said):
+        Machine.from_urdf(urdf(tmp_path, stl_link(tmp_path, (50, 20, 20))))
+
+
+@pytest.mark.parametrize("kind", ["stl", "ply", "obj"])
+def test_a_mesh_with_a_corner_that_is_no_number_is_refused_and_not_read_without_it(tmp_path, kind):
+    box = trimesh.creation.box((0.3, 0.1, 0.1))
+    corners = box.vertices.copy()
+    corners[0, 0] = np.nan
+    trimesh.Trimesh(corners, box.faces, process=False, validate=False).export(tmp_path / f"a.{kind}")
+    with pytest.raises(MachineError, match=r"link a: .*no finite number"):
+        Machine.from_urdf(urdf(tmp_path, mesh_link(f"a.{kind}")))
+
+
+def test_a_scale_that_differs_much_between_axes_is_said(tmp_path):
+    with pytest.warns(MachineWarning, match="differs by a factor of 1000 between the axes"):
+        Machine.from_urdf(urdf(tmp_path, stl_link(tmp_path, (0.3, 0.1, 0.1), ' scale="1 1 0.001"')))
+
+
 def test_a_mesh_scaled_twice_is_said(tmp_path):
     with pytest.warns(MachineWarning, match="0.3 mm long; is its mesh scaled twice"):
         Machine.from_urdf(urdf(tmp_path, stl_link(tmp_path, (0.3, 0.1, 0.1), ' scale="0.001 0.001 0.001"')))

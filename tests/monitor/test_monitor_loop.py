@@ -11,6 +11,7 @@ from elbowroom.errors import FrameError, InputError
 from elbowroom.finding import Finding
 from elbowroom.geometry import VoxelGrid
 from elbowroom.monitor import Checks, Cycle, Health, Loop, Pass, cycle, loop
+from elbowroom.monitor.stages import uncollected
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.reconstruct import Terms
 from elbowroom.reconstruct.free_space import FreeSpace
@@ -147,6 +148,39 @@ def test_a_source_that_gives_nothing_ends_the_run_at_once():
     source, face = Script(), Listener()
     a_loop(source).run([face])
     assert (face.shown, face.ended, source.closed) == ([], 1, 1)
+
+
+class Collecting:
+    """A watch that notes whether garbage may be collected while it listens, and how much is never looked at."""
+
+    def __init__(self) -> None:
+        self.heard: list[tuple[bool, int]] = []
+
+    def hear(self, snapshot: Snapshot) -> Health:
+        self.heard.append((gc.isenabled(), gc.get_freeze_count()))
+        if len(self.heard) == 2:
+            raise RuntimeError("no such image")
+        return Health((), (), {})
+
+
+def test_no_garbage_is_collected_within_a_pass_and_what_was_there_before_is_not_looked_at():
+    watch = Collecting()
+    gc.enable()
+    a_loop(Script(at(1), at(2), at(3)), Checks(watch)).run([Listener()])
+    assert [may for may, _ in watch.heard] == [False] * 3
+    assert all(frozen > 1000 for _, frozen in watch.heard)
+    # afterwards it is as it was, also where a check raised
+    assert gc.isenabled() and gc.get_freeze_count() == 0
+
+
+def test_who_collects_no_garbage_is_left_so():
+    gc.disable()
+    try:
+        with uncollected():
+            assert not gc.isenabled()
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
 
 
 def test_one_pass_is_made_however_short_the_time():

@@ -13,6 +13,7 @@ from elbowroom.motion import Level
 from elbowroom.page import colours
 from elbowroom.page.scene.bodies import light_mesh, link_points
 from elbowroom.page.scene.near import MOST_PLACES, Planes, near_of
+from elbowroom.page.scene.scene import _labels_of
 from elbowroom.page.scene.ways import way_points
 from elbowroom.site import Site
 from reference.colour import APART, CONES, lab
@@ -108,3 +109,10 @@ def test_colours_that_mean_something_are_told_apart_by_every_eye(cones):
         assert np.linalg.norm(seen[one] - seen[other]) > APART, (one, other)
     well, ill = (lab(c, CONES[cones]) for c in (colours.CAMERA_WELL, colours.CAMERA_ILL))
     assert np.linalg.norm(well - ill) > APART
+
+
+def test_contacts_that_lie_close_together_share_a_label_and_lose_no_name():
+    a, b, c, d = (0.0, 0.0, 1.0), (0.1, 0.1, 1.0), (1.0, 0.0, 1.0), (0.0, 0.0, 1.19)
+    labels = _labels_of([("long +", a), ("larm +", c), ("carc +", b), ("path", d)])
+    assert labels == [("long +, carc +, path", a), ("larm +", c)]
+    assert _labels_of([]) == []

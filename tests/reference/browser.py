@@ -1,6 +1,7 @@
 """Debian's Chromium, without a screen, drawing by software."""
 
 import shutil
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BytesIO
@@ -63,6 +64,35 @@ def tab(browser, width: int = 1280, height: int = 800) -> Iterator:
     yield made
     context.close()
     assert errors == []
+
+
+def frames_go_by(frame, count: int = 2) -> None:
+    """Waits until so many pictures were drawn: on a busy computer that takes its time.
+
+    Args:
+        frame: a tab, or a frame of one.
+        count: of pictures.
+    """
+    for _ in range(count):
+        frame.evaluate("() => new Promise(done => requestAnimationFrame(() => done()))")
+
+
+def settled(page, locator, waits_s: float = 60.0) -> np.ndarray:
+    """What is on the screen once two pictures in turn are alike, shape (height, width, 3).
+
+    Args:
+        page: a tab.
+        locator: of what is looked at.
+        waits_s: it fails after so long [s].
+    """
+    until_s, before = time.monotonic() + waits_s, None
+    while time.monotonic() < until_s:
+        frames_go_by(page.frames[-1])
+        now = pixels_of(locator)
+        if before is not None and before.shape == now.shape and (before == now).all():
+            return now
+        before = now
+    raise AssertionError("pictures go on changing")
 
 
 def serious(page) -> list[str]:

@@ -29,6 +29,8 @@ from elbowroom.service.token import made_token
 
 pytest.importorskip("h11")
 MOTIONS = (Motion("slide", 1, 0.1), Motion("slide", -1, 0.1))
+PAGE = "http://127.0.0.1:8137"
+"""A page that may ask."""
 RULES = Rules(tuple(motion.name for motion in MOTIONS), 250_000_000, 20.0)
 
 
@@ -41,7 +43,7 @@ class Running:
         self.token = made_token(folder / "token")
         self.gate = Gate(folder / "gate", "test", RULES)
         self.gate.begin()
-        self.serving = Serving(self.gate, self.port, folder / "token")
+        self.serving = Serving(self.gate, self.port, folder / "token", (PAGE,))
         self.serving.start()
         self.passes = 0
         self.reached: list[str] = []
@@ -78,6 +80,17 @@ class Running:
         connection.close()
         is_json = answer.headers["content-type"] == "application/json"
         return answer.status, json.loads(data) if is_json else data
+
+    def headers(self, method: str, path: str, **headers: str) -> Any:
+        """Of an answer, with its status."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=5)
+        given = {"Host": f"127.0.0.1:{self.port}"} | {k.replace("_", "-"): v for k, v in headers.items()}
+        connection.request(method, path, None, given)
+        answer = connection.getresponse()
+        answer.read()
+        connection.close()
+        answer.headers.status = answer.status
+        return answer.headers
 
     def control(self, what: str, body: bytes | None = None, **headers: str) -> tuple[int, Any]:
         given = {"Authorization": f"Bearer {self.token}", "Content_Type": "application/json"} | headers
@@ -177,6 +190,38 @@ def test_a_wrong_token_a_foreign_origin_and_a_foreign_host_are_refused(running: 
     assert len(running.reached) == before
     status, _ = running.control("reset", Origin=f"http://127.0.0.1:{running.port}")
     assert status == 200
+
+
+def test_an_allowed_page_may_ask_and_read_and_no_other_page_may(running: Running) -> None:
+    asks = {"Origin": PAGE, "Access_Control_Request_Method": "POST"}
+    for path in ("/v1/reset", "/v1/hold", "/health/live"):
+        headers = running.headers("OPTIONS", path, **asks)
+        assert headers["access-control-allow-origin"] == PAGE and headers["vary"] == "origin"
+        assert headers["access-control-allow-headers"] == "authorization, content-type"
+    assert running.headers("OPTIONS", "/v1/other", **asks).status == 404
+    before = len(running.reached)
+    for origin in (
+        "http://evil.example",
+        "null",
+        f"{PAGE}.evil.example",
+        f"{PAGE}0",
+        PAGE.replace("127.0.0.1", "localhost"),
+        PAGE.replace("http", "https"),
+        f"{PAGE}/",
+    ):
+        for method in ("OPTIONS", "POST"):
+            headers = running.headers(method, "/v1/reset", Origin=origin)
+            assert headers.status == 403 and "access-control-allow-origin" not in headers
+    assert running.headers("OPTIONS", "/v1/reset").status == 405  # nobody may ask for nobody
+    assert "access-control-allow-origin" not in running.headers("GET", "/health/live")
+    assert "access-control-allow-origin" not in running.headers(
+        "GET", "/health/live", Origin=PAGE, Host="evil.example"
+    )
+    refused = running.headers("POST", "/v1/reset", Origin=PAGE)  # the page may read why
+    assert refused.status == 401 and refused["access-control-allow-origin"] == PAGE
+    assert "access-control-allow-credentials" not in refused
+    assert len(running.reached) == before
+    assert running.control("reset", Origin=PAGE)[0] == 200
 
 
 def test_a_request_that_was_heard_is_refused_when_it_comes_again(running: Running) -> None:

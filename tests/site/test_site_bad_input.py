@@ -124,6 +124,9 @@ def test_several_wrong_values_are_counted(folder, plain):
         ("a: &x 1\nb: *x\n", "line 2: alias *x"),
         ("a: !!python/object/apply:os.getcwd []", "could not determine a constructor"),
         ("? [1, 2]\n: 3\n", "is not a word"),
+        ("a: 1\nb: 0200", "line 2: 0200 would be read as 128"),
+        ("a: 1:30", "line 1: 1:30 would be read as 90"),
+        ("a: 1_0.5", "line 1: 1_0.5 would be read as 10.5"),
         ("a: 2001-99-99", "a value cannot be read"),
         ("a: \x00", "not YAML in UTF-8"),
         ("[" * 5000, "nested too deeply"),
@@ -133,11 +136,59 @@ def test_text_that_is_no_site_is_one_line(folder, text, expected):
     assert expected in refusal(folder.write(text))
 
 
+def test_text_in_utf_16_is_told_to_be_so(folder):
+    (folder.path / "site.yaml").write_bytes("name: a\n".encode("utf-16"))
+    assert "UTF-16; save it as UTF-8" in refusal(folder.path / "site.yaml")
+
+
+def test_numbers_as_people_write_them_are_numbers(folder, plain):
+    """Zero, decimals and exponents; a quoted name may be of digits."""
+    text = folder.write(plain).read_text().replace("name: north", 'name: "01"')
+    for written in ("0.1", ".1", "1e-1", "10e-2", "0.10"):
+        (folder.path / "site.yaml").write_text(text.replace("voxel_size_m: 0.1", f"voxel_size_m: {written}"))
+        site = Site.load(folder.path / "site.yaml")
+        assert site.grid().voxel_size_m == 0.1 and site.cameras()[0].name == "01"
+
+
+@pytest.mark.parametrize(
+    ("keys", "value", "expected"),
+    [
+        (
+            ["cameras", 0, "name"],
+            True,
+            "YAML reads on, off, yes and no as true and false: write it in quotes",
+        ),
+        (["cameras", 0, "name"], 1, "found 1, allowed: a valid string; write it in quotes"),
+        (["cameras", 0, "name"], "..", "a name that a folder can have"),
+        (["cameras", 0, "name"], "north ", "without blanks at its ends"),
+        (["grid", "voxel_size_m"], "0,04", "decimals have a dot"),
+        (["grid", "voxel_size_m"], "0.04", "write it without quotes"),
+        (["grid", "voxel_size_m"], "4 cm", "its unit is in the key's name"),
+        (["grid", "origin_m"], {"x": 1}, "a list"),
+        (["nothing_moves"], "yes", "true or false, without quotes"),
+    ],
+)
+def test_what_yaml_made_of_a_value_is_told_with_how_it_is_written(folder, plain, keys, value, expected):
+    assert expected in refusal(folder.write(changed(plain, keys, value)))
+
+
+def test_a_key_that_is_misspelt_is_told_before_the_one_that_is_missing_for_it(folder, plain):
+    plain["grid"]["voxel_size_mm"] = plain["grid"].pop("voxel_size_m") * 1000
+    assert "grid.voxel_size_mm: unknown key (did you mean voxel_size_m?)" in refusal(folder.write(plain))
+
+
+def test_a_comma_for_a_decimal_dot_in_braces_is_told(folder, plain):
+    text = folder.write(plain).read_text()
+    text = text.replace("fx: 8.0", "noise: {constant_m: 0,3}\n  fx: 8.0")
+    (folder.path / "site.yaml").write_text(text)
+    assert "decimals have a dot: 0.3, not 0,3" in refusal(folder.path / "site.yaml")
+
+
 def test_missing_and_endless_files(folder):
     assert "no such file; `elbowroom site new room.yaml`" in refusal(folder.path / "room.yaml")
     assert "is a folder; name the site file, such as" in refusal(folder.path)
     assert "at most 1,000,000 are read" in refusal(folder.write("# " + "x" * 1_000_000))
-    (folder.path / "binary.yaml").write_bytes(b"\xff\xfe\xff")
+    (folder.path / "binary.yaml").write_bytes(b"\xff\xff\xfe")
     assert "not YAML in UTF-8" in refusal(folder.path / "binary.yaml")
 
 

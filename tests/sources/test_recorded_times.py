@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from elbowroom.cli.site import site_app
@@ -226,6 +227,12 @@ def test_degrees_are_refused_where_radians_are_asked_and_read_where_they_are_sai
     assert last.joints == pytest.approx({"turn": 0.8727, "slide": 0.0}, abs=1e-4)
 
 
+def test_an_encoder_that_counts_whole_turns_is_told_from_degrees(with_arm):
+    for turns in (1, -1, 2):
+        far = with_arm(rows(EVEN, turn=lambda n, turns=turns: 0.05 * n + turns * 2 * np.pi))
+        assert f"that is {abs(turns)} whole turns off" in joints_refusal(far)
+
+
 def test_degrees_are_found_by_their_speed(with_arm, plain):
     """Within the limits as radians, but sixty times too fast: 30 degrees a second are no 30 rad/s."""
     plain["joints"] = {"turn": {"max_speed_deg_s": 12, "braking_time_s": 0.5}}
@@ -245,6 +252,8 @@ def test_columns_that_are_no_joints_are_left_out_and_a_missing_one_is_named(with
         "no column for joint slide (is it Slide?); columns are force, turn, Slide, gripper"
         in joints_refusal(with_arm(renamed))
     )
+    prefixed = with_foreign.replace("slide", "robot_1/slide").replace("turn", "robot_1/turn")
+    assert "no column for joint turn (is it robot_1/turn? rename one" in joints_refusal(with_arm(prefixed))
 
 
 @pytest.mark.parametrize(

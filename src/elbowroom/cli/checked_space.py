@@ -10,6 +10,8 @@ from elbowroom.cli.progress import Steps
 from elbowroom.machine import Machine
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.reconstruct import FreeSpace, warm_up
+from elbowroom.reconstruct.looking import refuse
+from elbowroom.reconstruct.machine_there import machine_there
 from elbowroom.sensing import Snapshot
 from elbowroom.sources import Room
 
@@ -33,6 +35,7 @@ def checked_space(
         warm_up(machine, [room.terms.detail])
         steps.begin("reading images")
         snapshot = room.snapshot(moment)
+        refuse(machine_there(machine, room.cameras, snapshot))
         steps.begin("reconstructing")
         space = room.space_of(snapshot)
         steps.begin(checking)

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from elbowroom.monitor import Gate
     from elbowroom.monitor.blackbox.recorder import Recorder
     from elbowroom.monitor.serving import Serving
+    from elbowroom.page.early import Early
     from elbowroom.page.opened import OpenedPage
     from elbowroom.sensing import MeantPaths
     from elbowroom.site import Site
@@ -196,7 +197,7 @@ def monitor(
 
     Not a certified safety function.
     """
-    positions = parse_joints(joints)
+    early, positions = _early(no_page), parse_joints(joints)
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
 
@@ -224,16 +225,33 @@ def monitor(
         recorder = recorder_of(room, record, black_box)
         decides = gate_of(room, gate, callback)
         serving = None if service is None else _serving(decides, service, token, service_origin or ())
-        pages = [] if no_page else [_page(shown, page_port, language)]
+        pages = [] if no_page else [_page(shown, (page_port, service), language, early)]
         pages += [_foxglove(shown, foxglove_port)] if foxglove else []
         _watch(shown, seconds, (json, out), Run(decides, recorder, _paths(path), serving, pages))
 
 
-def _page(room: "Room", port: int | None, language: str) -> "OpenedPage | str":
-    """The page of a run, not opened yet; or why there is none, a line."""
+def _early(no_page: bool) -> "Early | None":
+    """The process of the page, begun before all else; None: nobody wants one, or packages are missing."""
+    from elbowroom.page.early import early_page
+
+    return None if no_page else early_page()
+
+
+def _page(
+    room: "Room", ports: tuple[int | None, int | None], language: str, early: "Early | None"
+) -> "OpenedPage | str":
+    """The page of a run, not opened yet; or why there is none, a line.
+
+    Args:
+        room: that is watched.
+        ports: of the page, and of the control service; None: any, and that there is none.
+        language: of its words.
+        early: its process, if it was begun.
+    """
     from elbowroom.page.opened import OpenedPage, missing
 
-    return missing() or OpenedPage(room, port, language)
+    port, service = ports
+    return missing() or OpenedPage(room, port, language, service=service, early=early)
 
 
 def _foxglove(room: "Room", port: int) -> "OpenedPage | str":
@@ -369,6 +387,8 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
             faces.append(recorder)
             loop = replace(loop, checks=replace(loop.checks, looks=(*loop.checks.looks, recorder)))
         if run.serving is not None:
+            own = (origin for page in opened for origin in page.origins)
+            run.serving.origins = (*run.serving.origins, *own)
             run.serving.start()
             faces.append(run.serving)
         with asked_to_end() as is_over:

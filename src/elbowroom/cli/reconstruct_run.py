@@ -14,6 +14,7 @@ from elbowroom.monitor.rows import shares_pct
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.reconstruct import FreeSpace, warm_up
 from elbowroom.reconstruct.looking import found_at, found_in_space, refuse
+from elbowroom.reconstruct.machine_there import machine_there
 from elbowroom.sensing import Snapshot
 from elbowroom.site.notes import notes_of
 from elbowroom.sources import Room
@@ -49,6 +50,8 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
             snapshot = room.snapshot(moment)
             units_m = units_of(room.site, room.cameras)
             findings = found_at(room.grid, room.cameras, snapshot.frames, units_m, room.terms.margin)
+            if room.machine is not None:
+                findings = (*findings, *machine_there(room.machine, room.cameras, snapshot))
             refuse(findings)
             steps.begin("reconstructing")
             space = room.space_of(snapshot)

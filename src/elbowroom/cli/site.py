@@ -154,7 +154,8 @@ def _findings(site: "Site") -> dict[str, Any]:
 
 
 def _of_the_model(site: "Site", found: "Sequence[Finding]") -> "Sequence[Finding]":
-    """Links whose model is larger than the first moment of a recording shows them, if nothing there is wrong."""
+    """Links that a recording's first moment shows elsewhere, or smaller than their model; if nothing else stops."""
+    from elbowroom.reconstruct.machine_there import machine_there
     from elbowroom.reconstruct.model_findings import model_findings
     from elbowroom.sources import open_room
 
@@ -163,7 +164,13 @@ def _of_the_model(site: "Site", found: "Sequence[Finding]") -> "Sequence[Finding
         return ()
     room = open_room(site)
     snapshot = next(iter(room.source), None)
-    return () if snapshot is None else model_findings(machine, room.cameras, snapshot)
+    if snapshot is None:
+        return ()
+    there = machine_there(machine, room.cameras, snapshot)
+    return (
+        *there,
+        *([] if any(each.stops for each in there) else model_findings(machine, room.cameras, snapshot)),
+    )
 
 
 def _coverage(grid: "VoxelGrid", cameras: "Sequence[DepthCamera]") -> dict[str, float]:

@@ -25,7 +25,7 @@ from elbowroom.site import Site
 from elbowroom.sources import Room, open_room
 from elbowroom.sources.simulated import Simulated
 from elbowroom.view.draw.outline import triangles_of
-from elbowroom.view.draw.palette import CAMERA_INK, COLOURS, LEVEL_COLOURS, UNSEEN_IN_3D, Colour, Label
+from elbowroom.view.draw.palette import CAMERA_INK, IN_3D, LEVEL_COLOURS, Colour, Label
 from elbowroom.view.picture.fixed import MACHINE, machine_layer, measured_layer, people_layer, room_layer
 from elbowroom.view.picture.layer import Layer, Lines, Subject, Word
 from elbowroom.view.picture.picture import format_of, picture_of, save_picture
@@ -243,7 +243,7 @@ def _blocked(
     is_near = there.machine is not None and near_m > 0
     triangles = triangles_of(there.machine, there.joints) if there.machine is not None and is_near else None
     layers = list(blocked_layers(space, triangles, near_m))
-    colours = (COLOURS[Label.SURFACE], UNSEEN_IN_3D, COLOURS[Label.BLIND])
+    colours = (IN_3D[label] for label in (Label.SURFACE, Label.UNSEEN, Label.BLIND))
     texts = ("seen surface", "nobody sees it", "a camera is blind there")
     shown = [
         (colour, text)

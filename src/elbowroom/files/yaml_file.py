@@ -44,6 +44,31 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
+_ANOTHER_NUMBER = re.compile(r"[-+]?0[0-9_]+|.*[0-9]_|.*[0-9]:[0-9]")
+"""Numbers that YAML 1.1 reads in base 8 or 60, or with underscores left out: people mean something else."""
+
+
+def _number(loader: _Loader, node: yaml.ScalarNode) -> int | float:
+    if _ANOTHER_NUMBER.match(node.value):
+        read = (
+            yaml.SafeLoader.construct_yaml_int
+            if node.tag.endswith("int")
+            else yaml.SafeLoader.construct_yaml_float
+        )
+        raise yaml.constructor.ConstructorError(
+            None,
+            None,
+            f"{node.value} would be read as {read(loader, node):g}; write a number without leading zeros, colons and "
+            "underscores, and a name in quotes",
+            node.start_mark,
+        )
+    if node.tag.endswith("int"):
+        return yaml.SafeLoader.construct_yaml_int(loader, node)
+    return yaml.SafeLoader.construct_yaml_float(loader, node)
+
+
+_Loader.add_constructor("tag:yaml.org,2002:int", _number)
+_Loader.add_constructor("tag:yaml.org,2002:float", _number)
 _Loader.add_implicit_resolver(
     "tag:yaml.org,2002:float",
     re.compile(r"^[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)[eE][-+]?[0-9]+$"),
@@ -67,6 +92,9 @@ def read_yaml(path: Path) -> dict[str, Any]:
     size = path.stat().st_size
     if size > MAX_YAML_BYTES:
         raise SiteError(f"{path}: {size:,} bytes, at most {MAX_YAML_BYTES:,} are read; is this a site file?")
+    with path.open("rb") as file:
+        if file.read(2) in (b"\xff\xfe", b"\xfe\xff"):
+            raise SiteError(f"{path}: is written in UTF-16; save it as UTF-8")
     try:
         content = yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)
     except yaml.MarkedYAMLError as error:

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from elbowroom.geometry.transforms import invert_rigid
 
@@ -38,6 +37,8 @@ def exp(twist: Array) -> Array:
     Returns:
         shape (4, 4).
     """
+    from scipy.spatial.transform import Rotation  # slow to load, and the cycle needs none
+
     turn, way = twist[:3], twist[3:]
     result = np.eye(4)
     result[:3, :3] = Rotation.from_rotvec(turn).as_matrix()
@@ -47,6 +48,8 @@ def exp(twist: Array) -> Array:
 
 def log(b_from_a: Array) -> Array:
     """The twist of a rigid transform, shape (4, 4) to (6,); the inverse of `exp`."""
+    from scipy.spatial.transform import Rotation
+
     turn = Rotation.from_matrix(b_from_a[:3, :3]).as_rotvec()
     return np.concatenate([turn, np.linalg.solve(_left(turn), b_from_a[:3, 3])])
 

@@ -6,16 +6,19 @@ does a hand in it. This says of which links that is so, and by how much.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine.joint_state import Joints
 from elbowroom.machine.machine import Machine
 from elbowroom.machine.rasterise import rasterise
 from elbowroom.machine.samples import BodySamples, body_samples
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 BLOCK_PX = 5
 """Pixels along the edge of a block, of which the middling depth counts: noise is less by that."""
@@ -73,12 +76,18 @@ def excess_of(
     seen = machine.as_seen
     samples = body_samples(seen, VOXEL_M, unchecked=True)
     deep: dict[int, list[float]] = {}
+    bodies: dict[bytes, _Body] = {}  # of cameras whose frames are of one time there is one
     for camera, depth, joints in zip(cameras, depths, joints_per_camera, strict=True):
         points, behind, sure = _blocks(
             camera, np.asarray(depth, dtype=np.float64), rasterise(seen, camera, joints)
         )
         placed = seen.world_from_link_array(np.atleast_2d(seen.positions(joints)))[0]
-        link, within = _depth_in(samples, placed, points)
+        if not len(points):
+            continue
+        pose = placed.tobytes()
+        if pose not in bodies:
+            bodies = {pose: _Body.of(samples, placed)}
+        link, within = bodies[pose].depth_in(points)
         for row, depth_in, away, least in zip(link, within, behind, sure, strict=True):
             if row >= 0:
                 deep.setdefault(int(row), []).append(min(depth_in, away) if away > least else 0.0)
@@ -128,15 +137,37 @@ def _blocks(
     return camera.points_in_world(image)[middle], off, sure
 
 
-def _depth_in(
-    samples: BodySamples, world_from_link: NDArray[np.float64], points: NDArray[np.float64]
-) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """For points in the world, the link that each lies on or in, -1: none; how far it is from the surface [m]."""
-    link = np.concatenate([samples.point_link, samples.interior_link])
-    within = np.concatenate([samples.points, samples.interior]).astype(np.float64)
-    pose = world_from_link[link]
-    placed = np.einsum("nij,nj->ni", pose[:, :3, :3], within) + pose[:, :3, 3]
-    away, nearest = KDTree(placed).query(points)
-    surface = KDTree(placed[: len(samples.points)])
-    depth, _ = surface.query(points)
-    return np.where(away <= VOXEL_M, link[nearest], -1), depth
+@dataclass(frozen=True, slots=True, eq=False)
+class _Body:
+    """The machine's samples in one pose, to be asked what is near.
+
+    Args:
+        link: of each sample, shape (n,).
+        all, surface: trees of all samples, and of those on the surface.
+    """
+
+    link: NDArray[np.int32]
+    all: "KDTree"
+    surface: "KDTree"
+
+    @classmethod
+    def of(cls, samples: BodySamples, world_from_link: NDArray[np.float64]) -> Self:
+        """The samples where the links are.
+
+        Args:
+            samples: of the body.
+            world_from_link: shape (links, 4, 4).
+        """
+        from scipy.spatial import KDTree  # slow to load, and no pass needs it
+
+        link = np.concatenate([samples.point_link, samples.interior_link])
+        within = np.concatenate([samples.points, samples.interior]).astype(np.float64)
+        pose = world_from_link[link]
+        placed = np.einsum("nij,nj->ni", pose[:, :3, :3], within) + pose[:, :3, 3]
+        return cls(link, KDTree(placed), KDTree(placed[: len(samples.points)]))
+
+    def depth_in(self, points: NDArray[np.float64]) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """For points in the world, the link that each lies on or in, -1: none; how far it is from the surface [m]."""
+        away, nearest = self.all.query(points)
+        depth, _ = self.surface.query(points)
+        return np.where(away <= VOXEL_M, self.link[nearest], -1), depth

@@ -102,7 +102,7 @@ def explain_frames(
     placed = _camera_from_links(machine, cameras, joints_per_camera)
     near_body = _Near(machine, grid, growth_m)
     mesh, bound_m = drawn_mesh(machine, DRAWN_SHARE * tolerance_m)
-    canvases: deque[NDArray[np.float32]] = deque()
+    canvases: deque[Canvas] = deque()
     tolerance = Tolerance(float(tolerance_m) - bound_m, float(tolerance_sigmas))
 
     def explain_one(n: int) -> NDArray[np.float32]:
@@ -113,7 +113,7 @@ def explain_frames(
         model = zero_image(view.height, view.width)
         around = near_body.around(view, placed[n], cameras[n].world_from_camera)
         explain(view, images[n], drawn, tolerance, model, around)
-        canvases.append(drawn.inverse)
+        canvases.append(drawn)
         near_body.give_back(around)
         return model
 
@@ -193,12 +193,10 @@ def _camera_from_links(
     return invert_rigid(np.stack([camera.world_from_camera for camera in cameras]))[:, None] @ placed
 
 
-def _spare_canvas(wiped: deque[NDArray[np.float32]], view: View) -> Canvas:
-    """An empty canvas, on the memory of an image that was wiped if there is one of this size."""
+def _spare_canvas(wiped: deque[Canvas], view: View) -> Canvas:
+    """An empty canvas: one that was wiped if there is one of this size."""
     try:
-        inverse = wiped.pop()
+        spare = wiped.pop()
     except IndexError:
         return canvas(view.height, view.width)
-    if inverse.shape != (view.height, view.width):
-        return canvas(view.height, view.width)
-    return canvas(view.height, view.width, inverse)
+    return spare if spare.inverse.shape == (view.height, view.width) else canvas(view.height, view.width)

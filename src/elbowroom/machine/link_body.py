@@ -238,7 +238,8 @@ def _meant(length: float, unscaled: bool) -> str:
     if unscaled:
         factor = "0.001" if length / 1000 > 0.002 else "0.01"
         return (
-            f'is its mesh in millimetres? scale="{factor} {factor} {factor}" makes it {length * float(factor):.3g} m; '
+            f'is its mesh in millimetres? scale="{factor} {factor} {factor}" makes it {length * float(factor):.3g} m '
+            f"(centimetres: 0.01 {length * 0.01:.3g} m, inches: 0.0254 {length * 0.0254:.3g} m); "
             "if it is so long, say largest_link_m"
         )
     return "sizes are in metres; if it is so long, say largest_link_m"

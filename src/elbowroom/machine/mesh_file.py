@@ -70,13 +70,37 @@ def read_mesh(path: Path) -> MeshFile:
         loaded: object = trimesh.load(path, force="mesh")
     except Exception as error:  # trimesh's readers raise whatever their formats' parsers raise
         raise MachineError(f"mesh {path} cannot be read: {error}") from error
-    return _checked(loaded, path)
+    read = _checked(loaded, path)
+    _require_all(path, len(read.faces))
+    return read
 
 
 def _checked(mesh: object, path: Path, note: str = "") -> MeshFile:
     if not (isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and np.isfinite(mesh.vertices).all()):
         raise MachineError(f"mesh {path} holds no triangles with finite corners")
     return MeshFile(np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces), note)
+
+
+def _require_all(path: Path, faces: int) -> None:
+    """Refuses a mesh of which corners are no numbers: its reader leaves out what hangs on them.
+
+    Args:
+        path: the file.
+        faces: how many triangles were read of it.
+    """
+    if path.suffix.lower() == ".stl":
+        with path.open("rb") as file:
+            head = file.read(84)
+        is_binary = len(head) == 84 and path.stat().st_size == 84 + 50 * int.from_bytes(head[80:], "little")
+        if is_binary:
+            if faces < int.from_bytes(head[80:], "little"):
+                lost = int.from_bytes(head[80:], "little") - faces
+                raise MachineError(f"mesh {path} has {lost} triangles with a corner that is no finite number")
+            return
+    raw: object = trimesh.load(path, process=False)
+    parts = raw.geometry.values() if isinstance(raw, trimesh.Scene) else [raw]
+    if not all(np.isfinite(part.vertices).all() for part in parts if isinstance(part, trimesh.Trimesh)):
+        raise MachineError(f"mesh {path} has corners that are no finite numbers")
 
 
 def _require_readable_gltf(path: Path) -> None:

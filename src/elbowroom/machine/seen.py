@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from elbowroom.machine.description.shapes import Shape
 from elbowroom.machine.link import Surface
@@ -18,8 +17,6 @@ from elbowroom.machine.link import Surface
 OUTSIDE_M = 0.01
 """Visual geometry that stands out of the collision geometry by more is a picture of something else, or what collides is
 drawn too small: then the collision geometry explains, and what stands out stops the machine [m]."""
-MUCH_M = 0.25
-"""What stands out by more is no picture of the same thing [m]."""
 SHORT_M, SHORT = 0.1, 0.25
 """Visual geometry that stays inside the box about the collision geometry by more on any side, as a length [m] and as a
 share of the box's edge, is a picture of a part of the link."""
@@ -63,7 +60,7 @@ class Fit(NamedTuple):
     @property
     def is_larger(self) -> bool:
         """Whether it is a picture of the link, and the link is swept with less."""
-        return self.fills and OUTSIDE_M < self.outside_m < MUCH_M
+        return self.fills and self.outside_m > OUTSIDE_M
 
 
 def fit_of(visual: Surface, collision: Surface, shapes: Sequence[NDArray[np.float64]]) -> Fit:
@@ -90,6 +87,8 @@ def outside(visual: Surface, shapes: Sequence[NDArray[np.float64]]) -> float:
 
 def _beyond(points: NDArray[np.float64], shape: NDArray[np.float64]) -> NDArray[np.float64]:
     """How far points lie beyond the faces of the convex hull of a shape, or if it is flat, of the box about it [m]."""
+    from scipy.spatial import ConvexHull, QhullError  # slow to load, and few machines need it
+
     try:
         planes = ConvexHull(shape).equations
     except QhullError:

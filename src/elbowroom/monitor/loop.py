@@ -16,6 +16,7 @@ from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.separation.margins import Margins
 from elbowroom.monitor.separation.separating import Separating
 from elbowroom.monitor.space_cycle import SpaceCycle
+from elbowroom.monitor.stages import settled, uncollected
 from elbowroom.sensing import MeantPaths, Snapshot
 from elbowroom.sources import Room, Source
 from elbowroom.sources.pace import SLACK_S
@@ -77,6 +78,7 @@ class Loop:
             try:
                 for face in faces:
                     face.begin(self.room)
+                ending.enter_context(settled())
                 for snapshot, source_ms in timed_source(self._meaning()):
                     if not self._waited(snapshot, until, is_over):
                         break
@@ -97,10 +99,11 @@ class Loop:
     def judge(self, snapshot: Snapshot) -> CycleResult:
         """What one snapshot comes to; it does not raise."""
         begun_ns = self.cycle.clock_ns()
-        known = self.checks.hear(snapshot)
-        if not known.is_placed:
-            return self.cycle.unplaced(snapshot).knowing(known)
-        return self.cycle.run(without_sick(snapshot, known.sick), begun_ns).knowing(known)
+        with uncollected():
+            known = self.checks.hear(snapshot)
+            if not known.is_placed:
+                return self.cycle.unplaced(snapshot).knowing(known)
+            return self.cycle.run(without_sick(snapshot, known.sick), begun_ns).knowing(known)
 
     def _meaning(self) -> Iterator[Snapshot]:
         """What the source gives, each with what the machine means to do."""

@@ -68,11 +68,7 @@ def _of_joint(machine: Machine, start: NDArray[np.float64], motion: Motion) -> W
 
 def _of_path(machine: Machine, start: NDArray[np.float64], path: JointPath) -> Way:
     knots, travel = [start], [0.0]
-    here = dict(zip(machine.joint_names, start.tolist(), strict=True))
-    for waypoint in path.waypoints:
-        _require_inside(machine, waypoint, here)
-        here |= waypoint
-        knot = machine.positions(here)
+    for knot in _knots(machine, start, path):
         step = float(np.abs(knot - knots[-1]).max(initial=0.0))
         if travel[-1] + step > travel[-1]:  # a step that is lost in rounding goes with the next one
             knots.append(knot)
@@ -83,6 +79,22 @@ def _of_path(machine: Machine, start: NDArray[np.float64], path: JointPath) -> W
     if len(knots) == 1:
         knots, travel = [start, start], [0.0, 1.0]
     return Way(Course(np.array(travel), np.array(knots)), length, unit)
+
+
+def _knots(machine: Machine, start: NDArray[np.float64], path: JointPath) -> NDArray[np.float64]:
+    """Positions of all joints at the waypoints of a path, shape (waypoints, joints)."""
+    here = dict(zip(machine.joint_names, start.tolist(), strict=True))
+    passed = []
+    for waypoint in path.waypoints:
+        _require_inside(machine, waypoint, here)
+        here = {**here, **waypoint}
+        passed.append(here)
+    try:
+        return machine.positions({name: np.array([one[name] for one in passed]) for name in here})
+    except MachineError:
+        for one in passed:  # the first one that cannot be is named
+            machine.positions(one)
+        raise
 
 
 def _require_inside(machine: Machine, waypoint: Mapping[str, float], here: Mapping[str, float]) -> None:

@@ -5,7 +5,6 @@ A body meets what comes into it with its surface. What lies in it from the start
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine, body_samples
@@ -43,6 +42,8 @@ def blocks_inside(
 @kept
 def _deep(machine: Machine, voxel_size_m: float) -> Clusters:
     """Points in the checked links, no nearer than half a voxel to a sample of the surface: none lies outside."""
+    from scipy.spatial import KDTree  # slow to load, and done once a machine
+
     samples = body_samples(machine, voxel_size_m)
     points, links = [np.zeros((0, 3), dtype=np.float32)], [np.zeros(0, dtype=np.int32)]
     for row in np.unique(samples.interior_link):

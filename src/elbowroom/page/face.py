@@ -2,7 +2,9 @@
 
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -15,8 +17,8 @@ from elbowroom.sources import Room
 
 TEXT_EVERY_S, PLANES_EVERY_S = 1 / 30, 0.1
 """The page is told no more often than so [s]."""
-LISTENS_S = 0.02
-"""While nothing comes it looks so often whether images are asked for [s]."""
+LISTENS_S, ASKED_S = 0.02, 0.01
+"""So often it is looked whether images are asked for: while nothing comes, and between two passes [s]."""
 
 
 @dataclass(slots=True, eq=False)
@@ -65,15 +67,25 @@ class PageFace:
                     self._waits.wait(LISTENS_S)
                 given, self._newest = self._newest, None
             begun_s = time.monotonic()
-            try:
-                if given is None:
-                    self._answer()
-                    continue
-                self._write(*given)
-                self._answer()
-            except Exception as error:  # the monitor goes on, whatever the page is told
-                self.fault = f"{type(error).__name__}: {error}"
-            time.sleep(max(0.0, TEXT_EVERY_S - (time.monotonic() - begun_s)))
+            if given is not None:
+                self._guarded(partial(self._write, *given))
+            self._guarded(self._answer)
+            if given is None:
+                continue
+            self._rest(begun_s + TEXT_EVERY_S)
+
+    def _rest(self, until_s: float) -> None:
+        """Waits until the next pass may be told; who asks for images meanwhile gets them."""
+        while (left_s := until_s - time.monotonic()) > 0:
+            time.sleep(min(left_s, ASKED_S))
+            if self.board.asked != self._answered:
+                self._guarded(self._answer)
+
+    def _guarded(self, what: Callable[[], None]) -> None:
+        try:
+            what()
+        except Exception as error:  # the monitor goes on, whatever the page is told
+            self.fault = f"{type(error).__name__}: {error}"
 
     def _write(self, done: Pass, wall_ns: int) -> None:
         self._last = done, wall_ns

@@ -2,7 +2,6 @@
 
 import base64
 import io
-import json
 import queue
 import threading
 import time
@@ -11,13 +10,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from elbowroom.page.asking import changes_at
-from elbowroom.page.board.board import Answered, Board, read_images, read_planes
+from elbowroom.page.board.board import Answered, Board
+from elbowroom.page.board.reader import Reader, look_until
 from elbowroom.page.page import Page
+from elbowroom.page.scene.near import Planes
 from elbowroom.page.talk import Viewer
 from elbowroom.view.draw.depth import depth_picture
 
-LOOKS_S = 1 / 60
-"""The board is looked at so often [s]."""
 TEXT_EVERY_S, WAYS_EVERY_S = 0.1, 0.4
 WAITS_S = 3.0
 """For so long images are waited for [s]."""
@@ -38,37 +37,42 @@ class Live:
     board: Board
     is_over: Callable[[], bool]
     on_first: Callable[[], None] = lambda: None
-    _text: int = field(default=0, init=False)
-    _planes: int = field(default=0, init=False)
+    _news: Reader = field(init=False)
     _said_s: float = field(default=0.0, init=False)
     _ways_s: float = field(default=0.0, init=False)
     _is_ended: bool = field(default=False, init=False)
 
+    def __post_init__(self) -> None:
+        self._news = Reader(self.board)
+
     def run(self) -> None:
-        """Shows what comes, until it is over."""
+        """Shows what comes, until it is over; joints by a thread of their own, which nothing else holds up."""
         threading.Thread(target=self._answer, name="answers", daemon=True).start()
-        while not self.is_over():
-            begun_s = time.monotonic()
-            self._look(begun_s)
-            time.sleep(max(0.0, LOOKS_S - (time.monotonic() - begun_s)))
+        drawing = threading.Thread(
+            target=look_until, args=(self.is_over, self._draw), name="space", daemon=True
+        )
+        drawing.start()
+        look_until(self.is_over, self._look)
+        drawing.join()
 
     def _look(self, now_s: float) -> None:
-        if self.board.text.number != self._text:
-            found = self.board.text.get()
-            if found is not None:
-                self._text = found[0]
-                self._hear(json.loads(found[1]))
+        told = self._news.told()
+        if told is not None:
+            self._hear(told)
+
+    def _draw(self, now_s: float) -> None:
+        """Draws what takes its time: blocked space, and ways."""
         told = self.page.newest
         if told is None or self._is_ended:
             return
-        if self.board.planes.number != self._planes:
-            planes = self.board.planes.get()
-            if planes is not None:
-                self._planes = planes[0]
-                self.page.show_space(self.page.stage.near(told, read_planes(planes[1])[1]))
+        self._news.planes(lambda planes: self._show(told, planes))
         if now_s - self._ways_s >= WAYS_EVERY_S:
             self._ways_s = now_s
             self.page.stage.show_ways(told)
+
+    def _show(self, told: Mapping[str, Any], planes: Planes) -> bool:
+        self.page.show_space(self.page.stage.near(told, planes))
+        return True
 
     def _hear(self, told: Mapping[str, Any]) -> None:
         if told.get("ended"):
@@ -113,6 +117,8 @@ class Live:
                 self.page.explain(viewer, answered.told, number, changes)
                 told = answered.told
             self.page.fly(viewer, told["judged"]["verdicts"][number]["place_m"])
+        if asked["type"] == "ways":
+            self.page.stage.shows_clear = asked["all"] is True
         if asked["type"] == "depth":
             answered, name = self._images(), str(asked["camera"])
             frames = () if answered is None else answered.snapshot.frames
@@ -124,12 +130,10 @@ class Live:
         """The images of the newest pass; None: the monitor gave none."""
         number, until_s = self.board.ask(), time.monotonic() + WAITS_S
         while time.monotonic() < until_s and not self.is_over():
-            found = self.board.images.get()
-            if found is not None:
-                answered = read_images(found[1])
-                if answered.number >= number:
-                    return answered
-            time.sleep(0.005)
+            answered = self._news.images()
+            if answered is not None and answered.number >= number:
+                return answered
+            time.sleep(0.002)
         return None
 
 

@@ -3,9 +3,6 @@
 import contextlib
 import json
 import shutil
-import subprocess
-import sys
-import tempfile
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -13,15 +10,17 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
+from urllib.parse import urlsplit
 
 from elbowroom.extras import install_command
 from elbowroom.monitor.blackbox.configuration import Configuration, plain_cycle
 from elbowroom.page.board.board import Board, Sizes
+from elbowroom.page.early import PAGE, Early
 from elbowroom.page.face import PageFace
+from elbowroom.page.server.door import HOSTS
 from elbowroom.page.words import words_of
 from elbowroom.sources import Room
 
-LOG = "page.log"
 OPENS_S = 90.0
 """So long it may take until the page says where it is [s]."""
 
@@ -43,6 +42,8 @@ class OpenedPage:
         language: of its words.
         name: what it is called when something is said of it.
         program: the module that runs in its process.
+        service: port of the control service, which browsers ask themselves; None: it is not started.
+        early: its process, where it was begun before; None: it is begun when this is entered.
 
     Raises:
         InputError: no such language.
@@ -52,9 +53,10 @@ class OpenedPage:
     port: int | None = None
     language: str = "en"
     name: str = "page"
-    program: str = "elbowroom.page.process"
+    program: str = PAGE
+    service: int | None = None
+    early: Early | None = None
     face: PageFace = field(init=False)
-    url: str | None = field(default=None, init=False)
     _folder: Path = field(init=False)
     _process: Any = field(default=None, init=False)
     _answer: dict[str, str] = field(default_factory=dict, init=False)
@@ -67,20 +69,14 @@ class OpenedPage:
         room = self.room
         board = Board.made(Sizes.of(room.grid, room.cameras))
         self.face = PageFace(board)
-        self._folder = Path(tempfile.mkdtemp(prefix="elbowroom-page-"))
+        early = Early.begun(self.program) if self.early is None else self.early
+        self._folder, self._process = early.folder, early.process
         for part in Configuration.of(room, plain_cycle(room)).attached():
             (self._folder / part.name).write_bytes(part.data)
-        said = {"board": board.said(), "folder": str(self._folder), "language": self.language}
-        with (self._folder / LOG).open("w") as log:
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", self.program],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=log,
-                text=True,
-            )
+        said: dict[str, Any] = {"board": board.said(), "folder": str(self._folder), "language": self.language}
+        said |= {"port": self.port, "service": self.service}
         with contextlib.suppress(OSError):
-            self._process.stdin.write(json.dumps({**said, "port": self.port}) + "\n")
+            self._process.stdin.write(json.dumps(said) + "\n")
             self._process.stdin.flush()
         threading.Thread(target=self._listen, daemon=True).start()
         return self
@@ -109,6 +105,13 @@ class OpenedPage:
         if "url" in self._answer:
             return f"{self.name}: {self._answer['url']}"
         return f"no {self.name}: {self._answer.get('error', 'its process does not answer')}"
+
+    @property
+    def origins(self) -> tuple[str, ...]:
+        """What browsers call this page when it asks the control service, by exact name; none: it is not open."""
+        url = self._answer.get("url", "")
+        at = urlsplit(url)
+        return tuple(f"http://{host}:{at.port}" for host in HOSTS) if at.scheme == "http" else ()
 
     @property
     def troubles(self) -> Iterator[str]:

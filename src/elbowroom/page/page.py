@@ -33,12 +33,14 @@ class Page:
         words: of the language.
         mode: "live" or "replay".
         extra: what browsers are told first besides, such as the stops of a recording.
+        service: port of the control service, which browsers ask themselves; None: there is none.
     """
 
     configuration: Configuration
     words: Words
     mode: str
     extra: Mapping[str, Any] = field(default_factory=dict)
+    service: int | None = None
     talk: Talk = field(init=False)
     telling: Telling = field(init=False)
     stage: Stage = field(init=False)
@@ -61,8 +63,9 @@ class Page:
             PackageError: viser is missing.
         """
         answers = answers_of(self.words, str(self.configuration.told.get("site")))
-        self.server = guarded(Guarded(answers, {TEXT: self.talk.serve}), port)
-        self.stage = Stage(Scene(self.server.viser), self.configuration)
+        reaches = () if self.service is None else (f"http://127.0.0.1:{self.service}",)
+        self.server = guarded(Guarded(answers, {TEXT: self.talk.serve}, reaches=reaches), port)
+        self.stage = Stage(Scene(self.server.viser), self.configuration, self.words("path.name"))
         self.stage.draw()
         _look_from_aside(self.server.viser, self.stage)
 
@@ -125,7 +128,8 @@ class Page:
             fly_to(client, np.array(place, dtype=np.float64))
 
     def _hello(self) -> Mapping[str, Any]:
-        return {**hello_of(self.configuration, self.words, self.mode), **self.extra}
+        said = hello_of(self.configuration, self.words, self.mode)
+        return {**said, "service": self.service, **self.extra}
 
 
 def _look_from_aside(server: Any, stage: Stage) -> None:

@@ -4,6 +4,7 @@ Read from standard input: one line of JSON that says what to show. Written to st
 """
 
 import contextlib
+import importlib
 import json
 import os
 import sys
@@ -14,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from elbowroom.errors import ElbowroomError, InputError
+from elbowroom.guard.priority import step_back
 
 if TYPE_CHECKING:
     from elbowroom.page.page import Page
@@ -29,18 +31,28 @@ NICE = 10
 def main() -> None:
     """Serves the page until standard input ends."""
     os.environ.setdefault("NUMBA_NUM_THREADS", "1")
-    said = json.loads(sys.stdin.readline())
+    _get_ready()
+    line = sys.stdin.readline()
+    if not line:  # whoever began it has ended
+        return
     try:
-        serve(said)
+        serve(json.loads(line))
     except ElbowroomError as error:
         _say({"error": str(error)})
+
+
+def _get_ready() -> None:
+    """Imports what is going to be needed, before it is said what to show."""
+    with contextlib.suppress(ImportError):  # what is missing is said by who needs it
+        importlib.import_module("elbowroom.page.live")
+        importlib.import_module("viser")
 
 
 def serve(said: Mapping[str, Any]) -> None:
     """Serves the page that was asked for.
 
     Args:
-        said: board, folder with the configuration, language, port.
+        said: board, folder with the configuration, language, port, and port of the control service.
     """
     from elbowroom.monitor.blackbox.configuration import CONFIGURATION, SITE, Configuration
     from elbowroom.page.board.board import Board
@@ -53,12 +65,13 @@ def serve(said: Mapping[str, Any]) -> None:
     board = Board.opened(said["board"])
     with contextlib.suppress(OSError):  # both have it open: nothing stays behind, however they end
         board.forget()
-    page = Page(Configuration.read(content, text, "page"), words_of(said["language"]), "live")
+    configuration, words = Configuration.read(content, text, "page"), words_of(said["language"])
+    page = Page(configuration, words, "live", service=said.get("service"))
     _open(page, said["port"])
     _say({"url": page.server.url})
     over = threading.Event()
     threading.Thread(target=_wait_for_end, args=(over,), daemon=True).start()
-    Live(page, board, over.is_set, _step_back).run()
+    Live(page, board, over.is_set, lambda: step_back(NICE)).run()
     page.talk.tell({"type": "ended"})
     time.sleep(STAYS_S)
     page.server.stop()
@@ -84,12 +97,6 @@ def _wait_for_end(over: threading.Event) -> None:
     while sys.stdin.readline():
         pass
     over.set()
-
-
-def _step_back() -> None:
-    """Lets the monitor go first."""
-    if hasattr(os, "nice"):
-        os.nice(NICE)
 
 
 def _say(what: Mapping[str, Any]) -> None:

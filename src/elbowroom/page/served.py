@@ -8,7 +8,7 @@ from elbowroom.page import colours
 from elbowroom.page.server import Answer
 from elbowroom.page.words import Words
 
-PROGRAM = ("plot.js", "panel.js", "slider.js", "live.js")
+PROGRAM = ("plot.js", "panel.js", "slider.js", "controls.js", "live.js")
 """Files of the page's program, in the order in which they are read."""
 
 
@@ -43,7 +43,8 @@ def frame_of(words: Words, site: str) -> str:
         words: of the language.
         site: its name.
     """
-    return filled(file_of_page("page.html"), words, title=words("title", site=site))
+    text = file_of_page("page.html").replace("{{controls}}", file_of_page("controls.html"))
+    return filled(text, words, title=words("title", site=site))
 
 
 def filled(text: str, words: Words, **values: str) -> str:

@@ -8,8 +8,10 @@ from typing import Any
 from elbowroom.monitor.blackbox.configuration import Configuration
 from elbowroom.monitor.why.changes import Change
 from elbowroom.page.story.cameras import Rates, camera_rows
+from elbowroom.page.story.gate import gate_said
 from elbowroom.page.story.headline import headline
 from elbowroom.page.story.motions import looked_at_of, motion_rows, with_reach
+from elbowroom.page.story.path import path_said
 from elbowroom.page.story.told import Told
 from elbowroom.page.story.why_text import why_text
 from elbowroom.page.words import Words
@@ -65,6 +67,8 @@ class Telling:
             "motion": said.motion,
             "why": self._why(told, said.motion),
             "motions": motion_rows(told, self.words, self.looked_at),
+            "gate": gate_said(told, self.words),
+            "path": path_said(told, self.words),
             "cameras": cameras,
             "cycle_ms": cycle_ms,
             "age_ms": None if oldest_ms is None else float(oldest_ms) + cycle_ms,

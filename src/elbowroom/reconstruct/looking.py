@@ -9,11 +9,12 @@ from elbowroom.errors import ImplausibleError, ValueWarning
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
-from elbowroom.reconstruct.contradiction.findings import contradictions
+from elbowroom.reconstruct.contradiction.findings import with_contradictions
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.nothing_seen import nothing_seen
 from elbowroom.sensing import DepthFrame
 from elbowroom.sensing.values import look_at_images, look_at_setting
+from elbowroom.sensing.values.scatter import look_at_scatter
 
 FIRST = 3
 """Moments of the same cameras and grid that are looked at; then they are known to be usable."""
@@ -49,8 +50,10 @@ def found_at(
     if any(finding.stops for finding in setting):
         return setting
     found = (*setting, *look_at_images(grid, cameras, frames, units_m))
-    found = (*found, *contradictions(cameras, frames, margin or Margin(), found))
-    return (*found, *nothing_seen(grid, cameras, frames, margin, found))
+    found = with_contradictions(cameras, frames, margin or Margin(), found)
+    found = (*found, *nothing_seen(grid, cameras, frames, margin, found))
+    stops = any(finding.stops for finding in found)
+    return found if stops else (*found, *look_at_scatter(cameras, frames, margin or Margin()))
 
 
 def require_plausible(

@@ -39,11 +39,12 @@ def sight_of(
     """
     (camera,) = images.cameras
     own = {name: model for name, model in model_depth.items() if name == camera.name}
-    evidence, aged = (
-        carve_images(voxel, each, Explained(own, None), terms, complete=True)
-        for each in (replace(images, aged_m={}), images)
-    )
-    is_aged = evidence.through[0].any() and not aged.through[0].any()
+    model, now = Explained(own, None), replace(images, aged_m={})
+    evidence = carve_images(voxel, now, model, terms, complete=True)
+    # age takes away what was seen through, and nothing else
+    is_aged = bool(evidence.through[0].any()) and bool(images.aged_m.get(camera.name))
+    if is_aged:
+        is_aged = not carve_images(voxel, images, model, terms, complete=True).through[0].any()
     distance_m = float(np.linalg.norm(centre_in_world - camera.centre_in_world))
     in_camera = camera.camera_from_world[:3, :3] @ centre_in_world + camera.camera_from_world[:3, 3]
     place = _place(camera, in_camera, voxel.voxel_size_m)

@@ -4,7 +4,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing.frame import DepthFrame
@@ -49,6 +48,8 @@ class Never:
         Args:
             inside: regions as well that do not touch the image's border.
         """
+        from scipy import ndimage  # slow to load, and no pass needs it
+
         wide = np.pad(~self.returned, 1, mode="edge")
         never = ndimage.binary_opening(wide, BLOCK)[1:-1, 1:-1]
         labels, _ = ndimage.label(never, BLOCK)

@@ -96,13 +96,14 @@ class Door:
     _wrong_s: deque[float] = field(default_factory=lambda: deque(maxlen=WRONG_TOKENS), init=False)
     _seen: dict[str, float] = field(default_factory=dict, init=False)
 
-    def let_in(self, path: str, headers: Mapping[str, str], now: Now) -> None:
+    def let_in(self, path: str, headers: Mapping[str, str], now: Now, *, is_preflight: bool = False) -> None:
         """Lets a head in, before its body is read.
 
         Args:
             path: what is asked for.
             headers: by name, in small letters.
             now: the time.
+            is_preflight: it only asks whether a page may ask; browsers send no token with that.
 
         Raises:
             Refusal: it is not let in.
@@ -117,8 +118,18 @@ class Door:
         origin = headers.get("origin")
         if origin is not None and origin not in self.origins:
             raise Refusal(403, "Origin is not allowed here")
-        if path in TOKEN_PATHS and not is_right:
+        if path in TOKEN_PATHS and not is_right and not is_preflight:
             self._wrong(now.steady_s)
+
+    def shares_with(self, headers: Mapping[str, str]) -> str | None:
+        """The origin whose page may read an answer, by its exact name; None: no page may.
+
+        Args:
+            headers: by name, in small letters.
+        """
+        origin = headers.get("origin")
+        known = headers.get("host", "").lower() in self.hosts and origin in self.origins
+        return origin if known else None
 
     def admitted(self, headers: Mapping[str, str], body: bytes, now: Now) -> int:
         """When a request with a token was sent, which was not asked before [ms since 1970].

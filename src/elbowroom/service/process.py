@@ -8,7 +8,6 @@ output it says, a line of JSON each, `ready` or `trouble`.
 
 import asyncio
 import json
-import os
 import signal
 import sys
 import time
@@ -18,6 +17,7 @@ from typing import Any
 
 from elbowroom.errors import ElbowroomError
 from elbowroom.guard.control import ask
+from elbowroom.guard.priority import step_back
 from elbowroom.service.door import Door, Now, Refusal
 from elbowroom.service.metrics import KIND, Metrics
 from elbowroom.service.openapi import openapi
@@ -29,6 +29,14 @@ NICE = 15
 MOST_LINE = 1 << 20
 GETS = ("/health/live", "/health/ready", "/metrics", "/v1/status", "/openapi.json")
 POSTS = ("/v1/reset", "/v1/hold")
+PREFLIGHT = "OPTIONS"
+"""A browser asks so whether a page may ask (Fetch standard, CORS preflight)."""
+MAY_ASK = (
+    ("access-control-allow-methods", "GET, POST"),
+    ("access-control-allow-headers", "authorization, content-type"),
+    ("access-control-max-age", "600"),
+)
+"""What an allowed page may ask, for so long [s]."""
 
 
 class Service:
@@ -51,14 +59,17 @@ class Service:
             read_token(Path(told["token_file"])), frozenset(hosts), frozenset(origins), _now().wall_ms
         )
         self._gate, self._silence_s = Path(told["gate"]), 2 * told["deadline_ns"] / 1e9
-        self.server = Server(self._admit, self._handle, self.metrics.answered)
+        self.server = Server(self._admit, self._handle, self.metrics.answered, self._door.shares_with)
 
     def _admit(self, asked: Asked) -> None:
-        self._door.let_in(asked.path, asked.headers, _now())
+        is_preflight = asked.method == PREFLIGHT
+        self._door.let_in(asked.path, asked.headers, _now(), is_preflight=is_preflight)
 
     async def _handle(self, asked: Asked) -> Answer:
         if asked.path not in (*GETS, *POSTS):
             raise Refusal(404, "no such path; see /openapi.json")
+        if asked.method == PREFLIGHT and self._door.shares_with(asked.headers) is not None:
+            return Answer(200, {"ok": True}, headers=MAY_ASK)
         if asked.method != ("POST" if asked.path in POSTS else "GET"):
             raise Refusal(405, f"{asked.path} is not asked so")
         if asked.path in POSTS:
@@ -133,7 +144,7 @@ def _say(told: Mapping[str, Any]) -> None:
 def main() -> int:
     """Runs the service; 1: it could not begin, and a line says why."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the monitor, with which this ends
-    os.nice(NICE)
+    step_back(NICE)
     try:
         asyncio.run(_run(json.loads(sys.argv[1])))
     except (OSError, ElbowroomError) as error:

@@ -3,7 +3,7 @@
 import asyncio
 import json
 from collections.abc import Awaitable, Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from elbowroom.extras import package
@@ -41,11 +41,13 @@ class Answer:
         status: of HTTP.
         content: as JSON; of text as it is.
         kind: of the text; None: JSON.
+        headers: besides those that all answers have.
     """
 
     status: int
     content: Any
     kind: str | None = None
+    headers: tuple[tuple[str, str], ...] = ()
 
 
 Handle = Callable[[Asked], Awaitable[Answer]]
@@ -58,16 +60,22 @@ class Server:
         admit: looks at a head, and raises `Refusal`.
         handle: answers a whole request; may raise `Refusal`.
         counted: told of the status of each answer.
+        shares_with: by headers, the origin whose page may read what is answered, refusals too; None: no page.
 
     Raises:
         PackageError: h11 is not installed.
     """
 
     def __init__(
-        self, admit: Callable[[Asked], None], handle: Handle, counted: Callable[[int], None]
+        self,
+        admit: Callable[[Asked], None],
+        handle: Handle,
+        counted: Callable[[int], None],
+        shares_with: Callable[[Mapping[str, str]], str | None],
     ) -> None:
         self._h11 = package("h11")
         self._admit, self._handle, self._counted = admit, handle, counted
+        self._shares_with = shares_with
         self._open = 0
 
     async def serve(self, host: str, port: int) -> asyncio.Server:
@@ -84,8 +92,10 @@ class Server:
     async def _connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         self._open += 1
         connection = self._h11.Connection(self._h11.SERVER, max_incomplete_event_size=MOST_HEAD)
+        headers: dict[str, str] = {}
         try:
-            answer = await self._answer(connection, reader)
+            answer = await self._answer(connection, reader, headers)
+            answer = self._shared(answer, headers)
             self._counted(answer.status)
             async with asyncio.timeout(WHOLE_S):
                 await self._send(connection, writer, answer)
@@ -95,12 +105,21 @@ class Server:
             self._open -= 1
             writer.close()
 
-    async def _answer(self, connection: Any, reader: asyncio.StreamReader) -> Answer:
+    def _shared(self, answer: Answer, headers: Mapping[str, str]) -> Answer:
+        """An answer that the page which asked may read, if it is one that was allowed."""
+        origin = self._shares_with(headers)
+        if origin is None:
+            return answer
+        shared = (("access-control-allow-origin", origin), ("vary", "origin"))
+        return replace(answer, headers=(*answer.headers, *shared))
+
+    async def _answer(self, connection: Any, reader: asyncio.StreamReader, headers: dict[str, str]) -> Answer:
+        """What comes of a request; `headers` are filled in as soon as its head is there."""
         if self._open > MOST_OPEN:
             return Answer(503, {"error": "too many connections"})
         try:
             async with asyncio.timeout(WHOLE_S):
-                asked = await self._read(connection, reader)
+                asked = await self._read(connection, reader, headers)
             return await self._handle(asked)
         except Refusal as refusal:
             return Answer(refusal.status, {"error": refusal.why})
@@ -110,7 +129,7 @@ class Server:
             status = error.error_status_hint if error.error_status_hint in (413, 431) else 400
             return Answer(status, {"error": "no request of HTTP/1.1"})
 
-    async def _read(self, connection: Any, reader: asyncio.StreamReader) -> Asked:
+    async def _read(self, connection: Any, reader: asyncio.StreamReader, headers: dict[str, str]) -> Asked:
         """A whole request.
 
         Raises:
@@ -123,6 +142,7 @@ class Server:
                 connection.receive_data(await reader.read(MOST_HEAD))
             elif isinstance(event, self._h11.Request):
                 head = _head(event)
+                headers.update(head.headers)
                 self._admit(head)
             elif isinstance(event, self._h11.Data):
                 body += bytes(event.data)
@@ -143,6 +163,7 @@ class Server:
             ("x-content-type-options", "nosniff"),
             ("content-security-policy", "default-src 'none'; frame-ancestors 'none'"),
             ("connection", "close"),
+            *answer.headers,
         ]
         reason = b""
         response = self._h11.Response(status_code=answer.status, headers=headers, reason=reason)

@@ -35,6 +35,13 @@ Quaternion = tuple[Number, Number, Number, Number]
 PINHOLE = ("fx", "fy", "cx", "cy")
 
 
+def _of_a_folder(name: str) -> str:
+    """A camera's name, which may be that of its folder of images."""
+    if name.strip() != name or name in (".", ".."):
+        raise ValueError("a name that a folder can have, without blanks at its ends")
+    return name
+
+
 class NoiseEntry(Entry):
     """sigma(z) = constant_m + linear z + quadratic max(z - offset_m, 0)^2 [m]."""
 
@@ -130,7 +137,7 @@ class CameraEntry(CameraSettings):
     which is the sensor's own; a calibration adds its part to it, so that calibrating twice does not widen twice.
     """
 
-    name: Annotated[Text, Field(pattern=r"^[^/\\]+$", max_length=100)]
+    name: Annotated[Text, Field(pattern=r"^[^/\\]+$", max_length=100), AfterValidator(_of_a_folder)]
     world_from_camera: Matrix | None = None
     pose_file: Text | None = None
     position_m: Point | None = None

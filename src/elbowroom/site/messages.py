@@ -1,7 +1,9 @@
 """What is wrong with a site file, in one line: the file, the key, what was found, what is allowed."""
 
 import difflib
+import re
 from collections.abc import Sequence
+from datetime import date
 from pathlib import Path
 from typing import Any, get_args
 
@@ -22,7 +24,7 @@ def one_line(path: Path, model: type[BaseModel], error: ValidationError) -> Site
         error: what pydantic found.
     """
     details = error.errors(include_url=False)
-    first = details[0]
+    first = _most_useful(details)
     more = f" ({len(details) - 1} more)" if len(details) > 1 else ""
     location = list(first["loc"])
     if location[0:1] == ["recording"] and location[1:2] and location[1] in LAYOUTS:
@@ -31,6 +33,15 @@ def one_line(path: Path, model: type[BaseModel], error: ValidationError) -> Site
         del location[2]
     where = key_path(location)
     return SiteError(f"{path}: {f'{where}: ' if where else ''}{_said(first, model, location)}{more}")
+
+
+def _most_useful(details: Sequence[ErrorDetails]) -> ErrorDetails:
+    """The one that most likely is the reason of others: a key that is misspelt, where one is missing."""
+    unknown = [each for each in details if each["type"] == "extra_forbidden"]
+    commas = [each for each in details if each["type"] == "invalid_key" and isinstance(each["input"], int)]
+    if commas:
+        return commas[0]
+    return unknown[0] if unknown and details[0]["type"] == "missing" else details[0]
 
 
 LAYOUTS = ("folder", "stampless", "seven_scenes")
@@ -52,6 +63,8 @@ def _said(first: ErrorDetails, model: type[BaseModel], location: Sequence[Any]) 
     context = first.get("ctx", {})
     if first["type"] == "missing":
         return "missing; it must be given"
+    if first["type"] == "invalid_key":
+        return f"key {found}, allowed: words; in braces a comma parts entries, and decimals have a dot: 0.3, not 0,3"
     if first["type"] == "extra_forbidden":
         allowed = keys_at(model, location[:-1])
         near = difflib.get_close_matches(str(location[-1]), allowed, n=1)
@@ -65,7 +78,37 @@ def _said(first: ErrorDetails, model: type[BaseModel], location: Sequence[Any]) 
     if "expected" in context:
         return f"found {found}, allowed: {context['expected']}"
     wanted = first["msg"].removeprefix("Input should be ")
-    return f"found {found}, allowed: {wanted[0].lower()}{wanted[1:]}"
+    return f"found {found}, allowed: {wanted[0].lower()}{wanted[1:]}{_hint(first)}"
+
+
+def _hint(error: ErrorDetails) -> str:
+    """What YAML made of what a person wrote, or how it is written instead; nothing where that is plain."""
+    value, kind = error["input"], error["type"]
+    if kind == "string_type" and isinstance(value, bool):
+        return "; YAML reads on, off, yes and no as true and false: write it in quotes"
+    if kind == "string_type" and isinstance(value, int | float | date):
+        return "; write it in quotes"
+    if kind in ("float_type", "int_type") and isinstance(value, str):
+        return _hint_of_number(value)
+    if kind == "bool_type":
+        return ", true or false, without quotes"
+    if kind == "tuple_type":
+        return ", a list: each on a line after a dash, or in brackets"
+    return "; each on a line as key: value, without a dash" if kind == "dict_type" else ""
+
+
+def _hint_of_number(value: str) -> str:
+    text = value.strip()
+    if re.fullmatch(r"[-+]?[0-9]+,[0-9]+", text):
+        return "; decimals have a dot"
+    number = re.match(r"[-+]?[0-9]*\.?[0-9]+(e[-+]?[0-9]+)?", text, re.IGNORECASE)
+    if number is None:
+        return ""
+    return (
+        "; write it without quotes"
+        if number.end() == len(text)
+        else "; a number alone, its unit is in the key's name"
+    )
 
 
 def _short(value: Any) -> str:

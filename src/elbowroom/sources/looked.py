@@ -4,10 +4,11 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
-from elbowroom.reconstruct.contradiction.findings import contradictions
+from elbowroom.reconstruct.contradiction.findings import with_contradictions
 from elbowroom.reconstruct.nothing_seen import nothing_seen
 from elbowroom.sensing.never import Never
 from elbowroom.sensing.values import look_at_images, look_at_setting
+from elbowroom.sensing.values.scatter import look_at_scatter
 from elbowroom.site import Site
 from elbowroom.site.plausible import look_at_site
 from elbowroom.site.recording_entry import SevenScenes
@@ -37,8 +38,9 @@ def looked_at(site: Site) -> tuple[Finding, ...]:
             frames = [image.read() for image in group]
             units_m = {image.camera.name: image.unit_m for image in group}
             of_values = look_at_images(grid, cameras, frames, units_m)
-            found += [*of_values, *contradictions(cameras, frames, site.margin(), of_values)]
+            found += with_contradictions(cameras, frames, site.margin(), of_values)
             found += nothing_seen(grid, cameras, frames, site.margin(), found)
+            found += look_at_scatter(cameras, frames, site.margin())
     return once(found)
 
 

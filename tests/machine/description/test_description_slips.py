@@ -134,6 +134,13 @@ def test_geometry_that_is_not_usable_is_named_with_its_place(tmp_path, shape, me
         (f"<robot name='r'><link name='a'>{BOX}</link></robot>", "geometry belongs into <collision>"),
         (f"<robot name='r'>\n{BODY}", "not XML"),
         ("<robot name='r'/>", "the robot has no <link>"),
+        (robot_of(body=BODY.replace("<coll", "<origin xyz='0 0 1'/><coll")), "<origin.*nothing reads it"),
+        (robot_of(body=BODY.replace("<coll", "<pose>0 0 1 0 0 0</pose><coll")), "<pose>: stands in <link>"),
+        (with_joint("<limit lower='0' upper='1'/><pose>0 0 1 0 0 0</pose>"), "<pose>: stands in <joint>"),
+        (with_joint("<limit lower='0' upper='1'/><mimic joint='k' ratio='2'/>"), "ratio is no attribute of a mimic"),
+        (with_shape("<mesh filename='a.stl' unit='mm'/>"), "unit is no attribute of a mesh"),
+        (with_shape("<mesh filename='a.stl' Scale='.1 .1 .1'/>"), "Scale is no attribute of a mesh"),
+        (b"", "is empty; expected a URDF"),
         ("<sdf/>", "this is SDF"),
         ("<mujoco/>", "this is MJCF"),
     ],
@@ -154,6 +161,15 @@ def test_a_sphere_without_size_marks_a_frame_and_the_picture_is_taken_for_the_bo
             + "</robot>",
         )
     assert machine.checked_links == ("a", "c")
+
+
+def test_a_pose_of_a_frame_without_a_body_and_one_that_says_nothing_pass(tmp_path):
+    frame = "<link name='b'><origin xyz='1 0 0'/></link>"
+    still = f"<link name='a'><origin xyz='0 0 0' rpy='0 -0 0'/><collision>{BOX}</collision></link>"
+    machine = machine_of(
+        tmp_path, f"<robot name='r'>{still}{frame}{JOINT.format(type='fixed', more='')}</robot>"
+    )
+    assert machine.checked_links == ("a",) and not machine.findings
 
 
 def test_all_shapes_of_one_geometry_count(tmp_path):

@@ -59,7 +59,7 @@ def test_a_model_that_is_what_is_seen_says_nothing(tmp_path, camera):
         assert ModelLook([camera], model).hear(snapshot_of(model, camera)) == ()
 
 
-def test_what_stands_before_the_machine_says_nothing(tmp_path, camera):
+def test_what_stands_before_the_machine_or_behind_it_says_nothing_of_its_size(tmp_path, camera):
     hull = arm(tmp_path, 0.2, explain_with="collision")
     before = Snapshot.taken(
         [DepthFrame("one", 1, np.full((120, 160), 0.8, dtype=np.float32))], JOINTS, None, None
@@ -67,5 +67,6 @@ def test_what_stands_before_the_machine_says_nothing(tmp_path, camera):
     empty = Snapshot.taken(
         [DepthFrame("one", 1, np.full((120, 160), WALL_M, dtype=np.float32))], JOINTS, None, None
     )
-    for snapshot in (before, empty):
-        assert ModelLook([camera], hull).hear(snapshot) == ()
+    for snapshot, words in ((before, "sees anything"), (empty, "see through")):
+        (found,) = ModelLook([camera], hull).hear(snapshot)
+        assert (found.kind, found.stops) == ("machine", False) and words in found.text

@@ -75,6 +75,17 @@ def test_a_floor_seen_from_straight_above_is_no_sentinel():
     assert look_at_images(room.GRID, [camera], [DepthFrame("top", 0, depth)]) == ()
 
 
+def test_an_exact_number_amid_one_image_alone_may_be_a_surface_and_of_two_is_none():
+    """A plate before one camera, square to it and exact, has one depth all over; two cameras have none in common."""
+    for names, told in ((("ne",), ()), (("ne", "sw"), ("ne", "sw"))):
+        scene = room.scene(noise_m=0.003)
+        codes = {name: raw.copy() for name, raw in scene.codes.items()}
+        for name in names:
+            codes[name][21:60, 31:90] = 1500
+        found = replace(scene, codes=codes).findings()
+        assert tuple(name for each in found if each.kind == "sentinel" for name in each.about) == told
+
+
 def test_a_wall_that_fills_the_image_is_one_only_for_a_camera_that_faces_it():
     facing = room.camera_at("one", (0.0, 0.0, 1.4), (1.0, 0.0, 1.4))
     assert look_at_images(room.GRID, [facing], [DepthFrame("one", 0, np.full((120, 160), 1.8))]) == ()

@@ -23,6 +23,16 @@ def with_lens(width=160, height=120, **lens):
     return DepthCamera("one", width, height, looking_at((1.8, 1.8, 2.4), (0.0, 0.0, 0.8)), k)
 
 
+def test_a_pose_that_two_cameras_have_is_said_and_one_that_is_nearly_so_is_not():
+    one, other, *rest = room.cameras()
+    copied = (one, replace(other, world_from_camera=one.world_from_camera), *rest)
+    (found,) = look_at_setting(room.GRID, copied)
+    assert (found.about, found.stops) == ((one.name, other.name), False) and "copied" in found.text
+    beside = one.world_from_camera.copy()
+    beside[0, 3] += 0.01
+    assert look_at_setting(room.GRID, (one, replace(other, world_from_camera=beside), *rest)) == ()
+
+
 def test_what_is_right_is_passed_in_silence():
     assert look_at_setting(room.GRID, room.cameras()) == ()
 

@@ -156,6 +156,25 @@ def test_places_that_are_not_said_or_move(tmp_path):
         )
 
 
+def test_two_cameras_in_one_frame_are_refused(tmp_path):
+    """Images brought to the pixels of others, or a driver started twice: all would stand at one place."""
+    from dataclasses import replace
+
+    messages = [
+        (
+            topic,
+            at,
+            replace(message, header=replace(message.header, frame_id="optical"))
+            if "image" in topic
+            else message,
+        )
+        for topic, at, message in bag_room().messages()
+    ]
+    assert "say the same frame, optical: each camera has one of its own" in refusal(
+        tmp_path / "bag", messages
+    )
+
+
 def test_topics_of_one_camera_are_chosen_between(tmp_path):
     room, extra = bag_room(), []
     camera, frame = room.cameras[0], "cam00_optical"

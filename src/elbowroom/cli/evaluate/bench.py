@@ -19,7 +19,9 @@ All = Annotated[
 ]
 Against = Annotated[
     Path | None,
-    typer.Option(metavar="DIR", help="start: src of another checkout, measured in turns with this package."),
+    typer.Option(
+        metavar="DIR", help="start, parts: src of another checkout, measured in turns with this package."
+    ),
 ]
 Captures = Annotated[
     Path | None,
@@ -44,10 +46,10 @@ Part = Annotated[
 
 def bench(
     what: Annotated[
-        Literal["cycle", "decision", "start", "machine", "record", "calibration"],
+        Literal["cycle", "decision", "start", "parts", "machine", "record", "calibration"],
         typer.Argument(
             help="cycle: carve and whole cycles; decision: exposure to decision in the running monitor; "
-            "start: a new process to its first answer; "
+            "start: a new process to its first answer; parts: the machine in images and space, motions, a path; "
             "machine: what triangles cost; record: whether recording keeps up; calibration: how well cameras are found."
         ),
     ] = "cycle",
@@ -79,6 +81,10 @@ def bench(
         from elbowroom.cli.evaluate.bench_run import run_bench_start
 
         run_bench_start(quick, against, json)
+    elif what == "parts":
+        from elbowroom.cli.evaluate.bench_run import run_bench_parts
+
+        run_bench_parts(quick, threads, against, json)
     elif what == "record":
         from elbowroom.cli.evaluate.bench_run import run_bench_record
 

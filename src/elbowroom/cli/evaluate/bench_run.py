@@ -105,6 +105,37 @@ def run_bench_start(quick: bool, against: Path | None, json: Path | None) -> Non
     measured("cases", rows, None, json, show)
 
 
+def run_bench_parts(quick: bool, threads: int | None, against: Path | None, json: Path | None) -> None:
+    """The machine's parts of a pass.
+
+    Args:
+        quick: few rounds.
+        threads: None: all cores.
+        against: src of another checkout; None: this one alone.
+        json: file for the rows.
+    """
+    from elbowroom.evaluate.speed.parts import DUE as PARTS_DUE
+    from elbowroom.evaluate.speed.parts import parts_rows
+
+    def due(row: Row) -> str:
+        return "".join(f"{due.for_row(row):.0f} ms" for due in PARTS_DUE if due.of(row))
+
+    show = as_table(
+        {
+            "case": "{case}",
+            "median": "{median_ms:.1f} ms",
+            "99 %": "{p99_ms:.1f} ms",
+            "processor": "{cpu_median_ms:.1f} ms",
+            "before": text("{:.1f} ms", "before_ms"),
+            "its processor": text("{:.1f} ms", "before_cpu_ms"),
+            "due": due,
+        },
+        "21 cameras of 640x480 with noise, people walking, 2 cm, detail pixel; both trees in turns.",
+    )
+    rows = parts_rows(QUICK_ROUNDS if quick else 40, threads, against)
+    measured("cases", rows, None, json, show)
+
+
 def run_bench_machine(quick: bool, cameras: int, json: Path | None) -> None:
     """What a machine of many triangles costs, beside the same one of few.
 

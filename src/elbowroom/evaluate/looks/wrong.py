@@ -92,6 +92,23 @@ def sentinel(value_m: float | None = None, code: int | None = None, share: float
     return without_range
 
 
+def noisy(change: Change, sigma_m: float = 0.002) -> Change:
+    """A change of images that scatter, as those of sensors do.
+
+    Args:
+        change: after that.
+        sigma_m: standard deviation [m].
+    """
+
+    def changed(scene: Scene, rng: np.random.Generator) -> Scene:
+        scatter = of_codes(
+            lambda raw, unit, r: np.where(raw > 0, raw + r.normal(0, sigma_m / unit, raw.shape), 0)
+        )
+        return change(scatter(scene, rng), rng)
+
+    return changed
+
+
 def _patches(shape: tuple[int, ...], share: float, rng: np.random.Generator) -> NDArray[np.bool_]:
     """Round patches, as windows, screens and black cloth are."""
     rows, columns = np.mgrid[0 : shape[0], 0 : shape[1]]
@@ -154,6 +171,8 @@ WRONG: Mapping[str, Wrong] = {
     ),
     "bytes exchanged": Wrong(of_codes(lambda raw, unit, rng: raw.byteswap()), ("byte order", "no surfaces")),
     "no return is 10 m": Wrong(sentinel(value_m=10.0), SENTINEL),
+    "no return is 2 m": Wrong(noisy(sentinel(value_m=2.0)), SENTINEL),
+    "no return is 2047 mm": Wrong(noisy(sentinel(value_m=2.047)), SENTINEL),
     "no return is 65533": Wrong(sentinel(code=65533), SENTINEL),
     "no return is 32767": Wrong(sentinel(code=32767), ("sentinel", "unit")),
     "no return is random codes above 65000": Wrong(

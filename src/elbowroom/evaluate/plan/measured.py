@@ -25,6 +25,7 @@ ROOMS = ("simulated", "thesis")
 TIMES = 12
 CAMERAS = 21
 WAITS_S = 120.0
+DRAG_M = 0.02
 
 Tell = Callable[[str], None]
 Deed = Callable[[Planner, int], None]
@@ -135,8 +136,9 @@ def _begun(ground: Ground) -> Layout:
 def _drag_camera(planner: Planner, number: int) -> None:
     placed = planner.layout.cameras[number % len(planner.layout.cameras)]
     pose = placed.camera.world_from_camera.copy()
-    middle = planner.ground.box_m.mean(axis=0)
-    pose[:3, 3] += 0.05 * (middle - pose[:3, 3])
+    away = planner.ground.box_m.mean(axis=0) - pose[:3, 3]
+    # so little that it is not dragged into furniture
+    pose[:3, 3] += DRAG_M * away / np.linalg.norm(away)
     planner.place_camera(placed.name, pose)
 
 

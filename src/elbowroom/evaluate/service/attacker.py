@@ -38,6 +38,10 @@ def attacks(port: int, body: bytes, token: str) -> dict[str, bytes]:
     return {
         "wrong token": post(authorization="Bearer " + "0" * 64),
         "foreign origin": post(more="Origin: http://evil.example\r\n"),
+        "preflight of another site": (
+            f"OPTIONS /v1/reset HTTP/1.1\r\nHost: {own}\r\nOrigin: http://evil.example\r\n"
+            "Access-Control-Request-Method: POST\r\n\r\n"
+        ).encode(),
         "foreign host": post(host=f"evil.example:{port}"),
         "replayed": post(),
         "oversized": post(said=b" " * 4000),

@@ -11,6 +11,7 @@ import urllib.request
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -31,7 +32,16 @@ from elbowroom.sources import Room, open_room
 DUE = (
     Due("let_in", "≤", 0, words="requests that were let in"),
     Due("later_ms", "≤", 5, words="by which any pass is later than the latest without attacks, worst"),
+    Due(
+        "service_later_ms",
+        "≤",
+        5,
+        words="than the latest while the same attacker asks a server that only closes",
+    ),
 )
+NOBODY, CLOSING, SERVICE = AGAINST = ("nobody", "closing", "service")
+"""Whom the attacker asks: nobody; a server that only closes, so that what is later is the attacker's own doing; the
+control service."""
 A_SECOND = 1000.0
 SETTLES_S = 2.0
 DEADLINE_MS = 1000.0
@@ -64,10 +74,10 @@ def service_rows(
     a_second: float = A_SECOND,
     tell: Callable[[str], None] = lambda told: None,
 ) -> Iterator[dict[str, Any]]:
-    """A row for each stretch of time, by turns without and with attacks.
+    """A row for each stretch of time: by turns without attacks, on a server that only closes, and on the service.
 
     Args:
-        rounds: how often both.
+        rounds: how often each.
         seconds: how long each [s].
         a_second: requests of the attack.
         tell: what is being done.
@@ -98,19 +108,35 @@ def _rows(
     ends = threading.Event()
     thread = threading.Thread(target=loop.run, args=([serving, times], None, ends.is_set), daemon=True)
     thread.start()
+    closing, closing_port = _closing()
     try:
         time.sleep(SETTLES_S)
         body = _let_in(port, token)
         while not times.resets:  # it is answered before its pass is shown, and counts as let in by nobody
             time.sleep(0.01)
         for number in range(rounds):
-            for is_attacked in (False, True):
-                tell(f"round {number + 1} of {rounds}, {'attacked' if is_attacked else 'left alone'}")
-                how = (lambda: _attack(port, (a_second, seconds), body, token)) if is_attacked else None
-                yield {"kind": "stretch", "round": number, **_stretch(times, how, seconds)}
+            for against in AGAINST:
+                tell(f"round {number + 1} of {rounds}, the attacker asks: {against}")
+                to = {NOBODY: None, CLOSING: closing_port, SERVICE: port}[against]
+                how = None if to is None else partial(_attack, to, (a_second, seconds), body, token)
+                yield {
+                    "kind": "stretch",
+                    "round": number,
+                    "against": against,
+                    **_stretch(times, how, seconds),
+                }
     finally:
         ends.set()
         thread.join()
+        closing.communicate(timeout=10)
+
+
+def _closing() -> tuple[subprocess.Popen[str], int]:
+    """A server that only closes, and its port."""
+    words = [sys.executable, "-m", "elbowroom.evaluate.service.closing"]
+    closing = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert closing.stdout is not None
+    return closing, int(closing.stdout.readline())
 
 
 def _let_in(port: int, token: str) -> str:
@@ -138,7 +164,6 @@ def _stretch(times: Times, attack: Callable[[], dict[str, Any]] | None, seconds:
         time.sleep(seconds)
     done = np.array(times.done_ms)
     return {
-        "attacked": attack is not None,
         "passes": len(done),
         "median_ms": float(np.median(done)),
         "p99_ms": float(np.percentile(done, 99)),
@@ -172,7 +197,7 @@ def service_summary(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
         rows: of `service_rows`.
     """
     answers: dict[str, dict[str, int]] = {}
-    for row in rows:
+    for row in (row for row in rows if row["against"] == SERVICE):
         for kind, said in row["answers"].items():
             mine = answers.setdefault(kind, {})
             for status, count in said.items():
@@ -187,11 +212,13 @@ def service_summary(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
         }
         for case, said in answers.items()
     ]
-    alone = [row for row in rows if not row["attacked"]]
-    attacked = [row for row in rows if row["attacked"]]
-    if not (alone and attacked):
+    alone, closing, attacked = ([row for row in rows if row["against"] == name] for name in AGAINST)
+    if not (alone and closing and attacked):
         return found
-    worst = max(row["worst_ms"] for row in alone), max(row["worst_ms"] for row in attacked)
+    worst = {
+        name: max(row["worst_ms"] for row in some)
+        for name, some in zip(AGAINST, (alone, closing, attacked), strict=True)
+    }
     total = {
         "kind": "service",
         "case": "all",
@@ -202,8 +229,12 @@ def service_summary(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
         "attacked_median_ms": float(np.median([row["median_ms"] for row in attacked])),
         "alone_p99_ms": max(row["p99_ms"] for row in alone),
         "attacked_p99_ms": max(row["p99_ms"] for row in attacked),
-        "alone_worst_ms": worst[0],
-        "attacked_worst_ms": worst[1],
-        "later_ms": max(worst[1] - worst[0], 0.0),
+        "closing_p99_ms": max(row["p99_ms"] for row in closing),
+        "alone_worst_ms": worst[NOBODY],
+        "closing_worst_ms": worst[CLOSING],
+        "attacked_worst_ms": worst[SERVICE],
+        "later_ms": max(worst[SERVICE] - worst[NOBODY], 0.0),
+        "attacker_later_ms": max(worst[CLOSING] - worst[NOBODY], 0.0),
+        "service_later_ms": max(worst[SERVICE] - worst[CLOSING], 0.0),
     }
     return [*found, total]

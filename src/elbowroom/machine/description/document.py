@@ -77,6 +77,8 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
 
 def _parsed(content: bytes, report: Report) -> etree._Element:
     """The outermost element; what other readers pass over passes with a warning."""
+    if not content.strip():
+        raise MachineError(f"{report.path}: is empty; expected a URDF")
     content = _without_what_stands_first(content, report)
     version = _VERSION.match(content)
     if version is not None:

@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from elbowroom.machine.description.document import Document
 from elbowroom.machine.description.numbers import number, numbers
 from elbowroom.machine.description.report import Report, quoted, tag_of
-from elbowroom.machine.description.shapes import Shape, children, origin_of, require_known, shapes_of, walk
+from elbowroom.machine.description.shapes import (
+    SIZES,
+    Shape,
+    children,
+    origin_of,
+    require_known,
+    shapes_of,
+    walk,
+)
 
 OF_A_LINK = ("inertial", "visual", "collision", "contact", "sensor", "verbose")
 OF_A_JOINT = (
@@ -25,6 +33,14 @@ OF_A_JOINT = (
     "dynamics",
     "safety_controller",
 )
+
+
+OF_A_MIMIC = ("joint", "multiplier", "offset")
+LOST_IN = {
+    "link": ("origin", "pose", "mesh", *SIZES),
+    "joint": ("pose", "rpy", "xyz", "lower", "upper"),
+}
+"""What nobody reads where it stands directly in a link or joint: it belongs into another element, or is of SDF."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -149,6 +165,21 @@ def _nothing_is_lost(root: etree._Element, report: Report) -> None:
             raise report.error(element, f"stands in <{tag_of(parent)}>; it belongs directly into <robot>")
 
 
+def _require_read(element: etree._Element, report: Report) -> None:
+    """Refuses a pose, a size or a limit that stands where nobody reads it, and would change something."""
+    if tag_of(element) == "link" and not (children(element, "collision") or children(element, "visual")):
+        return
+    for child in element.iterchildren(etree.Element):
+        is_nothing = child.tag == "origin" and np.allclose(origin_of(element, report), np.eye(4))
+        if child.tag in LOST_IN[tag_of(element)] and not is_nothing:
+            where = (
+                "a body's pose and shape stand in <collision> or <visual>"
+                if tag_of(element) == "link"
+                else "a joint has <origin xyz= rpy=> and <limit lower= upper=>"
+            )
+            raise report.error(child, f"stands in <{tag_of(element)}>, where nothing reads it; {where}")
+
+
 def _name(element: etree._Element, report: Report) -> str:
     name = element.get("name")
     if not name:
@@ -158,12 +189,14 @@ def _name(element: etree._Element, report: Report) -> str:
 
 def _link(element: etree._Element, report: Report) -> RawLink:
     require_known(element, OF_A_LINK, report)
+    _require_read(element, report)
     collisions, visuals = (tuple(children(element, tag)) for tag in ("collision", "visual"))
     return RawLink(_name(element, report), element, collisions, visuals)
 
 
 def _joint(element: etree._Element, report: Report) -> RawJoint:
     require_known(element, OF_A_JOINT, report)
+    _require_read(element, report)
     name = _name(element, report)
     kind = element.get("type")
     if not kind:
@@ -207,6 +240,11 @@ def _limit(element: etree._Element, report: Report) -> RawLimit:
 
 
 def _mimic(element: etree._Element, report: Report) -> RawMimic:
+    for name in element.attrib:
+        if "}" not in str(name) and name not in OF_A_MIMIC:
+            raise report.error(
+                element, f"{name} is no attribute of a mimic; allowed are {', '.join(OF_A_MIMIC)}"
+            )
     joint = element.get("joint")
     if not joint:
         raise report.error(element, "joint is missing; it names the joint that leads")

@@ -23,6 +23,8 @@ SIZES: dict[str, tuple[str, ...]] = {
     "ellipsoid": ("a", "b", "c"),
 }
 """The attributes that give a solid's sizes [m]. A capsule's length is that of its cylinder, without the caps."""
+UNEVEN = 50.0
+"""A mesh is stretched by less along one axis than along another; more is said."""
 ALLOWED = "mesh, box, cylinder, sphere, capsule"
 
 
@@ -80,6 +82,7 @@ def _solids(geometry: etree._Element, report: Report) -> list[etree._Element]:
 def _shape(element: etree._Element, link_from_shape: NDArray[np.float64], report: Report) -> Shape | None:
     kind: Kind = tag_of(element)  # type: ignore[assignment]
     if kind == "mesh":
+        _require_mesh_words(element, report)
         filename = element.get("filename") or element.get("uri") or ""
         if not filename.strip():
             raise report.error(element, "has no filename")
@@ -100,6 +103,20 @@ def _shape(element: etree._Element, link_from_shape: NDArray[np.float64], report
     return Shape(kind, element, link_from_shape, sizes=sizes)
 
 
+def _require_mesh_words(element: etree._Element, report: Report) -> None:
+    """Refuses attributes that would say a mesh's size and are no scale."""
+    for name in element.attrib:
+        if name in ("scale", "filename", "uri") or "}" in str(name):
+            continue
+        if name in ("unit", "units", "size") or difflib.get_close_matches(
+            str(name).lower(), ("scale",), cutoff=0.6
+        ):
+            raise report.error(
+                element,
+                f'{name} is no attribute of a mesh; its size is set by scale="0.001 0.001 0.001" and the like',
+            )
+
+
 def _said(sizes: tuple[float, ...]) -> str:
     return " ".join(f"{size:g}" for size in sizes)
 
@@ -114,6 +131,13 @@ def _scale(element: etree._Element, report: Report) -> tuple[float, ...]:
     scale = numbers(element, "scale", count, report)
     if 0.0 in scale:
         raise report.error(element, "a scale of 0 leaves nothing of the mesh")
+    least, most = min(map(abs, scale)), max(map(abs, scale))
+    if most >= UNEVEN * least:
+        report.warn(
+            "unit",
+            element,
+            f"scale differs by a factor of {most / least:.4g} between the axes; is that meant?",
+        )
     return scale if count == 3 else scale * 3
 
 

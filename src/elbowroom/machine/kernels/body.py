@@ -12,7 +12,11 @@ from elbowroom.geometry.kernels.rigid import moved, turned
 FIXED, SLIDES, TURNS = 0, 1, 2
 """Kinds of joints."""
 MAX_BLOCKS = 4096
-"""A cluster that may come near more corners of the grid marks its balls one by one."""
+"""A cluster that may come near more corners of the grid, or lie in more voxels, marks its balls one by one."""
+MOST_ALONG = 62
+"""So many voxels that a cluster may lie in stand in one word along an axis, with one more on either side."""
+TOGETHER = 64
+"""Samples that are looked at before what they meet is noted."""
 
 
 class Tree(NamedTuple):
@@ -37,6 +41,24 @@ class Clusters(NamedTuple):
     link: np.ndarray
     centre: np.ndarray
     radius: np.ndarray
+
+
+class Noted(NamedTuple):
+    """Room to note what the samples of one cluster meet, by place in the box about them.
+
+    Fields:
+        blocks: uint8, by the corner nearest to samples, which of the eight voxels about it; zeros between clusters.
+        about: uint32, by the voxel that samples lie in, which of the 27 about it; zeros between clusters.
+        rows: uint64, voxels along the third axis; zeros between clusters.
+        met: of some samples, number of the voxel that each lies in and which of the 27 about it, (2, `TOGETHER`) int32.
+        placed: of some samples, where they are in voxels from the grid's corner, (3, `TOGETHER`).
+    """
+
+    blocks: np.ndarray
+    about: np.ndarray
+    rows: np.ndarray
+    met: np.ndarray
+    placed: np.ndarray
 
 
 @njit(cache=True, nogil=True)
@@ -112,11 +134,162 @@ def mark_balls(clusters, share, shares, world_from_links, reach, lattice, words)
         words: the plane to set bits in.
     """
     r = reach * (1.0 / lattice.edge)
-    blocks = np.zeros(MAX_BLOCKS, dtype=np.uint8)
+    noted = Noted(
+        np.zeros(MAX_BLOCKS, dtype=np.uint8),
+        np.zeros(MAX_BLOCKS, dtype=np.uint32),
+        np.zeros(MAX_BLOCKS, dtype=np.uint64),
+        np.empty((2, TOGETHER), dtype=np.int32),
+        np.empty((3, TOGETHER)),
+    )
     voxels_from_link = np.empty((3, 4))
     for c in range(share, clusters.start.size, shares):
         _scale(world_from_links[clusters.link[c]], lattice, voxels_from_link)
-        _mark_cluster(clusters, c, voxels_from_link, r, lattice, blocks, words)
+        if 0.5 < r <= 1.0:
+            _mark_large(clusters, c, voxels_from_link, r, lattice, noted, words)
+        else:
+            _mark_cluster(clusters, c, voxels_from_link, r, lattice, noted.blocks, words)
+
+
+@uncounted(error_model="numpy")
+def _mark_large(clusters, c, voxels_from_link, r, lattice, noted, words):
+    """As `_mark_cluster`, for balls of a radius r from half a voxel to one.
+
+    Such a ball meets only the 3 x 3 x 3 voxels about the one that its middle lies in. The cluster notes 27 bits for
+    each such voxel first, then rows of voxels along the third axis as bits of words, and sets the voxels at its end.
+    """
+    x, y, z = moved(voxels_from_link, clusters.centre[c, 0], clusters.centre[c, 1], clusters.centre[c, 2])
+    around = clusters.radius[c] * (1.0 / lattice.edge) + 1e-6
+    if not _comes_near(x, y, z, around + r, lattice):
+        return
+    i0, j0, k0 = math.floor(x - around), math.floor(y - around), math.floor(z - around)
+    ni, nj, nk = (
+        math.floor(x + around) - i0 + 1,
+        math.floor(y + around) - j0 + 1,
+        math.floor(z + around) - k0 + 1,
+    )
+    start, stop = clusters.start[c], clusters.stop[c]
+    if ni * nj * nk > MAX_BLOCKS or (ni + 2) * (nj + 2) > MAX_BLOCKS or nk > MOST_ALONG:
+        for p in range(start, stop):
+            x, y, z = moved(
+                voxels_from_link, clusters.points[p, 0], clusters.points[p, 1], clusters.points[p, 2]
+            )
+            _mark_ball(x, y, z, r, lattice, words)
+        return
+    corner, counts = (i0, j0, k0), (ni, nj, nk)
+    for first in range(start, stop, TOGETHER):
+        last = min(first + TOGETHER, stop)
+        _place_points(clusters.points, first, last, voxels_from_link, noted.placed)
+        _look_about(noted.placed, last - first, corner, counts, r * r, noted.met)
+        for n in range(last - first):
+            noted.about[noted.met[0, n]] |= np.uint32(noted.met[1, n])
+    _gather_rows(noted.about, counts, noted.rows)
+    for row in range((ni + 2) * (nj + 2)):
+        if noted.rows[row] != 0:
+            _set_row(
+                i0 - 1 + row // (nj + 2), j0 - 1 + row % (nj + 2), k0 - 1, noted.rows[row], lattice, words
+            )
+            noted.rows[row] = 0
+
+
+@njit(inline="always")
+def _comes_near(x, y, z, reach, lattice):
+    """Whether a place, in voxels from the grid's corner, is within reach of the grid."""
+    return (
+        -reach <= x <= lattice.nx + reach
+        and -reach <= y <= lattice.ny + reach
+        and -reach <= z <= lattice.nz + reach
+    )
+
+
+@uncounted()
+def _place_points(points, first, last, voxels_from_link, placed):
+    """Some points of a link in voxels from the grid's corner, (3, last - first)."""
+    for axis in range(3):
+        a, b = voxels_from_link[axis, 0], voxels_from_link[axis, 1]
+        c, d = voxels_from_link[axis, 2], voxels_from_link[axis, 3]
+        for n in range(last - first):
+            u, p = np.uint64(n), np.uint64(first + n)
+            placed[axis, u] = a * points[p, 0] + b * points[p, 1] + c * points[p, 2] + d
+
+
+@uncounted(error_model="numpy")
+def _look_about(placed, count, corner, counts, square, met):
+    """Of each place the voxel that it lies in, counted in a box, and which of the 27 about that its ball meets.
+
+    Bit 9 a + 3 b + c stands for the voxel (a - 1, b - 1, c - 1) from there. Distances are worked out as `_mark_ball`
+    does it, bit by bit.
+
+    Args:
+        placed: (3, count) places in voxels from the grid's corner.
+        count: how many.
+        corner, counts: least voxel of the box, and how many it has along each axis.
+        square: of the ball's radius.
+        met: (2, count) int32, written: number in the box, and the bits.
+    """
+    i0, j0, k0, nj, nk = corner[0], corner[1], corner[2], counts[1], counts[2]
+    for n in range(count):
+        u = np.uint64(n)
+        x, y, z = placed[0, u], placed[1, u], placed[2, u]
+        i, j, k = math.floor(x), math.floor(y), math.floor(z)
+        a0, b0, c0 = x - (i - 1.0) - 1.0, y - (j - 1.0) - 1.0, z - (k - 1.0) - 1.0
+        a2, b2, c2 = (i + 1.0) - x, (j + 1.0) - y, (k + 1.0) - z
+        a0, b0, c0, a2, b2, c2 = a0 * a0, b0 * b0, c0 * c0, a2 * a2, b2 * b2, c2 * c2
+        bits = np.int32(1 << 13)
+        bits |= np.int32(a0 <= square) << 4 | np.int32(a2 <= square) << 22
+        bits |= np.int32(b0 <= square) << 10 | np.int32(b2 <= square) << 16
+        bits |= np.int32(c0 <= square) << 12 | np.int32(c2 <= square) << 14
+        bits |= np.int32(a0 + b0 <= square) << 1 | np.int32(a0 + b2 <= square) << 7
+        bits |= np.int32(a2 + b0 <= square) << 19 | np.int32(a2 + b2 <= square) << 25
+        bits |= np.int32(a0 + c0 <= square) << 3 | np.int32(a0 + c2 <= square) << 5
+        bits |= np.int32(a2 + c0 <= square) << 21 | np.int32(a2 + c2 <= square) << 23
+        bits |= np.int32(b0 + c0 <= square) << 9 | np.int32(b0 + c2 <= square) << 11
+        bits |= np.int32(b2 + c0 <= square) << 15 | np.int32(b2 + c2 <= square) << 17
+        bits |= np.int32(a0 + b0 + c0 <= square) | np.int32(a0 + b0 + c2 <= square) << 2
+        bits |= np.int32(a0 + b2 + c0 <= square) << 6 | np.int32(a0 + b2 + c2 <= square) << 8
+        bits |= np.int32(a2 + b0 + c0 <= square) << 18 | np.int32(a2 + b0 + c2 <= square) << 20
+        bits |= np.int32(a2 + b2 + c0 <= square) << 24 | np.int32(a2 + b2 + c2 <= square) << 26
+        met[0, u] = (np.int32(i - i0) * nj + np.int32(j - j0)) * nk + np.int32(k - k0)
+        met[1, u] = bits
+
+
+@uncounted()
+def _gather_rows(about, counts, rows):
+    """Gathers what was noted about the voxels of a box as rows of bits along its third axis, one voxel more each way.
+
+    Row i (nj + 2) + j holds in bit k the voxel (i - 1, j - 1, k - 1) of the box; `about` is zeros afterwards.
+    """
+    ni, nj, nk = counts
+    for i in range(ni):
+        for j in range(nj):
+            for k in range(nk):
+                bits = about[(i * nj + j) * nk + k]
+                if bits == 0:
+                    continue
+                about[(i * nj + j) * nk + k] = 0
+                for side in range(9):
+                    three = np.uint64((bits >> np.uint32(3 * side)) & np.uint32(7))
+                    rows[(i + side // 3) * (nj + 2) + j + side % 3] |= three << np.uint64(k)
+
+
+@uncounted()
+def _set_row(i, j, k, row, lattice, words):
+    """Sets the voxels (i, j, k + n) for each bit n of a row, as far as they are in the grid."""
+    if not (0 <= i < lattice.nx and 0 <= j < lattice.ny):
+        return
+    if k < 0:
+        row, k = row >> np.uint64(-k), 0
+    if k >= lattice.nz:
+        return
+    if lattice.nz - k < 64:
+        row &= (np.uint64(1) << np.uint64(lattice.nz - k)) - np.uint64(1)
+    place = np.uint64(((i & 3) * 4 + (j & 3)) * 4)
+    while row != 0:
+        start = np.uint64(k & 3)
+        four = (row << start) & np.uint64(15)
+        if four != 0:
+            words[word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)] |= four << place
+        row >>= np.uint64(4) - start
+        k += 4 - (k & 3)
 
 
 @uncounted()

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry.kernels.bits import Lattice, bit_of, uncounted, word_of
+from elbowroom.geometry.kernels.bits import Lattice, uncounted, word_of
 from elbowroom.geometry.kernels.noise import sigma
 from elbowroom.geometry.kernels.rigid import moved, turned
 from elbowroom.machine.kernels.draw import NEAR_M
@@ -45,12 +45,14 @@ class Scratch(NamedTuple):
         spans: planar depth from and to [m], half a pixel there [voxels], shape (3, width), float32.
         boxes: first and last i, j and k of the voxels that a return may lie in, shape (6, width), int32; none if the
             last comes before the first.
+        same: whether a pixel has the same box as the one before, uint8, shape (width,).
     """
 
     limits: np.ndarray
     found: np.ndarray
     spans: np.ndarray
     boxes: np.ndarray
+    same: np.ndarray
 
 
 class Spread(NamedTuple):
@@ -71,6 +73,20 @@ def spread_of(view, sigmas, beside):
         np.float32(sigmas * view.quadratic),
         np.float32(view.offset),
     )
+
+
+@uncounted(error_model="numpy")
+def least_from(bound):
+    """The least float32 number that is not below a bound."""
+    least = np.float32(bound)
+    return least if least >= bound else np.nextafter(least, np.float32(np.inf))
+
+
+@uncounted(error_model="numpy")
+def most_to(bound):
+    """The greatest float32 number that is not above a bound."""
+    most = np.float32(bound)
+    return most if most <= bound else np.nextafter(most, np.float32(-np.inf))
 
 
 @uncounted(error_model="numpy")
@@ -189,11 +205,12 @@ def _find(depth, model, limits, left, right, found):
 def _mark_row(view, depth, model, v, left, right, around, scratch):
     """Sets the voxels of the returns that were found in one row of pixels, from column left up to right."""
     # taken out of the tuples once: each look into them counts references, which costs more than the arithmetic below
-    found, boxes, lattice, words = scratch.found, scratch.boxes, around.lattice, around.words
+    found, boxes, same = scratch.found, scratch.boxes, scratch.same
+    lattice, words = around.lattice, around.words
     measured, eight = depth[v], found.view(np.uint64)
-    # tiles start at whole words of eight pixels; the last pixel whose box was seen to be set: neighbours mostly
-    # have the same box
-    done, known = left, np.int64(-1)
+    # tiles start at whole words of eight pixels; whether the box of the pixel before was seen to be set: neighbours
+    # mostly have the same box
+    done, known = left, False
     for n in range(left // 8, (right + 7) // 8):
         if eight[n] == 0:
             continue
@@ -202,13 +219,14 @@ def _mark_row(view, depth, model, v, left, right, around, scratch):
             while done < right and eight[done // 8] != 0:
                 done = min(done + 8, right)
             _bound_returns(view, v, measured, 8 * n, done, around, scratch)
+            _same_boxes(boxes, 8 * n, done, same)
         for u in range(8 * n, min(8 * n + 8, right)):
-            if found[u] == 0 or (known >= 0 and _same_box(boxes, u, known)):
+            known = known and same[u] != 0
+            if found[u] == 0 or known:
                 continue
             # the voxels first: most are set already
-            if _all_set(boxes, u, lattice, words):
-                known = u
-            elif has_support(view, depth, model, u, v):
+            known = _all_set(boxes, u, lattice, words)
+            if not known and has_support(view, depth, model, u, v):
                 _mark_return(view, u, v, measured[u], around)
 
 
@@ -264,22 +282,40 @@ def _bound_along(axis, y, view, start, stop, around, scratch):
 
 
 @uncounted(error_model="numpy")
-def _same_box(boxes, u, other):
-    """Whether two pixels of a row have the same box."""
-    same = True
-    for n in range(6):
-        same &= boxes[n, u] == boxes[n, other]
-    return same
+def _same_boxes(boxes, start, stop, same):
+    """Notes which pixels of a run have the same box as the one before; the first one has not."""
+    for n in range(start, stop):
+        u, before = np.uint64(n), np.uint64(max(n - 1, 0))
+        same[u] = (
+            (n > start)
+            & (boxes[0, u] == boxes[0, before])
+            & (boxes[1, u] == boxes[1, before])
+            & (boxes[2, u] == boxes[2, before])
+            & (boxes[3, u] == boxes[3, before])
+            & (boxes[4, u] == boxes[4, before])
+            & (boxes[5, u] == boxes[5, before])
+        )
+
+
+@njit(inline="always")
+def _row_bits(i, j, k, last):
+    """Of the word of voxel (i, j, k), the bits of the voxels (i, j, k) to (i, j, last), as far as they are its own."""
+    row = (np.uint64(2) << np.uint64(min(last - (k & ~3), 3))) - (np.uint64(1) << np.uint64(k & 3))
+    return row << np.uint64(((i & 3) * 4 + (j & 3)) * 4)
 
 
 @uncounted(error_model="numpy")
 def _all_set(boxes, u, lattice, words):
     """Whether all voxels of a box are set already."""
+    last = boxes[5, u]
     for i in range(boxes[0, u], boxes[1, u] + 1):
         for j in range(boxes[2, u], boxes[3, u] + 1):
-            for k in range(boxes[4, u], boxes[5, u] + 1):
-                if not words[word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)] & bit_of(i, j, k):
+            k = boxes[4, u]
+            while k <= last:
+                bits = _row_bits(i, j, k, last)
+                if words[word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)] & bits != bits:
                     return False
+                k = (k & ~3) + 4
     return True
 
 
@@ -313,13 +349,16 @@ def _set_cube(x, y, z, half, lattice, words):
     nx, ny, nz = lattice.nx, lattice.ny, lattice.nz
     if not (-half <= x < nx + half and -half <= y < ny + half and -half <= z < nz + half):
         return
+    first, last = max(0, math.floor(z - half)), min(nz - 1, math.floor(z + half))
     for i in range(max(0, math.floor(x - half)), min(nx - 1, math.floor(x + half)) + 1):
         for j in range(max(0, math.floor(y - half)), min(ny - 1, math.floor(y + half)) + 1):
-            for k in range(max(0, math.floor(z - half)), min(nz - 1, math.floor(z + half)) + 1):
-                words[word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)] |= bit_of(i, j, k)
+            k = first
+            while k <= last:
+                words[word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)] |= _row_bits(i, j, k, last)
+                k = (k & ~3) + 4
 
 
-@njit(nogil=True, error_model="numpy")
+@uncounted(error_model="numpy")
 def set_run(array, start, stop, value):
     """Sets a run of an array. Unsigned indices, as above, or the compiler does one pixel at a time."""
     for n in range(start, stop):

@@ -1,4 +1,7 @@
-"""A look at whether anything that stands in the grid is seen: at the first moments, and as long as nothing is."""
+"""A look at whether anything that stands in the grid is seen: at the first moments, and as long as nothing is.
+
+And, once, at how much depths scatter.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -8,6 +11,7 @@ from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.nothing_seen import nothing_seen
 from elbowroom.sensing import Snapshot
+from elbowroom.sensing.values.scatter import look_at_scatter
 
 FIRST = 3
 """At so many moments with frames it is asked, and until one was right; while it stops, at each."""
@@ -30,6 +34,7 @@ class NothingLook:
     found: tuple[Finding, ...] = field(default=(), init=False)
     heard: int = field(default=0, init=False)
     asks: bool = field(default=True, init=False)
+    scatter: tuple[Finding, ...] | None = field(default=None, init=False)
 
     def hear(self, snapshot: Snapshot) -> Sequence[Finding]:
         """What is found by now."""
@@ -39,4 +44,6 @@ class NothingLook:
             self.heard += 1
             # once something was seen where nothing was, the depths are depths
             self.asks = bool(self.found) or (self.heard < FIRST and not stopped)
-        return self.found
+        if snapshot.frames and self.scatter is None and not self.found:
+            self.scatter = look_at_scatter(self.cameras, snapshot.frames, self.margin)
+        return (*self.found, *(self.scatter or ()))

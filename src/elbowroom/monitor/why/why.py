@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from trimesh.triangles import closest_point
 
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.kernels.bits import plain
@@ -112,6 +111,8 @@ def _distance(
     """Median distance from a link of what was measured nearest to a place [m]."""
     if not len(points):
         return None
+    from trimesh.triangles import closest_point  # slow to load, and only stops ask
+
     aside = np.linalg.norm(points - np.array(place), axis=1)
     near = points[np.argsort(aside)[:MOST_POINTS]]
     # only what of the link can be nearest: about the voxel, by how far the points are

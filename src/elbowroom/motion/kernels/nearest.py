@@ -12,6 +12,8 @@ from elbowroom.motion.kernels.volume import cell_of, gap
 
 NOTHING, VOXEL, OUTSIDE = 0, 1, 2
 """What is nearest: nothing within reach, a marked voxel, what lies outside the grid."""
+MIDDLE_ERROR = 1e-6
+"""More than the distance of a ball's middle errs by rounding [voxel edges]."""
 
 
 class Marks(NamedTuple):
@@ -52,10 +54,7 @@ def nearest(world_from_link, body, first, last, marks, reach, place):
     best, kind = reach / lattice.edge, NOTHING
     away = np.empty(last - first)
     found = np.empty(5)
-    for n in range(away.size):
-        x, y, z = carried(world_from_link, body.centre[first + n])
-        r = body.radius[first + n] / lattice.edge
-        away[n] = _from_point(x, y, z, marks, best + r, found) - r
+    _away_of_clusters(world_from_link, body, first, marks, best, away, found)
     for n in np.argsort(away):
         if away[n] >= best:
             break
@@ -75,6 +74,34 @@ def nearest(world_from_link, body, first, last, marks, reach, place):
                 if best <= 0.0:
                     return 0.0, kind
     return best * lattice.edge, kind
+
+
+@uncounted()
+def _away_of_clusters(world_from_link, body, first, marks, most, away, found):
+    """Of clusters, no more than how far each one's ball is from what is marked: exact for those that may be nearest.
+
+    Some sample of a ball is no farther than its middle and its radius. What is known to come no nearer than that of
+    another ball is not worked out: by how far its middle is from that of the ball before, or by a limit to the search.
+
+    Args:
+        world_from_link, body, first, marks: as of `nearest`.
+        most: greater distances are not worked out [voxel edges].
+        away: (clusters,) written [voxel edges].
+        found: (5,) room to work in.
+    """
+    edge = marks.lattice.edge
+    lower, a, b, c = -math.inf, 0.0, 0.0, 0.0
+    for n in range(away.size):
+        x, y, z = carried(world_from_link, body.centre[first + n])
+        r = body.radius[first + n] / edge
+        # rounding must not make a middle farther than it is
+        lower -= math.sqrt((x - a) * (x - a) + (y - b) * (y - b) + (z - c) * (z - c)) / edge + MIDDLE_ERROR
+        a, b, c = x, y, z
+        if not lower - r > most:
+            lower = _from_point(x, y, z, marks, most + r + MIDDLE_ERROR, found)
+            if found[3] != NOTHING:
+                most = min(most, lower + r + MIDDLE_ERROR)
+        away[n] = lower - r
 
 
 @njit(cache=True, nogil=True)

@@ -1,7 +1,7 @@
 "use strict";
 // talks with the page's process: what it says is shown, and what is old is said to be old
 (() => {
-  const OLD_S = 1.0, AGAIN_MS = 1000;
+  const OLD_S = 1.0, AGAIN_MS = 1000, DRAWS_MS = 33, SLOWEST_MS = 100, WAITING_MS = 400;
   const token = [...crypto.getRandomValues(new Uint8Array(16))].map(one => one.toString(16).padStart(2, "0")).join("");
   let socket = null, hello = null, heard = null, age = 0, isOpen = false, isEnded = false;
 
@@ -21,10 +21,12 @@
       isEnded = false;
       Panel.begin(said, ask);
       if (said.mode === "replay") Slider.begin(said, ask);
+      Controls.begin(said);
     } else if (said.type === "moment") {
       heard = now();
       age = said.age_s;
       Panel.moment(said);
+      Controls.moment(said);
       const time = hello.mode === "replay" ? said.sequence_s : heard;
       Plots.add("free", time, said.motions.map(one => one.brakes));
       Plots.add("cycle", time, [said.cycle_ms]);
@@ -42,10 +44,12 @@
   function watch() {
     if (!hello) return;
     const seconds = heard === null ? 0 : now() - heard + age, values = {age: Panel.seconds(seconds)};
-    if (isEnded) Panel.old(Panel.word("ended"));
-    else if (!isOpen) Panel.old(Panel.word("gone", values));
-    else if (hello.mode === "live" && heard !== null && seconds > OLD_S) Panel.old(Panel.word("old", values));
-    else Panel.old(null);
+    let old = null;
+    if (isEnded) old = Panel.word("ended");
+    else if (!isOpen) old = Panel.word("gone", values);
+    else if (hello.mode === "live" && heard !== null && seconds > OLD_S) old = Panel.word("old", values);
+    Panel.old(old);
+    Controls.watch(old !== null || heard === null);
   }
 
   function hasWebGL() {
@@ -57,6 +61,28 @@
 
   const NO_WEBGL = document.body.dataset.noWebgl;
 
+  // the room is drawn as often as joints come, and less often where drawing takes long: a browser that draws by software
+  // on the monitor's own computer leaves it its processor
+  function calm(view) {
+    const draw = view.requestAnimationFrame.bind(view), timers = new Map();
+    let took = 0, number = 0;
+    view.requestAnimationFrame = callback => {
+      const id = ++number, isWaiting = document.body.classList.contains("waiting");
+      const pause = isWaiting ? WAITING_MS : Math.max(DRAWS_MS - took, Math.min(took, SLOWEST_MS));
+      timers.set(id, setTimeout(() => {
+        const asked = performance.now();
+        timers.set(id, null);
+        draw(time => {
+          if (!timers.delete(id)) return;
+          callback(time);
+          took = performance.now() - asked;
+        });
+      }, pause));
+      return id;
+    };
+    view.cancelAnimationFrame = id => { clearTimeout(timers.get(id)); timers.delete(id); };
+  }
+
   function openScene() {
     const place = Panel.at("scene");
     if (!hasWebGL()) { Panel.setText(Panel.at("noscene"), NO_WEBGL); place.dataset.drawn = "no"; return; }
@@ -67,6 +93,7 @@
       const style = frame.contentDocument.createElement("style");
       style.textContent = "body * { visibility: hidden !important; } canvas { visibility: visible !important; }";
       frame.contentDocument.head.append(style);
+      calm(frame.contentWindow);
       frame.contentDocument.documentElement.lang = document.documentElement.lang;
       place.dataset.drawn = "yes";
     };

@@ -42,6 +42,9 @@ const Panel = (() => {
       row.append(first, level, free, element("td"), element("td"));
       return row;
     }));
+    const clear = at("clearways");
+    clear.hidden = said.mode === "report";
+    clear.firstChild.onchange = event => ask({type: "ways", all: event.target.checked});
     const cameras = at("cameras").tBodies[0];
     cameras.replaceChildren(...said.cameras.map(name => {
       const row = element("tr"), button = element("button", name), first = element("td");
@@ -97,6 +100,11 @@ const Panel = (() => {
       cameras[number].classList.toggle("ill", !one.is_well);
       ["state", "rate", "age", "skew", "valid", "drift"].forEach((key, column) => setText(cells[column + 1], one[key]));
     });
+    at("path").hidden = !said.path;
+    if (said.path) {
+      setText(at("path"), said.path.text);
+      at("path").className = said.path.level;
+    }
     if (said.thinned !== undefined) setText(at("near"), [hello.near, said.thinned].filter(Boolean).join(" "));
   }
 

@@ -25,7 +25,7 @@ CHOSEN: Colour = (204, 121, 167)
 INVALID: Colour = (213, 94, 0)
 MOST_DOTS = 2500
 DOTS: tuple[tuple[str, Colour], ...] = (
-    ("none", (204, 0, 110)), ("few", (240, 200, 40)), ("many", (0, 114, 178)),
+    ("none", (160, 0, 60)), ("few", (255, 215, 40)), ("many", (60, 150, 220)),
 )  # fmt: skip
 """By how many cameras see a person: none, one or two, three or more."""
 MANY = 3

@@ -15,8 +15,8 @@ from elbowroom.simulate.solid import Mesh, Solid
 MOST_BYTES, MOST_TRIANGLES = 30_000_000, 300_000
 """A file that is larger is not placed; simplify it first."""
 ENDINGS = (".glb", ".gltf", ".obj", ".ply", ".stl", ".off", ".dae")
-LARGEST_M = 20.0
-"""A thing that is longer was not modelled in metres [m]."""
+LARGEST_M, SMALLEST_M = 20.0, 0.01
+"""A thing that is longer, or shorter, was not modelled in metres [m]."""
 BOXES_M: dict[str, tuple[float, float, float]] = {
     "box": (0.6, 0.6, 0.8),
     "cabinet": (0.9, 0.45, 1.9),
@@ -91,6 +91,8 @@ def thing_of_file(file_name: str, content: bytes, name: str) -> PlacedThing:
     longest = float(np.ptp(corners, axis=0).max())
     if longest > LARGEST_M:
         raise InputError(f"{file_name}: {longest:.0f} m long; export it in metres")
+    if longest < SMALLEST_M:
+        raise InputError(f"{file_name}: {1e3 * longest:.2g} mm long; export it in metres")
     return thing
 
 

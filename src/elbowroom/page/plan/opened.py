@@ -5,6 +5,7 @@ from pathlib import Path
 
 from elbowroom.page.plan.ground import Ground
 from elbowroom.page.plan.session import Session
+from elbowroom.page.served import file_of_page
 from elbowroom.page.server import Answer, Guarded, guarded
 from elbowroom.page.words import Words
 
@@ -18,7 +19,8 @@ FRAME = (
     '<!doctype html><html lang="{language}"><head><meta charset="utf-8"><title>{title}</title>'
     '<link rel="icon" href="data:,"><style>{style}</style></head><body>'
     "<header><h1>{title}</h1><p>{hint}</p></header>"
-    '<iframe src="/scene/plan" title="{scene}"></iframe></body></html>'
+    '<iframe src="/scene/plan" title="{scene}" data-close="{close}" data-settings="{settings}"></iframe>'
+    '<script src="/plan.js"></script></body></html>'
 )
 PORT = 8139
 """At which the page is, if nobody says otherwise."""
@@ -40,9 +42,7 @@ def open_plan(
         InputError: the port is taken, or what was kept is no plan of this site.
         PackageError: viser is missing.
     """
-    made = guarded(
-        Guarded({"/": Answer("text/html; charset=utf-8", frame_of(words, ground.site.name))}), port
-    )
+    made = guarded(Guarded(_answers(words, ground.site.name)), port)
     try:
         made.viser.gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
         made.viser.gui.main_panel.dock_right()
@@ -54,6 +54,15 @@ def open_plan(
     _look_in(session)
     session.start()
     return session
+
+
+def _answers(words: Words, site: str) -> dict[str, Answer]:
+    """By path, what is served."""
+    return {
+        "/": Answer("text/html; charset=utf-8", frame_of(words, site)),
+        "/plan.css": Answer("text/css; charset=utf-8", file_of_page("plan.css").encode()),
+        "/plan.js": Answer("text/javascript; charset=utf-8", file_of_page("plan.js").encode()),
+    }
 
 
 def frame_of(words: Words, site: str) -> bytes:
@@ -68,6 +77,8 @@ def frame_of(words: Words, site: str) -> bytes:
         "title": words("plan.title", site=site),
         "hint": words("plan.hint"),
         "scene": words("plan.scene"),
+        "close": words("plan.close"),
+        "settings": words("plan.settings"),
     }
     escaped = {key: html.escape(value) for key, value in values.items()}
     return FRAME.format(style=STYLE, **escaped).encode()

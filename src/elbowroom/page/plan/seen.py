@@ -1,6 +1,7 @@
 """What cameras see of the room with its things and nobody in it, camera by camera, so that one can be moved alone."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -50,6 +51,9 @@ class SeenRoom:
     _fixed: FixedRoom | None = field(default=None, init=False)
     _asked: NDArray[np.bool_] | None = field(default=None, init=False)
     _known: dict[int, Seen] = field(default_factory=dict, init=False)
+    _judged: tuple[list[DepthCamera], Verification] | None = field(default=None, init=False)
+    """Of which cameras, and what came of them."""
+    _needed: tuple[tuple[float, float], float] | None = field(default=None, init=False)
 
     def verified(self, layout: Layout, is_stale: Stop) -> Verification:
         """The same as `placement.verify` says.
@@ -69,10 +73,16 @@ class SeenRoom:
         self._look(layout, is_stale)
         known = [self._known[id(placed.camera)] for placed in layout.cameras]
         self._known = {id(one.camera): one for one in known}
+        cameras = [one.camera for one in known]
+        if self._judged is not None and _are_same(
+            cameras, self._judged[0]
+        ):  # a person or the machine has moved
+            return self._judged[1]
         unless(is_stale)
         seen = np.stack([one.seen for one in known])
-        cameras = [one.camera for one in known]
-        return judge(self.grid, cameras, seen, asked.copy(), self.ground.requirement)
+        found = judge(self.grid, cameras, seen, asked.copy(), self.ground.requirement)
+        self._judged, self._needed = (cameras, found), None
+        return found
 
     def smallest_mm(self, layout: Layout, percent: float, edge_m: float) -> float:
         """As `placement.capability` of one view has it: what is seen at so many of all places [mm].
@@ -82,6 +92,12 @@ class SeenRoom:
             percent: of the places [%].
             edge_m: of the voxels that things are told apart from in the end [m].
         """
+        asked = percent, edge_m
+        if self._needed is None or self._needed[0] != asked:
+            self._needed = asked, self._smallest_mm(layout, percent, edge_m)
+        return self._needed[1]
+
+    def _smallest_mm(self, layout: Layout, percent: float, edge_m: float) -> float:
         known = [self._known[id(placed.camera)] for placed in layout.cameras]
         whole = np.minimum.reduce([one.need_m for one in known])
         whole = np.float32(1000) * np.maximum(whole, np.float32(edge_m * math.sqrt(3.0)))
@@ -93,6 +109,7 @@ class SeenRoom:
         if self._asked is None or self._things is not layout.things:
             self._things, self._fixed = layout.things, self.ground.fixed_with(layout)
             self._known.clear()
+            self._judged = None
             shape = self.grid.shape
             self._asked = np.ones(shape, bool) if self._fixed is None else ~self._fixed.occupied(self.grid)
         return self._asked
@@ -107,3 +124,8 @@ class SeenRoom:
                 need = np.full(self.grid.shape, np.inf, dtype=np.float32)
                 need[seen] = np.maximum(*needs(camera, self.grid.centre_of(np.argwhere(seen))))
                 self._known[id(camera)] = Seen(camera, seen, need)
+
+
+def _are_same(one: Sequence[DepthCamera], other: Sequence[DepthCamera]) -> bool:
+    """Whether these are the same cameras, and not only alike."""
+    return len(one) == len(other) and all(a is b for a, b in zip(one, other, strict=True))

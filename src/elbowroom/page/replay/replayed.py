@@ -103,6 +103,10 @@ class Replayed:
                 self._play(asked["type"] == "play")
             if asked["type"] == "why":
                 self._explain(viewer, int(asked["motion"]))
+            if asked["type"] == "ways":
+                self.page.stage.shows_clear = asked["all"] is True
+                if self._shown is not None:
+                    self.page.stage.show_ways(self._shown.told)
             if asked["type"] == "depth":
                 self._depth(viewer, str(asked["camera"]))
         except (KeyError, TypeError, ValueError, IndexError, OverflowError):

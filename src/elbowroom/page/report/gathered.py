@@ -19,6 +19,7 @@ from elbowroom.page.scene.bodies import light_mesh
 from elbowroom.page.scene.scene import FRUSTUM_M, KINDS
 from elbowroom.page.stage import Stage
 from elbowroom.page.story.phrases import level_of
+from elbowroom.page.story.requested import end_of_path, level_of_path
 from elbowroom.page.story.told import Told
 from elbowroom.page.telling import Telling
 from elbowroom.view.draw.site import frustum_in_world
@@ -90,7 +91,12 @@ class Gathering:
             for number, way in ways
             if len(way)
         ]
+        path, level = self.stage.path(told)[::WAY_EVERY], level_of_path(told)
+        if level is not None and len(path):
+            points = self.pack.add(np.round(100 * path).astype(np.int16))
+            found["ways"].append([level.name.lower(), points])
         ends = [row["place_m"] for row in rows if level_of(row) is not Level.CLEAR]
+        ends += [end["place_m"] for end in (end_of_path(told),) if end is not None]
         found["contacts"] = [place for place in ends if place is not None]
         return found
 

@@ -113,7 +113,7 @@ def _page(data: str, judge: Judge, words: Words, span: Span) -> str:
     """The whole file."""
     site = str(judge.configuration.told.get("site"))
     title = words("report.title", site=site, time=clock(judge.recording.said_at(span.about)["wall_ns"]))
-    frame = filled(file_of_page("page.html"), words, title=title)
+    frame = filled(file_of_page("page.html").replace("{{controls}}", ""), words, title=title)
     program = "\n".join(file_of_page(name) for name in PROGRAM)
     extra = filled(file_of_page("report.html"), words)
     parts = {

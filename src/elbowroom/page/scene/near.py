@@ -67,7 +67,10 @@ def near_of(
     if (upper <= lower).any():
         nothing = np.zeros((0, 3), dtype=np.int32)
         return Near(nothing, nothing, nothing)
-    index = np.argwhere(_outermost(~_cropped(planes.free, grid, lower, upper))) + lower
+    outermost = _outermost(~_cropped(planes.free, grid, lower, upper))
+    # as `argwhere`, several times as fast
+    flat = np.flatnonzero(outermost)
+    index = np.stack(np.unravel_index(flat, outermost.shape), axis=1) + lower
     if planes.looked_at.size:
         index = index[planes.looked_at[_places(index, grid)[0]]]
     if len(machine_in_world):

@@ -17,6 +17,8 @@ from elbowroom.page.scene.near import Near
 
 FRUSTUM_M = 0.16
 """A camera's frustum is drawn so far [m]."""
+ONE_LABEL_M = 0.2
+"""Contacts that are no farther apart have one label: theirs would lie over each other [m]."""
 KINDS: dict[str, Colour] = {
     "surface": colours.SURFACE,
     "unseen": colours.UNSEEN,
@@ -145,6 +147,15 @@ class Scene:
         """
         self.show_points(f"/ways/{number}", points, colours.LEVELS[level], 0.012)
 
+    def show_path(self, points: NDArray[np.float64], level: Level) -> None:
+        """Shows the swept volume of the path that was asked for.
+
+        Args:
+            points: shape (n, 3), world frame [m]; none: it is not shown.
+            level: whose colour it has.
+        """
+        self.show_points("/path", points, colours.LEVELS[level], 0.022)
+
     def show_contacts(self, contacts: Sequence[tuple[str, tuple[float, float, float]]]) -> None:
         """Marks where motions first meet something.
 
@@ -153,13 +164,14 @@ class Scene:
         """
         points = np.array([place for _, place in contacts], dtype=np.float64).reshape(-1, 3)
         self.show_points("/contacts", points, colours.CONTACT, 0.045, shape="diamond")
-        for number, (name, place) in enumerate(contacts):
+        labels = _labels_of(contacts)
+        for number, (name, place) in enumerate(labels):
             content = f"{name} {place}".encode()
             if self._is_news(f"contact {number}", content):
                 self._labels[number] = self.server.scene.add_label(
                     f"/contact_names/{number}", f"◆ {name}", position=tuple(map(float, place))
                 )
-        for number in [number for number in self._labels if number >= len(contacts)]:
+        for number in [number for number in self._labels if number >= len(labels)]:
             self._labels.pop(number).remove()
             self._sent.pop(f"contact {number}", None)
 
@@ -207,3 +219,18 @@ class Scene:
         """Whether something else was sent by that name last; notes that this is sent now."""
         before, self._sent[name] = self._sent.get(name), content
         return before != content
+
+
+def _labels_of(
+    contacts: Sequence[tuple[str, tuple[float, float, float]]],
+) -> list[tuple[str, tuple[float, float, float]]]:
+    """Texts and places of labels: one for contacts that lie close together, at the first of them."""
+    found: list[tuple[list[str], tuple[float, float, float]]] = []
+    for name, place in contacts:
+        near = (names for names, at in found if np.linalg.norm(np.subtract(place, at)) <= ONE_LABEL_M)
+        names = next(near, None)
+        if names is None:
+            found.append(([name], place))
+        else:
+            names.append(name)
+    return [(", ".join(names), place) for names, place in found]

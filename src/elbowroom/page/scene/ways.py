@@ -1,6 +1,6 @@
 """The swept volume of a motion, as points: where its links come on the way that is free."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,9 +33,29 @@ def way_points(
     joint, travel = motion
     if abs(travel) < 1e-9:
         return np.zeros((0, 3))
+    shares = np.linspace(1 / STOPS, 1.0, STOPS)
+    return swept_points(
+        machine, points, joints, [_held(machine, joints, joint, share * travel) for share in shares]
+    )
+
+
+def swept_points(
+    machine: Machine,
+    points: Mapping[str, NDArray[np.float64]],
+    joints: Mapping[str, float],
+    places: Sequence[Mapping[str, float]],
+) -> NDArray[np.float64]:
+    """Where the links come that are elsewhere at some of the places, shape (n, 3), world frame [m].
+
+    Args:
+        machine: what moves.
+        points: of `bodies.link_points`.
+        joints: where it stands, by name [m or rad].
+        places: where it comes, likewise.
+    """
     swept, before = [], machine.world_from_links(joints)
-    for share in np.linspace(1 / STOPS, 1.0, STOPS):
-        poses = machine.world_from_links(_held(machine, joints, joint, share * travel))
+    for place in places:
+        poses = machine.world_from_links(place)
         for name, own in points.items():
             placed = own @ poses[name][:3, :3].T + poses[name][:3, 3]
             start = own @ before[name][:3, :3].T + before[name][:3, 3]

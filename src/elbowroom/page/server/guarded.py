@@ -34,7 +34,7 @@ HEADERS = {
 }
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
-    "connect-src 'self' ws://{host}; frame-src 'self'; frame-ancestors 'self'; base-uri 'none'; form-action 'none'"
+    "connect-src {reached}; frame-src 'self'; frame-ancestors 'self'; base-uri 'none'; form-action 'none'"
 )
 _starting = threading.Lock()
 
@@ -63,11 +63,13 @@ class Guarded:
         answers: by path; "/" is the page.
         sockets: by path, who talks there.
         message_bytes: no message of a browser is larger.
+        reaches: other servers that the page's program may ask, each by its exact origin.
     """
 
     answers: Mapping[str, Answer] = field(default_factory=dict)
     sockets: Mapping[str, Socket] = field(default_factory=dict)
     message_bytes: int = MOST_MESSAGE
+    reaches: tuple[str, ...] = ()
     viser: Any = field(default=None, init=False)
     door: Door = field(default=Door(0), init=False)
     _open: int = field(default=0, init=False)
@@ -126,7 +128,8 @@ class Guarded:
                 known = path in self.sockets or SCENE.fullmatch(path)
                 return None if known else connection.respond(HTTPStatus.NOT_FOUND, "not there\n")
             if path in self.answers:
-                return _answered(connection, self.answers[path], headers["Host"])
+                reached = " ".join(("'self'", f"ws://{headers['Host']}", *self.reaches))
+                return _answered(connection, self.answers[path], POLICY.format(reached=reached))
             if not SCENE.fullmatch(path):
                 return connection.respond(HTTPStatus.NOT_FOUND, "not there\n")
             response = theirs(connection, replace(request, path="/"))
@@ -149,13 +152,13 @@ class Guarded:
         return talk
 
 
-def _answered(connection: Any, answer: Answer, host: str) -> Any:
+def _answered(connection: Any, answer: Answer, policy: str) -> Any:
     response = connection.respond(HTTPStatus.OK, "")
     del response.headers["Content-Type"], response.headers["Content-Length"]
     response.headers["Content-Type"] = answer.kind
     response.headers["Content-Length"] = str(len(answer.content))
     response.headers["Cache-Control"] = "no-store"
-    response.headers["Content-Security-Policy"] = POLICY.format(host=host)
+    response.headers["Content-Security-Policy"] = policy
     for name, value in HEADERS.items():
         response.headers[name] = value
     response.body = answer.content

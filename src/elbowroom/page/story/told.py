@@ -1,24 +1,27 @@
 """A moment in what JSON knows: all that the page says is said of this, be it of a run or of a recording."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from elbowroom.errors import JointsError
 from elbowroom.monitor.blackbox.kept_pass import judged, plain
 from elbowroom.monitor.blackbox.recording import RecordedPass
 from elbowroom.monitor.face import Pass
 from elbowroom.monitor.gate.told import decision_row
 from elbowroom.monitor.health.health import Health
 from elbowroom.monitor.rows import shares_pct
+from elbowroom.motion import Trajectory
 from elbowroom.sensing import Snapshot
 
 STRIDE = 8
 """Every so many-th pixel of each row and column is looked at for the share of valid ones."""
 
 Told = Mapping[str, Any]
-"""A moment: sequence, wall_ns, now_ns, joints, stamps, bounds, valid, judged, gate, health, shares."""
+"""A moment: sequence, wall_ns, now_ns, joints, path, stamps, bounds, valid, judged, gate, health, shares."""
 
 
 def told_of(done: Pass, wall_ns: int) -> dict[str, Any]:
@@ -65,11 +68,29 @@ def _given(snapshot: Snapshot) -> dict[str, Any]:
     return {
         "now_ns": snapshot.now_ns,
         "joints": None if snapshot.joints is None else plain(dict(snapshot.joints)),
+        "path": _path(snapshot),
         "stamps": {frame.camera: frame.stamp_ns for frame in snapshot.frames},
         "bounds": dict(snapshot.clock_bounds_ns),
         "valid": {frame.camera: _valid(frame.depth_m) for frame in snapshot.frames},
         "skew_ms": plain(snapshot.skew_ms),
     }
+
+
+def _path(snapshot: Snapshot) -> dict[str, Any] | None:
+    """The path that was asked for, in straight lines; its time 0 is the moment's, as where it was judged."""
+    meant = snapshot.path
+    at_ns = snapshot.moment_ns if snapshot.joints_ns is None else snapshot.joints_ns
+    if meant is None or at_ns is None:
+        return None
+    times_s = (meant.stamps_ns - at_ns) / 1e9
+    with suppress(JointsError):  # what is no path is said by who judges
+        given = Trajectory(meant.joint_names, times_s, meant.positions, meant.velocities).straightened()
+        return {
+            "joint_names": list(given.joint_names),
+            "times_s": given.times_s.tolist(),
+            "positions": given.positions.tolist(),
+        }
+    return None
 
 
 def _valid(depth_m: Any) -> float:

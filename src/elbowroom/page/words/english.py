@@ -95,6 +95,13 @@ ENGLISH: dict[str, str] = {
     "headline.gate": "The gate holds: {text}",
     "headline.stopping": "Everything stops: as fast as the machine is, it would not rest before {cause}",
     "shares": "free {free} %, surface {surface} %, unseen {unseen} %",
+    # the path that the machine was asked to take
+    "path.name": "path",
+    "path.free": "The path is free as far as was looked, {seconds} s ahead.",
+    "path.follow": "The path may be followed for {seconds} s more: {cause}.",
+    "path.stop": "The path may not be followed: {cause}.",
+    "path.off": "The path cannot be taken: {text}",
+    "ways.clear": "Show the ways of clear motions too",
     # causes: what a link meets, as a clause
     "cause.surface": "{link} meets something that cameras see",
     "cause.blind": "{link} meets space where a camera delivers nothing valid",

@@ -95,6 +95,13 @@ GERMAN: dict[str, str] = {
     "headline.gate": "Das Tor hält an: {text}",
     "headline.stopping": "Alles hält: So schnell, wie die Maschine ist, kommt sie nicht mehr rechtzeitig zur Ruhe, denn vorher {cause}",
     "shares": "frei {free} %, Oberfläche {surface} %, ungesehen {unseen} %",
+    # the path that the machine was asked to take
+    "path.name": "Bahn",
+    "path.free": "Die Bahn ist frei, so weit geprüft wurde: {seconds} s voraus.",
+    "path.follow": "Der Bahn darf noch {seconds} s gefolgt werden: {cause}.",
+    "path.stop": "Der Bahn darf nicht gefolgt werden: {cause}.",
+    "path.off": "Die Bahn kann nicht gefahren werden: {text}",
+    "ways.clear": "Auch die Wege freier Bewegungen zeigen",
     # causes
     "cause.surface": "trifft {link} auf etwas, das Kameras sehen",
     "cause.blind": "trifft {link} auf Raum, für den eine Kamera nichts Gültiges liefert",

@@ -4,6 +4,8 @@ PLAN_ENGLISH: dict[str, str] = {
     "plan.title": "Plan of {site} – elbowroom",
     "plan.hint": "Planning: nothing is watched and nothing is commanded.",
     "plan.scene": "The room in three dimensions, and what can be changed in it",
+    "plan.close": "Close this message",
+    "plan.settings": "Settings of the view",
     "plan.figures": "**{quality}**, {cameras} cameras\n\n"
     "| | |\n|---|---|\n"
     "| seen by a camera | **{seen} %** |\n"

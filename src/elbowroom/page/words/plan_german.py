@@ -4,6 +4,8 @@ PLAN_GERMAN: dict[str, str] = {
     "plan.title": "Plan von {site} – elbowroom",
     "plan.hint": "Planung: Nichts wird überwacht, nichts wird gesteuert.",
     "plan.scene": "Der Raum in drei Dimensionen, und was darin geändert werden kann",
+    "plan.close": "Meldung schließen",
+    "plan.settings": "Einstellungen der Ansicht",
     "plan.figures": "**{quality}**, {cameras} Kameras\n\n"
     "| | |\n|---|---|\n"
     "| von einer Kamera gesehen | **{seen} %** |\n"

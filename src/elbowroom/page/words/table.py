@@ -4,12 +4,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from elbowroom.errors import InputError
+from elbowroom.page.words.controls_english import CONTROLS_ENGLISH
+from elbowroom.page.words.controls_german import CONTROLS_GERMAN
 from elbowroom.page.words.english import ENGLISH
 from elbowroom.page.words.german import GERMAN
 from elbowroom.page.words.plan_english import PLAN_ENGLISH
 from elbowroom.page.words.plan_german import PLAN_GERMAN
 
-LANGUAGES: dict[str, Mapping[str, str]] = {"en": {**ENGLISH, **PLAN_ENGLISH}, "de": {**GERMAN, **PLAN_GERMAN}}
+LANGUAGES: dict[str, Mapping[str, str]] = {
+    "en": {**ENGLISH, **CONTROLS_ENGLISH, **PLAN_ENGLISH},
+    "de": {**GERMAN, **CONTROLS_GERMAN, **PLAN_GERMAN},
+}
 """The tables, by the code of their language (ISO 639-1)."""
 
 

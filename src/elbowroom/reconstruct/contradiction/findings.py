@@ -21,6 +21,7 @@ from elbowroom.reconstruct.contradiction.suspicion import (
 from elbowroom.reconstruct.contradiction.views import Views
 from elbowroom.sensing import DepthFrame
 from elbowroom.sensing.masked import masked_returns
+from elbowroom.sensing.values.unit import KIND as UNIT
 
 KIND = "contradiction"
 LIMIT = 0.2
@@ -33,6 +34,8 @@ WARNED, BESIDE_OTHERS = 0.1, 8.0
 """A camera is warned of whose share is larger than this, and so many times that of the others among each other."""
 USUAL = 40
 """A camera that shares no view with others is told of if of these two agree in so many points."""
+OF_DEPTHS = ("lens", "depth unit", "depth kind")
+"""Mistakes that are none of poses."""
 MANY = 4
 """More cameras than this are counted, not listed."""
 SEEN_THROUGH = "one measured a surface and the other sees through it"
@@ -53,13 +56,48 @@ def contradictions(
         cameras: of the room.
         frames: at most one of each, of its camera's size; cameras without one are left out.
         margin: of cameras without one of their own.
-        found: about these cameras; those of which something found stops are not compared.
+        found: about these cameras; those of which something found stops are not compared. Where that is their unit of
+            depth they are, since poses of other axes look like another unit: then a mistake about poses alone is told.
     """
     everybody = [camera.name for camera in cameras]
-    wrong = {name for finding in found if finding.stops for name in finding.about or everybody}
+    stopped = (finding for finding in found if finding.stops and finding.kind != UNIT)
+    wrong = {name for finding in stopped for name in finding.about or everybody}
     cameras = [camera for camera in cameras if camera.name not in wrong]
     frames = [frame for frame in frames if frame.camera not in wrong]
-    return (*masked_returns(cameras, frames), *found_in(Views.of(cameras, frames, margin)))
+    views = Views.of(cameras, frames, margin)
+    units = {name for finding in found if finding.stops and finding.kind == UNIT for name in finding.about}
+    told = _of_poses(views) if units else found_in(views)
+    return (*masked_returns(cameras, frames), *told)
+
+
+def with_contradictions(
+    cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame], margin: Margin, found: Sequence[Finding]
+) -> tuple[Finding, ...]:
+    """What was found, and what contradicts; a unit of depth that poses explain is left out.
+
+    Args:
+        cameras, frames, margin, found: as of `contradictions`.
+    """
+    contradicting = contradictions(cameras, frames, margin, found)
+    named = {name for finding in contradicting if finding.kind == KIND for name in finding.about}
+    kept = (
+        finding
+        for finding in found
+        if not (finding.stops and finding.kind == UNIT and named.issuperset(finding.about))
+    )
+    return (*kept, *contradicting)
+
+
+def _of_poses(views: Views) -> tuple[Finding, ...]:
+    """Mistakes about poses that explain what is seen."""
+    if len(views.eyes) < 2 or not standing(views.pairs).suspects:
+        return ()
+    suspicions, _ = explained(views)
+    return tuple(
+        _of_mistake(views.eyes, suspicion)
+        for suspicion in suspicions
+        if suspicion.mistake.kind not in OF_DEPTHS
+    )
 
 
 def found_in(views: Views) -> tuple[Finding, ...]:

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.sensing.frame import DepthFrame
+from elbowroom.sensing.values.amid import look_amid
 from elbowroom.sensing.values.content import look_at_content
 from elbowroom.sensing.values.inverse import look_at_inverses
 from elbowroom.sensing.values.sentinel import look_at_sentinels
@@ -54,7 +55,10 @@ def found_in(images: Sequence[Thinned], grid: VoxelGrid, *, of_all: bool = True)
     if of_all:
         findings += look_at_inverses(_returning(_without(images, findings)))
     findings += look_at_sentinels(_returning(_without(images, findings)), grid)
-    return findings + (look_at_units(_without(images, findings), grid) if of_all else [])
+    if not of_all:
+        return findings
+    findings += look_amid(_returning(_without(images, findings)), findings)
+    return findings + look_at_units(_without(images, findings), grid)
 
 
 def _without(images: Sequence[Thinned], findings: Sequence[Finding]) -> list[Thinned]:

@@ -10,7 +10,7 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera, VoxelGrid, transforms
 from elbowroom.sensing.view import in_view
 
-KIND = "pose"
+KIND, COPIED = "pose", "same pose"
 FARTHEST_M = 100.0
 """No depth camera watches a box that is farther away."""
 FAR_M = 15.0
@@ -35,11 +35,28 @@ def look_at_places(cameras: Sequence[DepthCamera], grid: VoxelGrid) -> list[Find
         cameras: of the room.
         grid: the watched box.
     """
-    findings = [found for camera in cameras for found in _distance(camera, grid)]
-    away = {name for finding in findings for name in finding.about}
+    findings = [found for camera in cameras for found in _distance(camera, grid)] + _copied(cameras)
+    away = {name for finding in findings if finding.kind == KIND for name in finding.about}
     points = _points_of(grid)
     blind = [camera for camera in cameras if camera.name not in away and not in_view(camera, points).any()]
     return findings + [_sees_nothing(camera, points, len(blind) == len(cameras)) for camera in blind]
+
+
+def _copied(cameras: Sequence[DepthCamera]) -> list[Finding]:
+    """Cameras that are said to be at one and the same place, to the last digit: a pose that was copied."""
+    by_pose: dict[bytes, list[str]] = {}
+    for camera in cameras:
+        by_pose.setdefault(camera.world_from_camera.tobytes(), []).append(camera.name)
+    return [
+        Finding(
+            COPIED,
+            tuple(names),
+            "have one and the same pose, to the last digit, and no two cameras have: was it copied, or are they one?",
+            stops=False,
+        )
+        for names in by_pose.values()
+        if len(names) > 1
+    ]
 
 
 def _distance(camera: DepthCamera, grid: VoxelGrid) -> list[Finding]:

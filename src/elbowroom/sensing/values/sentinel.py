@@ -99,7 +99,7 @@ def _spikes(image: Thinned, grid: VoxelGrid) -> list[Spike]:
             Spike(
                 value,
                 count / image.here.size,
-                _joined(image, values[most]),
+                joined(image, values[most]),
                 *_outside(image, values[most], grid),
             )
         )
@@ -107,8 +107,13 @@ def _spikes(image: Thinned, grid: VoxelGrid) -> list[Spike]:
     return found
 
 
-def _joined(image: Thinned, value: np.float32) -> float:
-    """Of the places where the value ends at another return, the share where the step is small; 1: there are none."""
+def joined(image: Thinned, value: np.float32) -> float:
+    """Of the places where the value ends at another return, the share where the step is small; 1: there are none.
+
+    Args:
+        image: of one camera.
+        value: an exact number in it [m].
+    """
     small = edges = 0
     is_it = image.here == value
     for beside in (image.right, image.below):

@@ -11,7 +11,7 @@ from elbowroom.sources.bags.messages import CameraInfo
 from elbowroom.sources.depth_pgm import exchanged
 
 PLUMB_BOB, RATIONAL, NO_MODEL = "plumb_bob", "rational_polynomial", ""
-MODELS = {NO_MODEL: 0, PLUMB_BOB: 5, RATIONAL: 8}
+MODELS = {NO_MODEL: 0, "none": 0, "pinhole": 0, PLUMB_BOB: 5, RATIONAL: 8}
 """Models that are read, and how many coefficients of them."""
 RECTIFIED = "image_rect"
 """A topic whose last word begins so has images without distortion, whatever D says (REP 118, image_proc)."""

@@ -78,6 +78,7 @@ def site_of(bag: Bag, wish: Wish) -> SiteOf:
             raise BagError(
                 f"{bag.path}: {topic.name}: its header names no frame, so camera {name} has no place"
             )
+    _require_own_frames(bag, topics)
     world = _world(bag, frames, topics, wish.world)
     cameras, said = [], {}
     for name, topic in topics.items():
@@ -87,6 +88,19 @@ def site_of(bag: Bag, wish: Wish) -> SiteOf:
     joints = {topic: _joints(bag, topic) for topic in wish.joints or bag.of_type(JOINT_STATE)}
     box, notes = _box(bag, cameras, topics), (*bag.notes, *frames.notes)
     return SiteOf(world, cameras, topics, said, joints, _bases(frames, world), box, notes)
+
+
+def _require_own_frames(bag: Bag, topics: Mapping[str, DepthTopic]) -> None:
+    """Refuses two cameras in one frame: they would see the same from the same place."""
+    first: dict[str, str] = {}
+    for name, topic in topics.items():
+        frame = topic.kind.frame.removeprefix("/")
+        if frame in first:
+            raise BagError(
+                f"{bag.path}: images of cameras {first[frame]} and {name} say the same frame, {frame}: each camera has "
+                "one of its own; correct its driver's frame_id, or choose one topic of a camera with --depth"
+            )
+        first[frame] = name
 
 
 def _bases(frames: Frames, world: str) -> dict[str, NDArray[np.float64]]:

@@ -1,6 +1,5 @@
 """Layout `bag`: images and joints in a bag of ROS 2; what lies near in time makes a moment."""
 
-import difflib
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -22,6 +21,7 @@ from elbowroom.sources.layouts.gathered import gathered, series_of
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.room_clock import RoomClock
 from elbowroom.sources.times.clock import ClockEstimate
+from elbowroom.sources.times.joint_names import meant
 from elbowroom.sources.times.joints import of_machine, require_span
 from elbowroom.sources.times.meeting import Meeting
 from elbowroom.sources.times.stamp import require_possible
@@ -196,12 +196,11 @@ class BagFrames:
         return kind_of(self._bag.topics[topic].type, self._bag.read(message.stored), what).encoding
 
     def _missing(self, name: str, told: Told) -> str:
-        near = difflib.get_close_matches(name, list(told.positions), n=1)
-        meant = f" (is it {near[0]}?)" if near else ""
         said = ", ".join(told.positions) or "none with a position"
         others = set(self._bag.of_type(JOINT_STATE)) - set(self.recording.joint_topics)
         more = f"; other topics of joints: {', '.join(sorted(others))}" if others else ""
         return (
-            f"{self.path}: no joint {name}{meant} in {', '.join(self.recording.joint_topics)}; joints there are "
+            f"{self.path}: no joint {name}{meant(name, told.positions)} in "
+            f"{', '.join(self.recording.joint_topics)}; joints there are "
             f"{said}{more}"
         )

@@ -1,6 +1,5 @@
 """Whether a record of joints is one of this machine, in its units, and of the images' time."""
 
-import difflib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +15,7 @@ from elbowroom.sensing.joints import END_SLACK_NS
 from elbowroom.site.recording_entry import BagRecording, StampedFolder
 from elbowroom.site.site import Site
 from elbowroom.sources.times.cause import Span, cause_text
+from elbowroom.sources.times.joint_names import meant
 from elbowroom.sources.times.meeting import Meeting
 from elbowroom.sources.times.series import length_text, span_text, usual_step_ns
 from elbowroom.sources.times.stamp import NS, WORDS
@@ -24,6 +24,8 @@ FASTEST_ROWS_HZ = 20_000
 """No machine tells its joints more often."""
 SCARCE = 0.1
 """Where joints are known at less than this share of the images, another unit is tried."""
+MOST_TURNS = 2
+"""An encoder that counts on is off by no more whole turns; degrees are."""
 TOO_FAST, SLOW_ENOUGH = 10.0, 1.5
 """Speeds above so many times full speed are none; those below so many times may be."""
 
@@ -44,10 +46,9 @@ def of_machine(site: Site, machine: Machine, path: Path, record: JointRecord) ->
     assert isinstance(recording, StampedFolder | BagRecording)
     for name in machine.joint_names:
         if name not in record.joints:
-            near = difflib.get_close_matches(name, record.joints, n=1)
-            meant = f" (is it {near[0]}?)" if near else ""
+            told = ", ".join(record.joints)
             raise JointsError(
-                f"{path}: no column for joint {name}{meant}; columns are {', '.join(record.joints)}"
+                f"{path}: no column for joint {name}{meant(name, record.joints)}; columns are {told}"
             )
     turning = [name for name in machine.joint_names if machine.joint(name).unit == "rad"]
     if recording.angle_unit == "rad":
@@ -68,6 +69,15 @@ def _require_radians(site: Site, path: Path, joints: Sequence[Joint], record: Jo
         turned = np.radians(given)
         fits = bool(((turned >= joint.lower - 0.1) & (turned <= joint.upper + 0.1)).all())
         why = ""
+        turns = np.round((given - (joint.lower + joint.upper) / 2) / (2 * np.pi))
+        turned_back = given - turns * 2 * np.pi
+        is_back = bool(((turned_back >= joint.lower) & (turned_back <= joint.upper)).all())
+        if beyond > 0.2 and is_back and np.ptp(turns) == 0 and abs(turns[0]) <= MOST_TURNS:
+            raise JointsError(
+                f"{path}: joint {joint.name} up to {np.abs(given).max():g}, its limits are {joint.lower:g} to "
+                f"{joint.upper:g} rad: that is {abs(turns[0]):g} whole turns off; write it within its limits, or give "
+                "the joint those that it has"
+            )
         if beyond > 0.2 and fits:
             why = f"up to {np.abs(given).max():g}, its limits are {joint.lower:g} to {joint.upper:g} rad"
         elif entry is not None and len(given) > 1:

@@ -39,15 +39,20 @@ COLOURS: dict[Label, Colour] = {
     Label.BLIND: (240, 200, 66),
 }
 """Colours after Okabe and Ito (2008), and apart in lightness too, so that they survive a grey print."""
-UNSEEN_IN_3D: Colour = (0, 114, 178)
-"""Unseen space in pictures of rooms, whose walls are grey themselves."""
-LEVEL_COLOURS: dict[Level, Colour] = {
-    Level.STOP: (170, 0, 40),
-    Level.DECELERATE: (230, 159, 0),
-    Level.INFORM: (86, 180, 233),
-    Level.CLEAR: (0, 158, 115),
+IN_3D: dict[Label, Colour] = {
+    Label.SURFACE: (103, 71, 166),
+    Label.UNSEEN: (161, 170, 194),
+    Label.BLIND: (255, 215, 40),
 }
-"""Of swept volumes; apart in lightness as well."""
+"""Blocked space where the room is drawn, on the page and in pictures: beside levels, and before grey walls."""
+LEVEL_COLOURS: dict[Level, Colour] = {
+    Level.STOP: (155, 0, 5),
+    Level.DECELERATE: (217, 110, 18),
+    Level.INFORM: (112, 170, 255),
+    Level.CLEAR: (36, 110, 101),
+}
+"""Red, orange, blue, green: of the page, of pictures, of swept volumes. Of these and `IN_3D` no two are nearer than 28
+(CIE 1976 Lab), seen with all cones or without one kind (Machado, Oliveira and Fernandes 2009)."""
 
 INK: Colour = (24, 32, 44)
 SOFT_INK: Colour = (96, 106, 118)

@@ -12,7 +12,7 @@ from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.motion.course import way_of
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.simulate.shapes import box
-from elbowroom.view.draw.palette import CAMERA_INK, COLOURS, LEVEL_COLOURS, UNSEEN_IN_3D, Label, labels
+from elbowroom.view.draw.palette import CAMERA_INK, IN_3D, LEVEL_COLOURS, Label, labels
 from elbowroom.view.draw.site import frustum_in_world
 from elbowroom.view.picture.layer import Layer, Lines, Word, linear
 
@@ -74,9 +74,8 @@ def blocked_layers(space: FreeSpace, machine_triangles: Array | None, near_m: fl
     layers = []
     for label in (Label.SURFACE, Label.UNSEEN, Label.BLIND):
         triangles = voxel_faces(volume == label, grid)
-        colour = UNSEEN_IN_3D if label is Label.UNSEEN else COLOURS[label]
         opacity = 1.0 if label is Label.SURFACE else UNSEEN_OPACITY
-        layers.append(Layer.plain(triangles, linear(colour), opacity))
+        layers.append(Layer.plain(triangles, linear(IN_3D[label]), opacity))
     return tuple(layers)
 
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter
 
 ANGLE_RAD = 0.02
 """Half the side of the window in which a surface must be flat: a camera that turns by a degree stays within it."""
@@ -45,6 +44,8 @@ def flat_spots(
         x, y: X/Z and Y/Z of the pixels, shape (h, w).
         sigma_m: standard deviation of these depths, shape (h, w) [m].
     """
+    from scipy.ndimage import uniform_filter  # slow to load, and only a commissioned room needs it
+
     pitch = float(np.median(np.abs(np.diff(x, axis=1)))) if x.shape[1] > 1 else 1.0
     size = 2 * max(1, round(ANGLE_RAD / pitch)) + 1
     valid = planar_m > 0

@@ -1,0 +1,112 @@
+"""Whether the machine is where it is said to be, by the images of one moment; what would fit better, if anything."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowroom.finding import Finding
+from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.transforms import invert_rigid
+from elbowroom.machine import Machine
+from elbowroom.machine.elsewhere import LEAST_PIXELS, Elsewhere, elsewhere
+from elbowroom.reconstruct.images import room_images
+from elbowroom.sensing import Snapshot
+
+KIND = "machine"
+MOST, MANY = 0.5, 0.1
+"""Where so many of the pixels see through it, it stops; from the lesser share on, where several links are not there."""
+FITS = 0.1
+"""Another place of the base is named where so many of the pixels still see through the machine, at most."""
+
+
+def machine_there(
+    machine: Machine, cameras: Sequence[DepthCamera], snapshot: Snapshot
+) -> tuple[Finding, ...]:
+    """A finding where cameras see through links of the machine: a verdict would be on another machine.
+
+    It stops where two cameras or more see through most of the machine, or through several links. One link may be of
+    glass, or was taken off: that is a warning.
+
+    Args:
+        machine: where it is said to be.
+        cameras: of the room.
+        snapshot: their frames, and where the joints were; without joints nothing is found.
+
+    Raises:
+        CameraError, FrameError: frames of other cameras or sizes.
+        MachineError: joints that are not possible.
+    """
+    if snapshot.joints is None:
+        return ()
+    images = room_images(cameras, snapshot.frames)
+    seen = [camera for camera in images.cameras if camera.name in images.least_m]
+    depths = [images.least_m[camera.name] for camera in seen]
+    joints = [snapshot.joints_of.get(camera.name, snapshot.joints) for camera in seen]
+
+    def seen_if(as_said: Machine) -> Elsewhere:
+        return elsewhere(as_said, seen, depths, joints)
+
+    found = seen_if(machine)
+    if not found.links:
+        return _unseen(machine, found) or _a_little(machine, found)
+    stops = found.cameras > 1 and (found.share >= MOST or (len(found.links) > 1 and found.share >= MANY))
+    return (Finding(KIND, found.links, _text(machine, found, seen_if), stops),)
+
+
+def _unseen(machine: Machine, found: Elsewhere) -> tuple[Finding, ...]:
+    """That no camera sees anything of the machine, so that nothing says whether it is there."""
+    if found.agree + found.through >= LEAST_PIXELS:
+        return ()
+    text = (
+        f"no camera sees anything of {machine.name} where it is said to be: nothing says that it is there. Check "
+        "world_from_base and the world that camera poses are given in, or turn a camera to it"
+    )
+    return (Finding(KIND, (machine.name,), text, stops=False),)
+
+
+def _a_little(machine: Machine, found: Elsewhere) -> tuple[Finding, ...]:
+    """That a part of each link is seen through: something is off by a little."""
+    if found.share < MANY:
+        return ()
+    text = (
+        f"{found.share:.0%} of {found.through + found.agree} pixels see through {machine.name} where it is said to "
+        "be: world_from_base, joints, or the cameras' poses or lenses (images that were cropped or scaled) are a "
+        "little off, or its model is larger than it is"
+    )
+    return (Finding(KIND, (machine.name,), text, stops=False),)
+
+
+def _text(machine: Machine, found: Elsewhere, seen_if: Callable[[Machine], Elsewhere]) -> str:
+    links = f"link {found.links[0]}" if len(found.links) == 1 else f"links {', '.join(found.links)}"
+    return (
+        f"{links} of {machine.name}: cameras see through the place where it is said to be, {found.share:.0%} of "
+        f"{found.through + found.agree} pixels through the machine: verdicts would be on a machine that stands "
+        f"elsewhere. {_likely(machine, found, seen_if)}"
+    )
+
+
+def _likely(machine: Machine, found: Elsewhere, seen_if: Callable[[Machine], Elsewhere]) -> str:
+    if found.links != found.shown and found.shown[0] not in found.links and found.share < MOST:
+        return (
+            "Where the machine begins it is seen: check the joints' values, their order, unit, sign and zero, and at "
+            "which time they were so; or what is mounted on it"
+        )
+    for words, base in _other_bases(machine):
+        other = seen_if(machine.at(base))
+        if not other.links and other.share <= FITS and other.agree > found.agree:
+            return f"With {words} {other.share:.0%} would: correct world_from_base, or give all poses in its world"
+    return (
+        "Check world_from_base, the world that all camera poses are given in, and the joints' values, their order, "
+        "unit and sign"
+    )
+
+
+def _other_bases(machine: Machine) -> Iterator[tuple[str, NDArray[np.float64]]]:
+    """Places of the base that are often meant: in words, and shape (4, 4)."""
+    base = machine.world_from_base
+    for degrees in (90, 180, 270):
+        angle, turn = np.radians(degrees), np.eye(4)
+        turn[:2, :2] = ((np.cos(angle), -np.sin(angle)), (np.sin(angle), np.cos(angle)))
+        yield f"the base turned by {degrees} degrees about its z axis", base @ turn
+    yield "the inverse of world_from_base", invert_rigid(base)
