@@ -45,6 +45,13 @@ The simulated room, each case in a process of its own. *carve*: frames to eviden
 verdicts for 4 joints in 2 directions. The headline is the slow case: a machine waits for the slowest frame.
 *ratio*: the median over that of a fixed reference kernel, measured in turns with it in the same process, so
 that computers compare. The due figures are for two cores.
+
+Where the processor time of a cycle's carve goes (2 cm, pixel, noise, one thread, medians of 48 in turns in one run,
+commit ebc38b5 and since only the pixels that are asked are prepared): from depth to what pixels free 37.3 and 18.0 ms,
+windows and tiles 10.0 and 6.2, cubes to voxels 79 and 73, all of it 132 and 101 (0.77; at 5 cm 99 and 79, 0.80). Half
+of each image is asked. Of the rest the voxels take most; with all that they ask in the second cache they would take an
+eighth less. Noise changes every pixel, and what windows leave open lies where depths decide within that noise: there
+nothing can be kept from one cycle to the next.
 """,
         "elbowroom bench",
         tables.bench_tables,

@@ -122,6 +122,28 @@ def test_every_face_is_told_of_the_room_of_every_pass_in_order_and_of_the_end():
     assert source.closed == 1
 
 
+class GarbageWatcher(Listener):
+    """Counts what collections leave alone and what they look through; each pass leaves it garbage that holds itself."""
+
+    def show(self, done: Pass) -> None:
+        super().show(done)
+        self.left_alone, self.looked_through = gc.get_freeze_count(), len(gc.get_objects())
+        ring: list[object] = []
+        ring.append(ring)
+        del ring
+        self.collected = gc.collect()
+
+
+def test_while_a_run_goes_on_collections_look_only_through_what_came_since():
+    face, there = GarbageWatcher(), len(gc.get_objects())
+    with pytest.raises(FrameError):
+        a_loop(Script(at(1), FrameError("torn"))).run([face])
+    assert face.left_alone > 0.9 * there
+    assert face.looked_through < 0.1 * there
+    assert face.collected > 0
+    assert gc.get_freeze_count() == 0
+
+
 def test_a_source_that_gives_nothing_ends_the_run_at_once():
     source, face = Script(), Listener()
     a_loop(source).run([face])

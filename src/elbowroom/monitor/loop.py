@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.face import Face, Pass
+from elbowroom.monitor.garbage import what_is_here_stays
 from elbowroom.monitor.gate.gate import Gate
 from elbowroom.monitor.gate.state import Decision
 from elbowroom.monitor.health.checks import Checks
@@ -71,7 +72,7 @@ class Loop:
         snapshot: Snapshot | None = None
         if self.gate is not None:
             self.gate.begin()
-        with _ended(faces, self.room.source) as ending:
+        with what_is_here_stays(), _ended(faces, self.room.source) as ending:
             if self.gate is not None:
                 ending.callback(self.gate.end)  # before any face is told of the end
             try:

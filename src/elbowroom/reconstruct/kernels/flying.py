@@ -27,10 +27,13 @@ NOBODY = np.int32(0xFFFF)
 
 
 class Rows(NamedTuple):
-    """Memory for rows of pixels, by row of a ring: texels; what each leaves free of a speck beside it, float32
-    [quanta]; texels with specks passed over; least depth about them, a number beside the row on either side, int32
-    [quanta]. Of one row: nearest, the least of three of these; marks, a byte a pixel, whole words of eight; about: (8, 5)
-    int32, for pixels about one. marked (ring, 2): where the machine is in a row."""
+    """Memory for rows of pixels.
+
+    Of each row of a ring: texels; short_of, what each leaves free of a speck beside it, float32 [quanta]; passed,
+    texels with specks passed over; least, the least depth of each, a number beside the row on either side, int32
+    [quanta]; marked (ring, 2), where the machine is. Of one row: nearest, the least of three of these; marks, a byte a
+    pixel, whole words of eight; about (8, 5) int32, for pixels about one.
+    """
 
     texels: np.ndarray
     short_of: np.ndarray
