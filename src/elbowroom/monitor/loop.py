@@ -16,7 +16,7 @@ from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.separation.margins import Margins
 from elbowroom.monitor.separation.separating import Separating
 from elbowroom.monitor.space_cycle import SpaceCycle
-from elbowroom.monitor.stages import settled, uncollected
+from elbowroom.monitor.stages import uncollected
 from elbowroom.sensing import MeantPaths, Snapshot
 from elbowroom.sources import Room, Source
 from elbowroom.sources.pace import SLACK_S
@@ -78,7 +78,6 @@ class Loop:
             try:
                 for face in faces:
                     face.begin(self.room)
-                ending.enter_context(settled())
                 for snapshot, source_ms in timed_source(self._meaning()):
                     if not self._waited(snapshot, until, is_over):
                         break

@@ -32,16 +32,6 @@ def uncollected() -> Iterator[None]:
             gc.enable()
 
 
-@contextmanager
-def settled() -> Iterator[None]:
-    """Within it what is there now, modules and kernels, is not looked at each time that garbage is collected."""
-    gc.freeze()
-    try:
-        yield
-    finally:
-        gc.unfreeze()
-
-
 def raise_interrupt(error: BaseException) -> None:
     """Raises the interrupt that an error stands for, if it does: one that comes while compiled code runs is wrapped in
     a `SystemError`, and a wish to end is no fault of a pass.
