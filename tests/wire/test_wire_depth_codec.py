@@ -96,6 +96,7 @@ def test_rows_go_on_from_piece_to_piece(size):
     assert (unpack_units(packed, "it") == raw).all()
 
 
+@settings(deadline=None)  # the first one is compiled
 @given(st.lists(st.integers(0, 65535), min_size=8, max_size=8), st.integers(0, 15), st.integers(0, 65535))
 def test_a_row_of_vectors_is_the_row_of_numpy(row, filled, before):
     numbers = np.array([9] * 8 + row, np.uint16)

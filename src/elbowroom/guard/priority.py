@@ -5,13 +5,13 @@ from contextlib import suppress
 
 
 def step_back(nice: int) -> None:
-    """Takes less processor time than others where there is too little, and takes it from nobody who has just begun.
+    """Takes processor time that nobody else wants, and of that less than others.
 
     Args:
         nice: by how much.
     """
     if hasattr(os, "nice"):
         os.nice(nice)
-    if hasattr(os, "SCHED_BATCH"):  # Linux: who wakes up interrupts nobody
+    if hasattr(os, "SCHED_IDLE"):  # Linux: who judges is interrupted by none of them
         with suppress(OSError):
-            os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
+            os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))

@@ -41,6 +41,7 @@ class Live:
     _said_s: float = field(default=0.0, init=False)
     _ways_s: float = field(default=0.0, init=False)
     _is_ended: bool = field(default=False, init=False)
+    _is_ready: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
         self._news = Reader(self.board)
@@ -93,11 +94,24 @@ class Live:
             try:
                 viewer, asked = self.page.talk.questions.get(timeout=0.2)
             except queue.Empty:
+                self._get_ready()
                 continue
             try:
                 self._answer_one(viewer, asked)
             except (KeyError, TypeError, ValueError, IndexError):
                 continue  # no question that this page asks
+
+    def _get_ready(self) -> None:
+        """Looks once why something stops, before anybody asks: the first look takes most of a second, all others not."""
+        told = None if self._is_ready else self.page.newest
+        places = [] if told is None else [row["place_m"] for row in told["judged"]["verdicts"]]
+        numbers = [number for number, place in enumerate(places) if place is not None]
+        if not numbers:
+            return
+        self._is_ready = True
+        answered = self._images()
+        if answered is not None:
+            changes_at(self.page.configuration, answered.told, answered.snapshot, numbers[0])
 
     def _answer_one(self, viewer: Viewer, asked: Mapping[str, Any]) -> None:
         told = self.page.newest
