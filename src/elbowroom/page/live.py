@@ -102,7 +102,7 @@ class Live:
                 continue  # no question that this page asks
 
     def _get_ready(self) -> None:
-        """Looks once why something stops, before anybody asks: the first look takes most of a second, all others not."""
+        """Looks once why something stops, before anybody asks: the first look takes most of a second."""
         told = None if self._is_ready else self.page.newest
         places = [] if told is None else [row["place_m"] for row in told["judged"]["verdicts"]]
         numbers = [number for number, place in enumerate(places) if place is not None]
