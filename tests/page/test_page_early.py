@@ -3,6 +3,8 @@
 import time
 from importlib.util import find_spec
 
+import pytest
+
 from elbowroom.cli.page_note import PageNote
 from elbowroom.page import early
 from elbowroom.page.early import Early, early_page
@@ -18,7 +20,16 @@ def test_a_process_that_nobody_tells_anything_ends_by_itself():
 
 def test_without_its_packages_nothing_is_begun(monkeypatch):
     monkeypatch.setattr(early, "find_spec", lambda name: None if name == "viser" else find_spec(name))
-    assert early_page() is None
+    with early_page() as begun:
+        assert begun is None
+
+
+def test_one_that_was_begun_for_nothing_is_ended_at_once_and_leaves_nothing():
+    with pytest.raises(ValueError, match="another language"), early_page() as begun:
+        assert begun is not None and begun.process.poll() is None
+        raise ValueError("another language")
+    assert begun.process.poll() is not None and begun.process.stdout.closed
+    assert not begun.folder.exists()
 
 
 class Hung:

@@ -1,7 +1,7 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
 from collections.abc import Sequence
-from contextlib import ExitStack
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
@@ -197,19 +197,17 @@ def monitor(
 
     Not a certified safety function.
     """
-    early, positions = _early(no_page), parse_joints(joints)
+    positions = parse_joints(joints)
     size_px = None if resolution is None else parse_resolution(resolution)
     use_threads(threads)
+    named = {"joints": "--joints", "cameras": "--cameras", "resolution": "--resolution", "noise": "--noise"}
+    named |= {"knocks": "--knock", "skew_ms": "--skew-ms", "callback": "--callback"}
+    with _early(no_page) as early, options_named(**named):
+        from elbowroom.monitor.blackbox.made import recorder_of
+        from elbowroom.monitor.gate.made import gate_of
+        from elbowroom.site import Site
+        from elbowroom.sources import live, open_room
 
-    from elbowroom.monitor.blackbox.made import recorder_of
-    from elbowroom.monitor.gate.made import gate_of
-    from elbowroom.site import Site
-    from elbowroom.sources import live, open_room
-
-    named = {"knocks": "--knock", "skew_ms": "--skew-ms", "callback": "--callback"}
-    with options_named(
-        joints="--joints", cameras="--cameras", resolution="--resolution", noise="--noise", **named
-    ):
         given = Site.simulated_room() if site is None else Site.load(site)
         room = open_room(
             given if noise is None else _noisy(given, noise),
@@ -230,11 +228,11 @@ def monitor(
         _watch(shown, seconds, (json, out), Run(decides, recorder, _paths(path), serving, pages))
 
 
-def _early(no_page: bool) -> "Early | None":
+def _early(no_page: bool) -> "AbstractContextManager[Early | None]":
     """The process of the page, begun before all else; None: nobody wants one, or packages are missing."""
     from elbowroom.page.early import early_page
 
-    return None if no_page else early_page()
+    return nullcontext() if no_page else early_page()
 
 
 def _page(

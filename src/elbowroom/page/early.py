@@ -5,6 +5,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -45,7 +47,25 @@ class Early:
             )
         return cls(process, folder)
 
+    def end(self) -> None:
+        """Ends it, where nobody has told it what to show, or whoever did has not let it go."""
+        if self.process.stdin.closed:
+            return
+        self.process.terminate()
+        self.process.stdin.close()
+        self.process.wait()
+        self.process.stdout.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
 
-def early_page() -> Early | None:
-    """The page's process, begun; None: its packages are missing, which is said later."""
-    return None if find_spec("viser") is None else Early.begun()
+
+@contextmanager
+def early_page() -> Iterator[Early | None]:
+    """The page's process, begun, and ended where it was not used; None: its packages are missing."""
+    if find_spec("viser") is None:
+        yield None
+        return
+    early = Early.begun()
+    try:
+        yield early
+    finally:
+        early.end()
