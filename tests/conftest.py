@@ -22,6 +22,7 @@ EXAMPLES = PROJECT / "examples"
 
 def pytest_configure(config: pytest.Config) -> None:
     """Compiles on all cores before the whole suite what it would compile one test after the other."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the workers, which are one a core already
     is_worker = hasattr(config, "workerinput")
     if is_worker or config.option.collectonly or numba.config.DISABLE_JIT or not _is_whole(config):
         return
