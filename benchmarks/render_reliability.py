@@ -27,9 +27,8 @@ handed to the monitor to when the reader reads stop, or hears nothing for 80 ms.
 is saved is a small file system of its own, or a limit of a file's length where nobody may mount one: the machine stops,
 the black box says so, and what it kept opens up to the cut (a latch that cannot be written: `tests/monitor/gate`).
 
-Kinds after which the monitor has to be started again are thrown half as often as the others, and last: of this run,
-which was ended after 964 faults, all but two of *decalibrated* are missing. The command's short form,
-`--quick`, throws each kind once, with a deadline of 400 ms in place of 60 so that a busy
+Kinds after which the monitor has to be started again are thrown half as often as the others, and last. The command's
+short form, `--quick`, throws each kind once, with a deadline of 400 ms in place of 60 so that a busy
 computer can run it: its times say little, and two missed deadlines (*hangs*, *suspended*) are 800 ms of it by design.
 """,
         "elbowroom evaluate faults",
