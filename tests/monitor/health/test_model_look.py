@@ -1,5 +1,7 @@
 """Said once at the start: links whose model is larger than what cameras see of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -70,3 +72,27 @@ def test_what_stands_before_the_machine_or_behind_it_says_nothing_of_its_size(tm
     for snapshot, words in ((before, "sees anything"), (empty, "see through")):
         (found,) = ModelLook([camera], hull).hear(snapshot)
         assert (found.kind, found.stops) == ("machine", False) and words in found.text
+
+
+def test_cameras_that_begin_later_are_asked_too_and_what_stops_stays(tmp_path, camera):
+    """With one camera nothing can be told for sure; that is no reason to ask nobody else."""
+    cameras = [replace(camera, name=str(number)) for number in range(5)]
+    empty = np.full((120, 160), WALL_M, dtype=np.float32)
+
+    def of(many):
+        return Snapshot.taken([DepthFrame(str(n), 1, empty) for n in range(many)], JOINTS, None, None)
+
+    look = ModelLook(cameras, arm(tmp_path, 0.2, explain_with="collision"))
+    stops = [[finding.stops for finding in look.hear(of(many))] for many in (0, 1, 1, 5, 1, 0)]
+    assert stops == [[], [False], [False], [True], [True], [True]]
+    # not at each camera that begins, but at all of them
+    look = ModelLook(cameras, arm(tmp_path, 0.2, explain_with="collision"))
+    looked = []
+    for many in range(6):
+        look.hear(replace(of(many), joints=None))
+        assert look.found is None
+    for many in (1, 3, 4, 5):
+        look.found, look._looked = None, max(looked, default=0)
+        look.hear(of(many))
+        looked += [many] if look.found is not None else []
+    assert looked == [1, 3, 5]

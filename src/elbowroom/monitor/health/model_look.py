@@ -13,7 +13,9 @@ from elbowroom.sensing import Snapshot
 
 @dataclass(slots=True, eq=False)
 class ModelLook:
-    """Looks once, at the first moment that says where the machine is; what it found then it says again.
+    """Looks at the first moment that says where the machine is, and says again what it found then.
+
+    Cameras may begin one after the other: while nothing stops, it looks again at twice as many, and once at all.
 
     Args:
         cameras: of the room.
@@ -24,11 +26,21 @@ class ModelLook:
     machine: Machine
     name: str = "model"
     found: tuple[Finding, ...] | None = field(default=None, init=False)
+    _looked: int = field(default=0, init=False)
+    """At how many cameras it looked last."""
 
     def hear(self, snapshot: Snapshot) -> Sequence[Finding]:
         """That the machine is elsewhere, which stops; else warnings about links, which stop nothing."""
-        if self.found is None and snapshot.joints is not None and snapshot.frames:
+        many = len({frame.camera for frame in snapshot.frames})
+        if snapshot.joints is not None and self._is_due(many):
+            self._looked = many
             there = machine_there(self.machine, self.cameras, snapshot)
             stops = any(finding.stops for finding in there)
             self.found = there if stops else (*there, *model_findings(self.machine, self.cameras, snapshot))
         return self.found or ()
+
+    def _is_due(self, many: int) -> bool:
+        """Whether so many cameras say more than was seen before."""
+        if any(finding.stops for finding in self.found or ()):
+            return False
+        return many > self._looked and (many >= 2 * self._looked or many == len(self.cameras))
