@@ -10,7 +10,7 @@ from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.transforms import invert_rigid
 from elbowroom.machine import Machine
 from elbowroom.machine.elsewhere import LEAST_PIXELS, Elsewhere, elsewhere
-from elbowroom.reconstruct.images import room_images
+from elbowroom.reconstruct.machine_images import machine_images
 from elbowroom.sensing import Snapshot
 
 KIND = "machine"
@@ -38,15 +38,12 @@ def machine_there(
         CameraError, FrameError: frames of other cameras or sizes.
         MachineError: joints that are not possible.
     """
-    if snapshot.joints is None:
+    images = machine_images(cameras, snapshot)
+    if images is None:
         return ()
-    images = room_images(cameras, snapshot.frames)
-    seen = [camera for camera in images.cameras if camera.name in images.least_m]
-    depths = [images.least_m[camera.name] for camera in seen]
-    joints = [snapshot.joints_of.get(camera.name, snapshot.joints) for camera in seen]
 
     def seen_if(as_said: Machine) -> Elsewhere:
-        return elsewhere(as_said, seen, depths, joints)
+        return elsewhere(as_said, *images)
 
     found = seen_if(machine)
     if not found.links:

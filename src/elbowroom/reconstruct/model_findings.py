@@ -6,7 +6,7 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
 from elbowroom.machine import Machine
 from elbowroom.machine.excess import Excess, excess_of
-from elbowroom.reconstruct.images import room_images
+from elbowroom.reconstruct.machine_images import machine_images
 from elbowroom.sensing import Snapshot
 
 
@@ -24,16 +24,8 @@ def model_findings(
         CameraError, FrameError: frames of other cameras or sizes.
         MachineError: joints that are not possible.
     """
-    if snapshot.joints is None:
-        return ()
-    images = room_images(cameras, snapshot.frames)
-    seen = [camera for camera in images.cameras if camera.name in images.least_m]
-    found = excess_of(
-        machine,
-        seen,
-        [images.least_m[camera.name] for camera in seen],
-        [snapshot.joints_of.get(camera.name, snapshot.joints) for camera in seen],
-    )
+    images = machine_images(cameras, snapshot)
+    found = () if images is None else excess_of(machine, *images)
     return tuple(Finding("model", (excess.link,), _text(machine, excess), False) for excess in found)
 
 
