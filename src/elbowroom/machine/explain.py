@@ -48,10 +48,13 @@ class Explained:
         unexplained_words: plane of the grid with every voxel, near the grown body, that may hold a return
             that the machine does not explain; such voxels must not be freed as body. Voxels farther from the
             body may be set too. None if no grid was given.
+        decided_words: plane of voxels that become free as body whatever cameras say, so that a carve need not ask
+            any of them, and says nothing of them; None: it asks of all.
     """
 
     model_depth: dict[str, NDArray[np.float32]]
     unexplained_words: Words | None
+    decided_words: Words | None = None
 
 
 def explain_frames(

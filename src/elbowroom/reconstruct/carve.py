@@ -1,7 +1,7 @@
 """Frames of any group of cameras -> evidence."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from weakref import finalize
 
 import numpy as np
@@ -131,7 +131,7 @@ def carve_images(
     own = _Carve(grid, terms, complete, focus, carver=carver)(
         images.of(*alone) if near else images, explained, kept
     )
-    rest = Explained(explained.model_depth, None)
+    rest = replace(explained, unexplained_words=None)
     # of one witness every camera is asked, also where several see through: who disputes counts
     as_one_witness = _Carve(grid, terms, True, focus, True, carver)
     shared = (as_one_witness(images.of(*group), rest, kept) for group in near)
@@ -160,8 +160,9 @@ class _Carve:
         asked = (
             layout.inside.copy() if self.focus is None else np.where(self.focus, layout.inside, np.uint64(0))
         )
-        answers = _no_answers(asked, self.terms.detail, self.complete)
-        lattice, worth = bits.lattice(self.grid), np.flatnonzero(asked.reshape(-1, 64).any(axis=1))
+        left = asked if explained.decided_words is None else asked & ~explained.decided_words
+        answers = _no_answers(left, self.terms.detail, self.complete)
+        lattice, worth = bits.lattice(self.grid), _cubes_with(asked)
         carver = self.carver or (_by_points if self.terms.detail == "point" else _by_voxels)
         # of other details windows decide, and they reach beyond what the pixel test asks
         within = regions(layout, asked, worth, images.aged_m) if self.terms.detail == "pixel" else None
@@ -169,7 +170,7 @@ class _Carve:
         carved = KeptViews(views if kept is None else widened(views), self.as_one)
         # its memory is used again when nobody has it any more
         finalize(carved, layout.give_back, buffers)
-        carver(worth, lattice, views, answers)
+        carver(worth if left is asked else _cubes_with(left), lattice, views, answers)
         if kept is not None:
             kept.append(carved)
         return Evidence(
@@ -180,6 +181,11 @@ class _Carve:
             Counts(answers.through_count, answers.dispute_count) if self.complete else None,
             witness_angle_deg=self.terms.witness_angle_deg,
         )
+
+
+def _cubes_with(asked: Words) -> NDArray[np.int64]:
+    """Numbers of the cubes that hold voxels that are asked."""
+    return np.flatnonzero(asked.reshape(-1, 64).any(axis=1))
 
 
 def _by_voxels(cubes: NDArray[np.int64], lattice: Lattice, views: Views, answers: Answers) -> None:

@@ -20,8 +20,9 @@ from elbowroom.reconstruct.explained import explain
 from elbowroom.reconstruct.free_space import FreeSpace
 from elbowroom.reconstruct.images import frames_by_camera, room_images
 from elbowroom.reconstruct.looking import found_in_space, require_plausible
+from elbowroom.reconstruct.own_body import own_body
 from elbowroom.reconstruct.parts import KeptViews
-from elbowroom.reconstruct.resolve import decide
+from elbowroom.reconstruct.resolve import decide_around
 from elbowroom.reconstruct.source import ImageSource
 from elbowroom.reconstruct.terms import PEOPLE_SPEED_M_S, WITNESS_ANGLE_DEG, Terms
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
@@ -145,13 +146,16 @@ def free_space_of(
     images = room_images(cameras, fresh.frames, aged_m(cameras, fresh, terms))
     with stage("explain"):
         explained = explain(grid, machine, images, fresh, terms)
+        # what is free as body whatever cameras say is not asked of them
+        own = own_body(grid, cameras, machine, fresh.joints_at_newest, terms)
+        explained = replace(explained, decided_words=own.decided(explained.unexplained_words))
     with stage("carve"):
         kept: list[KeptViews] = []
         evidence = carve_images(
             grid, images, explained, terms, complete=terms.needs_counts, focus=focus, kept=kept
         )
     with stage("resolve"):
-        space = decide(evidence, cameras, machine, fresh.joints_at_newest, terms)
+        space = decide_around(evidence, cameras, own, terms)
     source = ImageSource(images, explained.model_depth, terms, space.free_words, focus, tuple(kept))
     space = replace(space, source=source, looked_at=focus)
     if machine is None or not machine.contacts:

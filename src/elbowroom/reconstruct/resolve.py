@@ -5,17 +5,17 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from elbowroom.choices import Detail, Rule
-from elbowroom.errors import EvidenceError, InputError
+from elbowroom.errors import EvidenceError
 from elbowroom.geometry import DepthCamera, bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.margin import Margin
-from elbowroom.machine import Machine, body_words
+from elbowroom.machine import Machine
 from elbowroom.reconstruct.carve import carve_images
 from elbowroom.reconstruct.evidence import Evidence, merge
 from elbowroom.reconstruct.explained import NOTHING
 from elbowroom.reconstruct.free_space import FreeSpace
-from elbowroom.reconstruct.growth import growth_of
 from elbowroom.reconstruct.images import room_images
+from elbowroom.reconstruct.own_body import OwnBody, own_body
 from elbowroom.reconstruct.terms import Terms
 from elbowroom.reconstruct.witnesses import witnesses
 
@@ -104,6 +104,21 @@ def decide(
     Raises:
         InputError, MachineError, EvidenceError: as `resolve`.
     """
+    return decide_around(evidence, cameras, own_body(evidence.grid, cameras, machine, joints, terms), terms)
+
+
+def decide_around(
+    evidence: Evidence, cameras: Sequence[DepthCamera], own: OwnBody, terms: Terms
+) -> FreeSpace:
+    """As `decide`, where it is known which voxels are the machine's own.
+
+    Args:
+        evidence, cameras, terms: as of `decide`.
+        own: the machine's body. Of voxels that it decides (`OwnBody.decided`) the evidence need say nothing.
+
+    Raises:
+        EvidenceError: as `resolve`.
+    """
     grid = evidence.grid
     if terms.needs_counts and evidence.counts is None:
         raise EvidenceError(f"resolve: rule {terms.rule} needs evidence carved with complete=True")
@@ -111,7 +126,7 @@ def decide(
         _require_one_witness(evidence, cameras)
     evidence = _with_silent(evidence, cameras, terms)
     free = _DECIDE[terms.rule](evidence) & bits.inside(grid)
-    body = _body(evidence, machine, joints, growth_of(grid, cameras, terms))
+    body = own.taken_out(evidence)
     free = free | body
     blocked = ~free & bits.inside(grid)
     surface: Words = (evidence.surface | evidence.unexplained) & blocked
@@ -143,21 +158,3 @@ def _with_silent(evidence: Evidence, cameras: Sequence[DepthCamera], terms: Term
         return evidence
     blank = carve_images(evidence.grid, room_images(silent, []), NOTHING, terms, complete=terms.needs_counts)
     return merge([evidence, blank])
-
-
-def _body(
-    evidence: Evidence, machine: Machine | None, joints: Mapping[str, float] | None, growth_m: float
-) -> Words:
-    """Plane of the voxels that the machine's body covers, but for those in which something else was seen.
-
-    Where the model is larger than what cameras see of it, nothing else may be disputed either: a hand in its excess is.
-    """
-    if machine is None:
-        return bits.empty(evidence.grid)
-    if joints is None:
-        raise InputError("resolve: a machine without joints; give its joint positions by name")
-    body: Words = body_words(machine, joints, evidence.grid, growth_m) & ~evidence.unexplained
-    if machine.as_seen is not machine:
-        seen = body_words(machine.as_seen, joints, evidence.grid, growth_m)
-        body &= seen | ~evidence.disputed
-    return body
