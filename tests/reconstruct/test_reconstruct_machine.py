@@ -1,5 +1,7 @@
 """What the machine explains in the images, and what that leaves of the laws."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,8 +11,13 @@ from elbowroom.errors import MachineError
 from elbowroom.geometry import VoxelGrid, bits
 from elbowroom.machine import body_words
 from elbowroom.motion import check_motions, joint_motions
-from elbowroom.reconstruct import carve, reconstruct, resolve
-from elbowroom.sensing import DepthFrame
+from elbowroom.reconstruct import Terms, carve, reconstruct, resolve
+from elbowroom.reconstruct.carve import carve_images
+from elbowroom.reconstruct.explained import explain
+from elbowroom.reconstruct.images import room_images
+from elbowroom.reconstruct.own_body import OwnBody, own_body
+from elbowroom.reconstruct.resolve import decide_around
+from elbowroom.sensing import DepthFrame, Snapshot
 from reference import motion_machines as machines
 from reference import reconstruct_scenes as scenes
 from reference.motion_machines import HOME
@@ -167,6 +174,40 @@ def test_less_evidence_never_makes_a_verdict_milder(arm, seed, ways, detail, kin
     ):
         assert less.level.rank <= more.level.rank
         assert less.free_travel <= more.free_travel
+
+
+@settings(deadline=None, derandomize=True, max_examples=8)
+@given(
+    seed=st.integers(0, 10**6),
+    detail=st.sampled_from(["footprint", "pixel", "point"]),
+    rule=st.sampled_from(["three", "majority"]),
+    is_larger=st.booleans(),
+)
+def test_cameras_need_not_be_asked_of_what_is_free_as_body_anyway(arm, seed, detail, rule, is_larger):
+    rng, grid, cameras, _, frames = room_with_arm(seed, arm, "planar")
+    # so that some of the body is disputed, and some of it holds what the model does not explain
+    frames = [replace(f, depth_m=f.depth_m * rng.choice((1.0, 0.95), f.depth_m.shape)) for f in frames]
+    terms = Terms(rule, detail)
+    images = room_images(cameras, frames)
+    explained = explain(grid, arm, images, Snapshot.taken(frames, HOME), terms)
+    own = own_body(grid, cameras, arm, HOME, terms)
+    if is_larger:
+        own = OwnBody(own.covered, own.covered & rng.integers(0, 2**64, len(own.covered), dtype=np.uint64))
+    decided = own.decided(explained.unexplained_words)
+    assert decided.any() and (decided & ~own.covered == 0).all()
+    asked, spared = (
+        decide_around(
+            carve_images(
+                grid, images, replace(explained, decided_words=words), terms, complete=terms.needs_counts
+            ),
+            cameras,
+            own,
+            terms,
+        )
+        for words in (None, decided)
+    )
+    for name in ("free_words", "surface_words", "blind_words", "disputed_words", "body_words"):
+        np.testing.assert_array_equal(getattr(spared, name), getattr(asked, name))
 
 
 @pytest.mark.parametrize("kind", ["planar", "radial"])
