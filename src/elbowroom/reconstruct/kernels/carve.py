@@ -27,6 +27,9 @@ from elbowroom.reconstruct.kernels.planes import (
     note_through,
 )
 
+FEW = 5
+"""So many cameras are asked pixel by pixel before the next are asked at all."""
+
 
 class Scratch(NamedTuple):
     """Memory of one kernel.
@@ -81,14 +84,18 @@ def carve_cubes(cubes, lattice, views, answers):
         cube = cube_at(lattice, number)
         _ask_blocks(cube, views, answers, scratch)
         _put_in_order(views.order, scratch.through, scratch.order)
-        # camera by camera, so that the part of its image that the cube covers stays in the cache
+        # the best cameras by all means first, then the next: where three see through, the others need not be asked
+        for first, last in ((0, FEW), (FEW, 2 * FEW), (2 * FEW, cameras)):
+            # camera by camera, so that the part of its image that the cube covers stays in the cache
+            for c in scratch.order[first:last]:
+                _ask_voxels(cube, c, views, answers, scratch)
+            # those that saw through, if they still do, then those that may
+            for turn in range(0 if is_aged else 1, 2):
+                for c in scratch.order[first:last]:
+                    _ask_pixels(cube, c, turn, views, answers, scratch)
+        # what does not see through, where there is no surface yet
         for c in scratch.order:
-            _ask_voxels(cube, c, views, answers, scratch)
-        # first those that saw through, if they still do, then those that may: where three do, the others need not be
-        # asked, nor where there is a surface
-        for turn in range(0 if is_aged else 1, 3):
-            for c in scratch.order:
-                _ask_pixels(cube, c, turn, views, answers, scratch)
+            _ask_pixels(cube, c, 2, views, answers, scratch)
         for word in range(cube.word, cube.word + 64):
             if not answers.complete:
                 make_canonical(answers.planes, word)
@@ -253,8 +260,10 @@ def _ask_pixels(cube, c, turn, views, answers, scratch):
         boxes, seen = voxels_of(cube, lane), rest
         if turn > 0:
             memory = scratch.outlines[0], scratch.voxel[0]
+            # who is counted has to say all; else a surface disputes already
+            in_surface = NOTHING if answers.complete else rest & planes[SURFACE, word]
             seen, disputed, surface, blind = settle_block(
-                camera, views.texels, rest, turn == 2, boxes, memory
+                camera, views.texels, (rest, in_surface), turn == 2, boxes, memory
             )
             note_disputed(answers, word, disputed, surface, blind)
         if camera.aged_m > 0.0:

@@ -14,7 +14,7 @@ from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
 from elbowroom.geometry.kernels.noise import in_float32, margin_at
 from elbowroom.geometry.kernels.rigid import moved
 from elbowroom.reconstruct.kernels.box import INSIDE, SLOP_PX, SLOP_REL, place_boxes
-from elbowroom.reconstruct.kernels.cone import Pixel, misses, prepare
+from elbowroom.reconstruct.kernels.cone import Pixel, has_left, misses, prepare, steepness
 from elbowroom.reconstruct.kernels.pixel import (
     BLOCKED,
     DISPUTES,
@@ -37,7 +37,8 @@ OUTLINES = np.dtype(
         np.record,
         [(name, "i4", 64) for name in ("left", "right", "top", "bottom")]
         + [(name, "u4", 64) for name in ("clear_from", "hidden_to", "stopped_to")]
-        + [(name, "f4", 64) for name in ("u", "v", "inner_u", "inner_v", "near", "far", "middle", "per_far")],
+        + [(name, "f4", 64) for name in ("u", "v", "inner_u", "inner_v", "near", "far", "middle", "per_far")]
+        + [("short", "u8", 9), ("tell", "u8", 9), ("row", "i8", 9), ("column", "i8", 9)],
     )
 )
 """Scratch memory for 64 voxels, one in each lane.
@@ -46,7 +47,13 @@ left, right, top, bottom: pixels whose cones may meet it, ends included. clear_f
 beyond it; hidden_to: what is measured up to there is before it; stopped_to: what is free up to there and meets its
 middle is not free beyond it [quanta]. u, v: the place of its middle; inner_u, inner_v: how far from there pixels surely
 see it [px]. near, far, middle: its depth [m]. per_far: one by the depth of its farthest corner along the axis [1/m].
+
+Of pieces of 8 x 8 pixels about one voxel: row and column of their first, those that are short of its far side, and
+those of them that say anything of it.
 """
+OPEN, STOPPED, IN_SURFACE = np.int64(0), np.int64(1), np.int64(2)
+"""What is known of a voxel that is asked: nothing; that the camera does not see through; that it is a surface, so that
+nothing but whether the camera sees through matters. Not literals: numba would compile it once for each."""
 SEEN, NOTHING_SAID, UNKNOWN = 0, 1, 2
 """What the rectangle about a voxel says: all is free beyond it; not that, and no pixel says anything of it; neither."""
 MOST_PIXELS = 24
@@ -227,7 +234,7 @@ def _some_meet(camera, block, lane, edge, pixels):
 
 
 @uncounted(cache=True, error_model="numpy", forceinline=True)
-def _settled(camera, texels, block, lane, edge, stopped):
+def _settled(camera, texels, block, lane, edge, known):
     """What the rectangle about a voxel settles: SEEN, NOTHING_SAID, or UNKNOWN.
 
     Args:
@@ -235,7 +242,7 @@ def _settled(camera, texels, block, lane, edge, stopped):
         block: outlines of its voxels.
         lane: of the voxel.
         edge: of a voxel [m].
-        stopped: whether it is known that the camera does not see through it.
+        known: OPEN, STOPPED or IN_SURFACE.
     """
     left, right = np.int64(block.left[lane]), np.int64(block.right[lane])
     top, bottom = np.int64(block.top[lane]), np.int64(block.bottom[lane])
@@ -249,76 +256,164 @@ def _settled(camera, texels, block, lane, edge, stopped):
             begin = min(column, width - EIGHT)
             at = camera.first_texel + row * width + begin
             columns = _run(begin, column, right) * IN_EACH_ROW
-            if not stopped:
+            if known != STOPPED:
                 short |= shorts_of(texels.trust_texels, at, width, last, clear_from) & columns
+            if known == IN_SURFACE:
+                continue
             tell |= tellings_of(texels.doubt_texels, at, width, last, between) & columns
-    if stopped or not short or tell:
-        return UNKNOWN if tell and (stopped or short) else (NOTHING_SAID if stopped else SEEN)
+            if tell and (known == STOPPED or short):
+                return UNKNOWN
+    if known == STOPPED:
+        return NOTHING_SAID
+    if not short:
+        return SEEN
     if right - left < EIGHT and bottom - top < EIGHT:
         # what is free no farther than before the voxel is not free beyond it, if it meets it at all
         begin, last = min(left, width - EIGHT), bottom - top
         at = camera.first_texel + top * width + begin
         before = shorts_of(texels.trust_texels, at, width, last, block.hidden_to[lane])
-        before &= _run(begin, left, right) * (IN_EACH_ROW >> np.uint64(8 * (EIGHT - 1 - last)))
+        before &= _run(begin, left, right) * _rows_to(last)
         if before:
             meets = _some_meet(camera, block, lane, edge, (before, begin, top))
             return NOTHING_SAID if meets else UNKNOWN
     return NOTHING_SAID if _is_stopped(camera, texels, block, lane) else UNKNOWN
 
 
-@uncounted(cache=True, error_model="numpy")
-def _settle_few(camera, texels, box, stopped, voxel):
-    """As `kernels.pixel.settle_voxel`, of a voxel wholly in view that no more than 8 x 8 pixels may see: eight at once.
+@njit(inline="always")
+def _rows_to(last):
+    """The first bit of each of eight rows up to a number, ends included."""
+    return IN_EACH_ROW >> np.uint64(8 * (EIGHT - 1 - min(last, EIGHT - 1)))
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _pieces(camera, texels, pixels, depths, known, block):
+    """Cuts a rectangle of at most 24 x 24 pixels into pieces of 8 x 8 and notes those with pixels short of a voxel.
 
     Args:
-        camera, texels, box, voxel: as there.
-        stopped: whether it is known that the camera does not see through it.
+        camera, texels: its record; those of all cameras.
+        pixels: the rectangle.
+        depths: of the voxel along its rays.
+        known: as of `_settled`.
+        block: its fields short, tell, row and column are written.
+
+    Returns:
+        How many there are, and whether any pixel that is short says anything of the voxel; of one IN_SURFACE it is not
+        asked.
     """
+    many, tells, width = 0, np.uint64(0), camera.width
+    between = depths.clear_from, depths.hidden_to
+    for row in range(pixels.top, pixels.bottom + 1, EIGHT):
+        last = pixels.bottom - row
+        for column in range(pixels.left, pixels.right + 1, EIGHT):
+            begin = min(column, width - EIGHT)
+            at = camera.first_texel + row * width + begin
+            # of rows past the last the texels of the last would be counted again
+            own = _run(begin, column, pixels.right) * _rows_to(last)
+            short = shorts_of(texels.trust_texels, at, width, last, depths.clear_from) & own
+            if not short:
+                continue
+            tell = np.uint64(0)
+            if known != IN_SURFACE:
+                tell = tellings_of(texels.doubt_texels, at, width, last, between) & short
+            tells |= tell
+            block.short[many], block.tell[many] = short, tell
+            block.row[many], block.column[many] = row, begin
+            many += 1
+    return many, tells != 0
+
+
+@uncounted(cache=True, error_model="numpy")
+def _settle_few(camera, texels, box, known, scratch):
+    """As `kernels.pixel.settle_voxel`, of a voxel wholly in view that at most 24 x 24 pixels may see: eight at once.
+
+    Args:
+        camera, texels, box: as there.
+        known: as of `_settled`. Of one IN_SURFACE nothing is told but whether it is seen through.
+        scratch: outlines and a voxel, records.
+    """
+    block, voxel = scratch
     m, half = camera.camera_from_world, 0.5 * box.edge
     middle = moved(m, box.x, box.y, box.z)
     reach_z = half * (abs(m[2, 0]) + abs(m[2, 1]) + abs(m[2, 2]))
     pixels = pixels_within(camera, outline_of(camera, middle, half))
-    few = pixels.right - pixels.left < EIGHT and pixels.bottom - pixels.top < EIGHT
+    few = pixels.right - pixels.left < MOST_PIXELS and pixels.bottom - pixels.top < MOST_PIXELS
     if not few or not pixels.whole:
         return settle_voxel(camera, texels, box, voxel)
     depths = depths_of(camera, middle, box.edge, reach_z)
-    left = min(pixels.left, camera.width - EIGHT)
-    columns, corner = (
-        _run(left, pixels.left, pixels.right),
-        camera.first_texel + pixels.top * camera.width + left,
-    )
-    width, last = camera.width, pixels.bottom - pixels.top
-    between = depths.clear_from, depths.hidden_to
-    # of rows past the last the texels of the last would be counted again
-    own = columns * (IN_EACH_ROW >> np.uint64(8 * (EIGHT - 1 - last)))
-    short = shorts_of(texels.trust_texels, corner, width, last, depths.clear_from) & own
-    tell = tellings_of(texels.doubt_texels, corner, width, last, between) & own
-    tell &= short
-    if not short:
+    many, some_tell = _pieces(camera, texels, pixels, depths, known, block)
+    if not many:
         return THROUGH
-    if stopped and not tell:
+    if known == STOPPED and not some_tell:
         return 0
     prepare(camera, box, voxel)
-    answer = BLOCKED if stopped else 0
+    if known == IN_SURFACE:
+        return THROUGH if _are_all_free(camera, texels, depths, many, block, voxel) else 0
+    answer = BLOCKED if known == STOPPED else 0
     # first those that may dispute, then those that may only keep it from being seen through
     for turn in range(2):
-        rest = tell if turn == 0 else short & ~tell
-        while rest and not (turn == 1 and answer & BLOCKED):
-            n = lowest_bit(rest)
-            rest &= rest - np.uint64(1)
-            row, column = n >> 3, n & 7
-            texel = corner + row * camera.width + column
-            measured = texels.doubt_texels[texel]
-            if answer & IS_BLIND and greatest_of(measured) == NO_RETURN:
-                continue
-            u, v = left + column, pixels.top + row
-            if misses(voxel, u, v):
-                continue
-            free_to = texels.trust_texels[texel] >> np.uint32(16)
-            answer |= ask_pixel(camera, texels, depths, voxel, Pixel(u, v, free_to, measured))
+        for piece in range(many):
+            if turn == 1 and answer & BLOCKED:
+                break
+            rest = block.tell[piece] if turn == 0 else block.short[piece] & ~block.tell[piece]
+            answer = _ask_piece(camera, texels, depths, (rest, piece, turn == 1), answer, block, voxel)
             if answer & IS_SURFACE:
                 return DISPUTES | IS_SURFACE
     return answer & ~BLOCKED if answer else THROUGH
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _are_all_free(camera, texels, depths, many, block, voxel):
+    """Whether all pixels of so many pieces that are short of a voxel and meet it are free beyond it all the same.
+
+    Args:
+        camera, texels, depths: as of `kernels.pixel.ask_pixel`.
+        many, block: pieces, and how many.
+        voxel: the scratch record, prepared.
+    """
+    for piece in range(many):
+        rest = block.short[piece]
+        while rest:
+            n = lowest_bit(rest)
+            rest &= rest - np.uint64(1)
+            u, v = block.column[piece] + (n & 7), block.row[piece] + (n >> 3)
+            if misses(voxel, u, v):
+                continue
+            texel = texels.trust_texels[camera.first_texel + v * camera.width + u]
+            free_to = texel >> np.uint32(16)
+            _, steep_far = steepness(camera, u, v)
+            t = (free_to * camera.quantum - depths.margin) / steep_far
+            if not has_left(camera, voxel, Pixel(u, v, free_to, texel), t):
+                return False
+    return True
+
+
+@uncounted(cache=True, error_model="numpy", forceinline=True)
+def _ask_piece(camera, texels, depths, asked, answer, block, voxel):
+    """Adds to an answer what pixels of a piece say of a voxel, until one of them says all that matters.
+
+    Args:
+        camera, texels, depths: as of `kernels.pixel.ask_pixel`.
+        asked: which pixels, a word; of which piece; whether BLOCKED is all that matters, which else is IS_SURFACE.
+        answer: of other pixels, a sum.
+        block: pieces.
+        voxel: the scratch record, prepared.
+    """
+    rest, piece, until_blocked = asked
+    while rest and not (until_blocked and answer & BLOCKED):
+        n = lowest_bit(rest)
+        rest &= rest - np.uint64(1)
+        u, v = block.column[piece] + (n & 7), block.row[piece] + (n >> 3)
+        at = camera.first_texel + v * camera.width + u
+        measured = texels.doubt_texels[at]
+        if answer & IS_BLIND and greatest_of(measured) == NO_RETURN:
+            continue
+        if misses(voxel, u, v):
+            continue
+        free_to = texels.trust_texels[at] >> np.uint32(16)
+        answer |= ask_pixel(camera, texels, depths, voxel, Pixel(u, v, free_to, measured))
+        if answer & IS_SURFACE:
+            break
+    return answer
 
 
 @uncounted(cache=True, error_model="numpy")
@@ -355,7 +450,7 @@ def settle_block(camera, texels, asked, stopped, boxes, scratch):
 
     Args:
         camera, texels, boxes: as there.
-        asked: voxels that are asked, a word.
+        asked: voxels that are asked, a word, and those of which nothing but whether they are seen through matters.
         stopped: whether it is known of all of them that the camera does not see through.
         scratch: outlines and a voxel, records.
     """
@@ -367,7 +462,7 @@ def settle_block(camera, texels, asked, stopped, boxes, scratch):
         return answers
     if by_outlines:
         outlines(camera, first, boxes.edge, lanes)
-    rest, through = asked, np.uint64(0)
+    rest, through = asked[0], np.uint64(0)
     while rest:
         lane = lowest_bit(rest)
         bit = np.uint64(1) << np.uint64(lane)
@@ -375,10 +470,11 @@ def settle_block(camera, texels, asked, stopped, boxes, scratch):
         if not by_outlines:
             answers = add_answer(answers, bit, settle_voxel(camera, texels, box_in(boxes, lane), voxel))
             continue
-        known = _settled(camera, texels, lanes, lane, boxes.edge, stopped)
-        if known == SEEN:
+        known = STOPPED if stopped else (IN_SURFACE if asked[1] & bit else OPEN)
+        says = _settled(camera, texels, lanes, lane, boxes.edge, known)
+        if says == SEEN:
             through |= bit
-        elif known == UNKNOWN:
-            answer = _settle_few(camera, texels, box_in(boxes, lane), stopped, voxel)
+        elif says == UNKNOWN:
+            answer = _settle_few(camera, texels, box_in(boxes, lane), known, scratch)
             answers = add_answer(answers, bit, answer)
     return answers[0] | through, answers[1], answers[2], answers[3]
