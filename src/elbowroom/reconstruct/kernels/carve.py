@@ -84,18 +84,22 @@ def carve_cubes(cubes, lattice, views, answers):
         cube = cube_at(lattice, number)
         _ask_blocks(cube, views, answers, scratch)
         _put_in_order(views.order, scratch.through, scratch.order)
-        # the best cameras by all means first, then the next: where three see through, the others need not be asked
-        for first, last in ((0, FEW), (FEW, 2 * FEW), (2 * FEW, cameras)):
+        # the best cameras by windows and pixels first, then the next: where three see through, others need not be
+        # asked; at last all of them of what they do not see through, where there is no surface yet
+        for first, last, is_last in (
+            (0, FEW, False),
+            (FEW, 2 * FEW, False),
+            (2 * FEW, cameras, False),
+            (0, cameras, True),
+        ):
+            some = scratch.order[first:last]
             # camera by camera, so that the part of its image that the cube covers stays in the cache
-            for c in scratch.order[first:last]:
+            for c in some[:0] if is_last else some:
                 _ask_voxels(cube, c, views, answers, scratch)
             # those that saw through, if they still do, then those that may
-            for turn in range(0 if is_aged else 1, 2):
-                for c in scratch.order[first:last]:
+            for turn in range(2, 3) if is_last else range(0 if is_aged else 1, 2):
+                for c in some:
                     _ask_pixels(cube, c, turn, views, answers, scratch)
-        # what does not see through, where there is no surface yet
-        for c in scratch.order:
-            _ask_pixels(cube, c, 2, views, answers, scratch)
         for word in range(cube.word, cube.word + 64):
             if not answers.complete:
                 make_canonical(answers.planes, word)
@@ -122,7 +126,7 @@ def _put_in_order(order, through, best_first):
         best_first[at] = c
 
 
-@uncounted(cache=True)
+@uncounted(cache=True, forceinline=True)
 def _ask_blocks(cube, views, answers, scratch):
     """Asks all cameras of the 64 blocks of a cube, and counts who sees through."""
     through, mixed = scratch.through, scratch.mixed
@@ -150,7 +154,7 @@ def _ask_blocks(cube, views, answers, scratch):
                 note_through(answers, word, ALL)
 
 
-@uncounted(cache=True)
+@uncounted(cache=True, forceinline=True)
 def _ask_voxels(cube, c, views, answers, scratch):
     """Asks one camera of the voxels of those blocks that it neither sees through nor says nothing of."""
     camera = views.cameras[c]
@@ -178,7 +182,7 @@ def _ask_voxels(cube, c, views, answers, scratch):
     scratch.undecided[c] = undecided
 
 
-@uncounted(cache=True)
+@uncounted(cache=True, forceinline=True)
 def _look(cube, at, open_voxels, views, answers, scratch):
     """Of the voxels of a block that are asked those that a camera sees through by its windows; notes what it disputes.
 
@@ -204,7 +208,7 @@ def _look(cube, at, open_voxels, views, answers, scratch):
     return look.through & open_voxels
 
 
-@uncounted(cache=True)
+@uncounted(cache=True, forceinline=True)
 def _still(cube, at, through, views, answers, scratch):
     """Of voxels that a camera saw through those of which that holds by its windows, whatever has moved since.
 
@@ -233,7 +237,7 @@ def _dispute(camera, word, look, texels, answers, lanes):
     note_disputed(answers, word, disputed, surface, blind)
 
 
-@uncounted(cache=True)
+@uncounted(cache=True, forceinline=True)
 def _ask_pixels(cube, c, turn, views, answers, scratch):
     """Asks one camera pixel by pixel of voxels left to that.
 

@@ -322,7 +322,7 @@ def _pieces(camera, texels, pixels, depths, known, block):
     return many, tells != 0
 
 
-@uncounted(cache=True, error_model="numpy")
+@uncounted(cache=True, error_model="numpy", forceinline=True)
 def _settle_few(camera, texels, box, known, scratch):
     """As `kernels.pixel.settle_voxel`, of a voxel wholly in view that at most 24 x 24 pixels may see: eight at once.
 

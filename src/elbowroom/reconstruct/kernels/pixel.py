@@ -149,7 +149,7 @@ def bounds_about(camera, texels, pixels):
     return _bounds(texels.trust_tiles, camera.first_tile, (camera.width + 3) >> 2, tiles)
 
 
-@uncounted(cache=True)
+@uncounted(cache=True, forceinline=True)
 def _is_before(texels, at, depths):
     """Whether a pixel sees something, be it the machine, that lies wholly before a voxel."""
     measured = texels.doubt_texels[at]
@@ -157,7 +157,7 @@ def _is_before(texels, at, depths):
     return 0 < greatest <= depths.hidden_to
 
 
-@uncounted(cache=True)
+@uncounted(cache=True, forceinline=True)
 def _is_between(camera, texels, depths, u, v):
     """Whether a pixel lies between two, on either side of it, that see something before a voxel; none at the edge."""
     if u < 1 or v < 1 or u > camera.width - 2 or v > camera.height - 2:
