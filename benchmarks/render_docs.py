@@ -52,15 +52,15 @@ windows and tiles 10.0 and 6.2, cubes to voxels 79 and 73, all of it 132 and 101
 of each image is asked. Noise changes every pixel, and what windows leave open lies where depths decide within that
 noise: there nothing can be kept from one cycle to the next.
 
-Since then, on the inputs of two moments, kernel of the voxels alone, one thread. Of 620,000 voxels asked 59,000 are the machine's body,
-free whatever cameras say: without them it takes 0.56 (5 cm 0.66, footprint 0.68). The rest asked 45,000 pairs of a
+Since then, on the inputs of two moments, kernel of the voxels alone, one thread. Of 620,000 voxels asked 59,000 are the
+machine's body, free whatever cameras say: without them it takes 0.56 (5 cm 0.66, footprint 0.68). The rest asked 45,000 pairs of a
 block and a camera by windows, and two thirds of these saw through nothing; with five cameras asked pixel by pixel
 before the next are asked at all it is 27,000. Of the voxels asked by pixels 0.26 were a surface already, at 5 cm 0.39.
 
 A compiled extension is not built. The same kernels in hand-written C++ (gcc 12, AVX-512 by hand where eight texels are
 compared, the same bits), in turns with Numba's: 0.82 to 0.86 of its time before; 0.84 at 2 cm and 0.95 at 5 cm since
-steps are inlined in Numba (a call handed on 35 to 200 words of arrays), which is 1.05 to 1.2 times as fast, and not 1.6.
-The inner loop is vectorised in both: two loads and comparisons for eight pixels, a word of 64 bits for 64 pixels. The
+steps are inlined in Numba (a call handed on 35 to 200 words of arrays): 1.05 to 1.2 times as fast, and not 1.6. The
+inner loop is vectorised in both: two loads and comparisons for eight pixels, a word of 64 bits for 64 pixels. The
 rest is memory: three quarters of the time of looking at middle pixels is waiting for them, and of preparing pixels (3.7
 million: 18.6 ms) 6.5 are work with rows in the first cache. Fetching ahead, depths of 16 bits and another order of
 cubes gained nothing to 7 %.
