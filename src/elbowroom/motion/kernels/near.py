@@ -5,7 +5,8 @@ from numba import njit
 
 from elbowroom.geometry.kernels.bits import bit_of, uncounted, word_of
 from elbowroom.motion.kernels.mover import ROUNDING_M
-from elbowroom.motion.kernels.volume import meets_block, meets_voxel
+from elbowroom.motion.kernels.sway import sway
+from elbowroom.motion.kernels.volume import meets_block, meets_in_box, meets_voxel
 
 QUICK_BELOW = 0.499
 """Balls of smaller radius meet none but the eight voxels about the nearest corner [voxel edges]."""
@@ -41,6 +42,41 @@ def near_clusters(placed, mover, half, volume, asked, near):
         if not meets_block(words, cubes, lattice, x, y, z, r):
             continue
         if r > EXACT_UP_TO * lattice.edge or meets_voxel(words, lattice, x, y, z, r):
+            near[count] = cluster
+            count += 1
+    return count
+
+
+@uncounted()
+def near_boxes(placed, mover, turns, spare, volume, asked, near, ways):
+    """The clusters among `asked` that may meet a block within a box of joint positions; how many.
+
+    Each is a box along the axes of the world about its samples, as far as joints carry it (`sway`): where it lies flat
+    or slides along something, it is asked of much less space than by the ball about it.
+
+    Args:
+        placed, mover, volume, asked, near: as of `near_clusters`.
+        turns: the most that joints change, (joints,).
+        spare: by so much, times its speed, a cluster's samples are grown besides.
+        ways: (rows of a tree, 3), room to work in.
+    """
+    skin, speeds, cover = mover.skin, mover.speeds, mover.skin.cover + mover.skin.off + 2 * ROUNDING_M
+    words, cubes, lattice = volume.words, volume.cubes, volume.lattice
+    count = 0
+    for n in range(asked.size):
+        cluster = asked[n]
+        link, half = skin.link[cluster], skin.half
+        middle = _placed(placed, link, skin.centre, cluster)
+        ball = (middle[0], middle[1], middle[2], skin.radius[cluster] + cover)
+        moving, rest = sway(mover.tree, placed, turns, link, ball, ways)
+        rx = ry = rz = cover + rest + speeds[cluster] * spare
+        for axis in range(3):
+            rx += abs(placed[link, 0, axis]) * half[cluster, axis]
+            ry += abs(placed[link, 1, axis]) * half[cluster, axis]
+            rz += abs(placed[link, 2, axis]) * half[cluster, axis]
+        for row in range(moving):
+            rx, ry, rz = rx + abs(ways[row, 0]), ry + abs(ways[row, 1]), rz + abs(ways[row, 2])
+        if meets_in_box(words, cubes, lattice, middle, (rx, ry, rz)):
             near[count] = cluster
             count += 1
     return count
