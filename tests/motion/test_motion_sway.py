@@ -10,6 +10,7 @@ from elbowroom.motion.kernels.beside import Box, Cutting, block_in_box
 from elbowroom.motion.kernels.sway import Sway, sway, sways_into
 from elbowroom.motion.kernels.touched import NOTHING
 from elbowroom.motion.kernels.triangles import triangle_meets_box
+from elbowroom.motion.kernels.volume import meets_in_box
 from elbowroom.motion.skin import skin_of
 from elbowroom.motion.sweep import volume_of
 from elbowroom.reconstruct.free_space import FreeSpace
@@ -62,6 +63,22 @@ def test_a_triangle_that_is_carried_into_a_cube_may_meet_it(triangle, middle, wa
     assert may or not met
     if not len(ways) and rest == 0.0:
         assert may == met
+
+
+@settings(max_examples=60, deadline=None)
+@given(points, points, st.integers(0, 1000))
+def test_a_box_is_asked_of_all_voxels_that_it_touches_and_of_no_others(middle, half, seed):
+    rng = np.random.default_rng(seed)
+    blocked = rng.random(GRID.shape) < 0.003
+    volume, half = volume_of(FreeSpace.from_occupied(GRID, blocked)), np.abs(half) / 4
+    low, high = np.array(middle) - half, np.array(middle) + half
+    leaves = (low < GRID.lower_m).any() or (
+        high > GRID.lower_m + np.array(GRID.shape) * GRID.voxel_size_m
+    ).any()
+    first, last = ((ends - GRID.lower_m) / GRID.voxel_size_m for ends in (low, high))
+    i, j, k = (slice(max(int(a), 0), int(b) + 1) for a, b in zip(first, last, strict=True))
+    met = plain(meets_in_box)(volume.words, volume.cubes, volume.lattice, middle, tuple(half))
+    assert met == (leaves or blocked[i, j, k].any())
 
 
 def test_what_slides_along_a_wall_is_clear_of_it_at_once(arm):

@@ -64,7 +64,8 @@ def bare_skin(samples: BodySamples, points: NDArray[np.float32]) -> Skin:
     none = np.zeros(0, dtype=np.int32)
     of = np.repeat(np.arange(len(samples.cluster_start)), samples.cluster_stop - samples.cluster_start)
     half = np.zeros((len(samples.cluster_start), 3))
-    np.maximum.at(half, of, np.abs(points - samples.cluster_centre[of]))
+    for axis in range(3):  # one at a time, since there are many
+        np.maximum.at(half[:, axis], of, np.abs(points[:, axis] - samples.cluster_centre[of, axis]))
     return Skin(
         points=points,
         cluster_of=none,

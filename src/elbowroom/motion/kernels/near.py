@@ -1,4 +1,4 @@
-"""Which clusters and samples of a moving skin may meet a block: balls against voxels."""
+"""Which clusters and samples of a moving skin may meet a block: boxes and balls against voxels."""
 
 import numpy as np
 from numba import njit
@@ -6,16 +6,13 @@ from numba import njit
 from elbowroom.geometry.kernels.bits import bit_of, uncounted, word_of
 from elbowroom.motion.kernels.mover import ROUNDING_M
 from elbowroom.motion.kernels.sway import sway
-from elbowroom.motion.kernels.volume import meets_block, meets_in_box, meets_voxel
+from elbowroom.motion.kernels.volume import meets_in_box, meets_voxel
 
 QUICK_BELOW = 0.499
 """Balls of smaller radius meet none but the eight voxels about the nearest corner [voxel edges]."""
 
 TOGETHER = 64
 """So many samples are placed at once."""
-
-EXACT_UP_TO = 2.0
-"""Larger balls are tested against blocks of 64 voxels alone [voxel edges]."""
 
 
 @njit(inline="always")
@@ -29,25 +26,6 @@ def _placed(placed, link, points, n):
 
 
 @uncounted()
-def near_clusters(placed, mover, half, volume, asked, near):
-    """The clusters among `asked` that may meet a block within half an interval either way; how many."""
-    skin, speeds = mover.skin, mover.speeds
-    link, centre, radius, cover = skin.link, skin.centre, skin.radius, skin.cover
-    words, cubes, lattice = volume.words, volume.cubes, volume.lattice
-    count = 0
-    for n in range(asked.size):
-        cluster = asked[n]
-        x, y, z = _placed(placed, link[cluster], centre, cluster)
-        r = radius[cluster] + cover + speeds[cluster] * half + ROUNDING_M
-        if not meets_block(words, cubes, lattice, x, y, z, r):
-            continue
-        if r > EXACT_UP_TO * lattice.edge or meets_voxel(words, lattice, x, y, z, r):
-            near[count] = cluster
-            count += 1
-    return count
-
-
-@uncounted()
 def near_boxes(placed, mover, turns, spare, volume, asked, near, ways):
     """The clusters among `asked` that may meet a block within a box of joint positions; how many.
 
@@ -55,9 +33,13 @@ def near_boxes(placed, mover, turns, spare, volume, asked, near, ways):
     or slides along something, it is asked of much less space than by the ball about it.
 
     Args:
-        placed, mover, volume, asked, near: as of `near_clusters`.
+        placed: where links are in the box's middle, (links, 4, 4).
+        mover: what moves.
         turns: the most that joints change, (joints,).
         spare: by so much, times its speed, a cluster's samples are grown besides.
+        volume: what is blocked.
+        asked: which, int32.
+        near: written, int32.
         ways: (rows of a tree, 3), room to work in.
     """
     skin, speeds, cover = mover.skin, mover.speeds, mover.skin.cover + mover.skin.off + 2 * ROUNDING_M
@@ -84,7 +66,7 @@ def near_boxes(placed, mover, turns, spare, volume, asked, near, ways):
 
 @uncounted()
 def near_samples(placed, mover, half, volume, asked, near):
-    """The same for samples."""
+    """The samples among `asked` whose balls may meet a block within half an interval either way; how many."""
     skin, speeds = mover.skin, mover.speeds
     link, points, cluster_of, cover = skin.link, skin.points, skin.cluster_of, skin.cover
     words, lattice = volume.words, volume.lattice

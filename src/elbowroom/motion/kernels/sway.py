@@ -28,12 +28,12 @@ class Sway(NamedTuple):
 
     Fields:
         ways: what each joint does to its middle at most, in its first rows, world frame, (rows of a tree, 3) [m].
-        count: how many rows there are.
+        many: how many rows there are.
         rest: by so much any point of the ball may be elsewhere besides [m].
     """
 
     ways: np.ndarray
-    count: int
+    many: int
     rest: float
 
 
@@ -182,7 +182,7 @@ def _sways_into_cells(triangle, cells, least, edge, swayed):
 def _reach(swayed, a, b, c):
     """How far a ball's points go along a direction, times its length, at most."""
     reach = swayed.rest * (abs(a) + abs(b) + abs(c))
-    for n in range(swayed.count):
+    for n in range(swayed.many):
         reach += abs(a * swayed.ways[n, 0] + b * swayed.ways[n, 1] + c * swayed.ways[n, 2])
     return reach
 
