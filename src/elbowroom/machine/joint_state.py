@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.errors import MachineError
 from elbowroom.machine.joint import Joint
+from elbowroom.machine.kernels.body import Tree
 
 ROUNDING = 1e-6
 """Positions beyond a limit by this much are rounding, not a fault [m or rad]."""
@@ -46,6 +47,24 @@ class Follower(NamedTuple):
     leader: str
     multiplier: float
     offset: float
+
+
+def followers_of(
+    joints: Sequence[Joint], link_names: Sequence[str], joint_names: Sequence[str], tree: Tree
+) -> tuple[Follower, ...]:
+    """Each joint that follows another one, and where that puts it.
+
+    Args:
+        joints: of a machine.
+        link_names: in the order of the tree.
+        joint_names: of the commanded joints, in the order of its columns.
+        tree: of the machine.
+    """
+    rows = [(joint, link_names.index(joint.child)) for joint in joints if joint.mimic is not None]
+    return tuple(
+        Follower(joint, joint_names[tree.column[row]], float(tree.multiplier[row]), float(tree.offset[row]))
+        for joint, row in rows
+    )
 
 
 def possible_positions(

@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.choices import ExplainWith
 from elbowroom.errors import MachineError, MachineWarning
 from elbowroom.finding import Finding
-from elbowroom.geometry import invert_rigid, nearest_rigid
+from elbowroom.geometry import nearest_rigid
 from elbowroom.machine import branch
+from elbowroom.machine.carried import require_beside
 from elbowroom.machine.contact import Contact
 from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
@@ -23,12 +24,13 @@ from elbowroom.machine.joint_state import (
     Follower,
     Joints,
     JointTolerance,
+    followers_of,
     possible_positions,
     require_followers,
 )
 from elbowroom.machine.kernels.body import Tree, place_links
 from elbowroom.machine.link import Link
-from elbowroom.machine.overlap import POSES, always_touching, is_within
+from elbowroom.machine.overlap import POSES
 from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.part import Part
 from elbowroom.machine.poses import random_poses
@@ -355,46 +357,14 @@ class Machine:
             allowed_contacts=(*self.allowed_contacts, *touched),
             parts=(*self.parts, part.name),
         )
-        holding._require_beside(part.name, [self.link_names.index(name) for _, name in touched])
-        return holding
-
-    def _require_beside(self, part: str, held_with: Sequence[int]) -> None:
-        """Refuses a part that lies in links in nearly all poses which do not carry it.
-
-        Args:
-            part: its name; it is the last link.
-            held_with: rows of the links that it may touch.
-        """
-        last = len(self.links) - 1
-        rows = [
-            (row, last)
-            for row, link in enumerate(self.links[:-1])
-            if link.has_geometry and row not in held_with
-        ]
-        poses = self.random_places(POSES)
-        always = always_touching(self.shape, rows, poses)
-        within = [
-            self.link_names[row]
-            for (row, _), touch in zip(rows, always, strict=True)
-            if touch or all(self._holds(last, row, placed) for placed in poses[:3])
-        ]
-        if within:
-            raise MachineError(
-                f"machine {self.name}: part {part} lies in {', '.join(within)} in all poses, which do not carry it: "
-                "give its place (link_from_part), a smaller shape, or the link that does carry it"
-            )
-
-    def _holds(self, part: int, row: int, placed: NDArray[np.float64]) -> bool:
-        """Whether one of a part and another link lies wholly in the other.
-
-        Args:
-            part, row: rows of the two.
-            placed: where links are, shape (n_links, 4, 4).
-        """
-        part_from_link = invert_rigid(placed[part]) @ placed[row]
-        return is_within(self.links[row], self.links[part], part_from_link) or is_within(
-            self.links[part], self.links[row], invert_rigid(part_from_link)
+        require_beside(
+            f"machine {self.name}",
+            holding.links,
+            holding.shape,
+            {self.link_names.index(name) for _, name in touched},
+            holding.random_places(POSES),
         )
+        return holding
 
     def random_places(self, count: int, seed: int = 0) -> NDArray[np.float64]:
         """Where links are in poses drawn from the joints' limits, shape (count, n_links, 4, 4).
@@ -495,14 +465,7 @@ class Machine:
     @cached_property
     def _followers(self) -> tuple[Follower, ...]:
         """Each follower, and where its leader puts it."""
-        followers = []
-        for joint in self.joints:
-            if joint.mimic is not None:
-                row = self.link_names.index(joint.child)
-                leader = self.joint_names[self.tree.column[row]]
-                own = float(self.tree.multiplier[row]), float(self.tree.offset[row])
-                followers.append(Follower(joint, leader, *own))
-        return tuple(followers)
+        return followers_of(self.joints, self.link_names, self.joint_names, self.tree)
 
     def positions(self, joints: Joints) -> NDArray[np.float64]:
         """Checked joint positions as one array, shape (n_joints,) or (n, n_joints), columns as `joint_names`.

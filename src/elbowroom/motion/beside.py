@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from elbowroom.machine import Machine
 from elbowroom.motion.block import Block
 from elbowroom.motion.course import Way
-from elbowroom.motion.kernels.beside import Cutting, block_in_box
+from elbowroom.motion.kernels.beside import Cutting, block_in_box, near_in_box
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.touched import NOTHING
 from elbowroom.motion.kernels.volume import Volume
@@ -35,8 +35,13 @@ def first_stop_blocked(
     finest = (FINEST_IN_VOXELS if volume.shared.others else FINEST_SHARED_IN_VOXELS) * edge
     step = FINEST_STEP_IN_VOXELS * edge
     assert stops is not None
-    asked = np.flatnonzero(speeds > 0).astype(np.int32)
-    cutting = Cutting(finest, MOST_BOXES)
+    moving = np.flatnonzero(speeds > 0).astype(np.int32)
+    cutting, asked = Cutting(finest, MOST_BOXES), moving
+
+    def begin(begin_s: float, end_s: float) -> None:
+        nonlocal asked
+        box = stops.box(begin_s, end_s)
+        asked = near_in_box(machine.tree, machine.world_from_base, skin, box, volume, moving)
 
     def look(begin_s: float, end_s: float) -> Block | None:
         box = stops.box(begin_s, end_s)
@@ -45,5 +50,5 @@ def first_stop_blocked(
         )
         return None if kind == NOTHING else Block(begin_s, kind, cluster, place)
 
-    found = stops.first(way.length, step / float(speeds.max()), look)
+    found = stops.first(way.length, step / float(speeds.max()), look, begin)
     return None if found is None else found[1]._replace(travel=found[0])

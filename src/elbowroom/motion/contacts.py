@@ -190,6 +190,7 @@ def parts_of(shape: Shape) -> Skin:
         link=boxes.link[first],
         centre=boxes.centre[first],
         radius=np.linalg.norm(boxes.half[first], axis=1),
+        half=boxes.half[first],
         cover=0.0,
         off=0.0,
         triangles=np.zeros((0, 3, 3)),

@@ -67,34 +67,50 @@ def _of_joint(machine: Machine, start: NDArray[np.float64], motion: Motion) -> W
 
 
 def _of_path(machine: Machine, start: NDArray[np.float64], path: JointPath) -> Way:
-    knots, travel = [start], [0.0]
-    for knot in _knots(machine, start, path):
-        step = float(np.abs(knot - knots[-1]).max(initial=0.0))
+    rows = np.concatenate([start[None], _knots(machine, start, path)])
+    kept, travel = [0], [0.0]
+    for row, step in enumerate(np.abs(np.diff(rows, axis=0)).max(axis=1, initial=0.0).tolist(), start=1):
+        if kept[-1] != row - 1:
+            step = float(np.abs(rows[row] - rows[kept[-1]]).max(initial=0.0))
         if travel[-1] + step > travel[-1]:  # a step that is lost in rounding goes with the next one
-            knots.append(knot)
+            kept.append(row)
             travel.append(travel[-1] + step)
+    knots = rows[kept]
     units = {machine.joint(name).unit for point in path.waypoints for name in point}
     unit = units.pop() if len(units) == 1 else "m or rad"
     length = travel[-1] if path.reach is None else min(path.reach, travel[-1])
     if len(knots) == 1:
-        knots, travel = [start, start], [0.0, 1.0]
-    return Way(Course(np.array(travel), np.array(knots)), length, unit)
+        knots, travel = np.stack([start, start]), [0.0, 1.0]
+    return Way(Course(np.array(travel), knots), length, unit)
 
 
 def _knots(machine: Machine, start: NDArray[np.float64], path: JointPath) -> NDArray[np.float64]:
     """Positions of all joints at the waypoints of a path, shape (waypoints, joints)."""
-    here = dict(zip(machine.joint_names, start.tolist(), strict=True))
-    passed = []
+    first = dict(zip(machine.joint_names, start.tolist(), strict=True))
+    here, passed = first, []
     for waypoint in path.waypoints:
-        _require_inside(machine, waypoint, here)
         here = {**here, **waypoint}
         passed.append(here)
+    if not _are_inside(machine, first, passed):
+        for before, waypoint in zip([first, *passed], path.waypoints, strict=False):
+            _require_inside(machine, waypoint, before)  # the first one that cannot be is named
     try:
         return machine.positions({name: np.array([one[name] for one in passed]) for name in here})
     except MachineError:
         for one in passed:  # the first one that cannot be is named
             machine.positions(one)
         raise
+
+
+def _are_inside(machine: Machine, first: Mapping[str, float], passed: list[dict[str, float]]) -> bool:
+    """Whether all that are passed are as `_require_inside` wants it, many at once."""
+    if passed and len(passed[-1]) != len(machine.joint_names):
+        return False
+    rows = np.array([[one[name] for name in machine.joint_names] for one in [first, *passed]])
+    joints = [machine.joint(name) for name in machine.joint_names]
+    lower = np.minimum([joint.lower for joint in joints], rows[:-1]) - ROUNDING
+    upper = np.maximum([joint.upper for joint in joints], rows[:-1]) + ROUNDING
+    return bool(((lower <= rows[1:]) & (rows[1:] <= upper)).all())
 
 
 def _require_inside(machine: Machine, waypoint: Mapping[str, float], here: Mapping[str, float]) -> None:

@@ -131,34 +131,37 @@ def link_distances(
     samples = body_samples(machine, space.grid.voxel_size_m)
     looks = [
         _Look(machine, samples, _points_within(machine.shape, samples), marks, row, placed[row], up_to_m)
-        for ground in grounds_of(space, machine)
-        for marks in [_marks_of(ground, space)]
-        for row in np.unique(samples.cluster_link)
-        if ground.links[row]
+        for row, both in sorted(_marks_by_row(space, machine, samples).items())
+        for marks in both
     ]
-    found = sorted(zip((look.row for look in looks), spread(_Look.distances, looks), strict=True), key=_row)
+    found = spread(_Look.nearest, looks)
     slack_m = samples.cover_m + samples.bound_m + SAMPLE_ROUNDING_M + ROUNDING_M
-    return Distances(up_to_m, slack_m, tuple(distances for _, distances in found))
+    pairs = zip(found[::2], found[1::2], strict=True)
+    links = tuple(LinkDistances(seen.link, seen, unseen) for seen, unseen in pairs)
+    return Distances(up_to_m, slack_m, links)
+
+
+def _marks_by_row(space: FreeSpace, machine: Machine, samples: BodySamples) -> dict[int, tuple[Marks, Marks]]:
+    """By the row of each checked link, the marks of what was seen for it, then of what nobody saw."""
+    grounds = [(ground.links, _marks_of(ground, space)) for ground in grounds_of(space, machine)]
+    rows = np.unique(samples.cluster_link).tolist()
+    return {row: marks for links, marks in grounds for row in rows if links[row]}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Look:
-    """What is asked of one link: marks are those of what was seen, then of what nobody saw."""
+    """What is asked of one link: how far it is from what is marked."""
 
     machine: Machine
     samples: BodySamples
     within: tuple[NDArray[np.float32], ...]
-    marks: tuple[Marks, Marks]
+    marks: Marks
     row: int
     placed: NDArray[np.float64]
     up_to_m: float
 
-    def distances(self) -> LinkDistances:
-        link = self.machine.link_names[self.row]
-        seen, unseen = (self._to(marks, link) for marks in self.marks)
-        return LinkDistances(link, seen, unseen)
-
-    def _to(self, marks: Marks, link: str) -> Nearest:
+    def nearest(self) -> Nearest:
+        link, marks = self.machine.link_names[self.row], self.marks
         place, less = np.zeros(3), self.samples.cover_m + ROUNDING_M
         if lies_in_marked(self.placed, self.within[self.row], marks, place):
             return Nearest(0.0, link, _as_place(place))
@@ -202,7 +205,3 @@ def _as_place(place: NDArray[np.float64]) -> tuple[float, float, float]:
 def _order(one: Nearest) -> tuple[float, bool]:
     """The nearest first; of what is at one distance, what is there before what is not."""
     return one.distance_m, not one.is_there
-
-
-def _row(pair: tuple[Any, Any]) -> int:
-    return int(pair[0])

@@ -62,6 +62,10 @@ def bare_skin(samples: BodySamples, points: NDArray[np.float32]) -> Skin:
         points: those of the samples, in any order within each cluster, shape (n, 3), link frame [m].
     """
     none = np.zeros(0, dtype=np.int32)
+    of = np.repeat(np.arange(len(samples.cluster_start)), samples.cluster_stop - samples.cluster_start)
+    half = np.zeros((len(samples.cluster_start), 3))
+    for axis in range(3):  # one at a time, since there are many
+        np.maximum.at(half[:, axis], of, np.abs(points[:, axis] - samples.cluster_centre[of, axis]))
     return Skin(
         points=points,
         cluster_of=none,
@@ -70,6 +74,7 @@ def bare_skin(samples: BodySamples, points: NDArray[np.float32]) -> Skin:
         link=samples.cluster_link,
         centre=samples.cluster_centre,
         radius=samples.cluster_radius,
+        half=half,
         cover=samples.cover_m,
         off=samples.bound_m,
         triangles=np.zeros((0, 3, 3)),

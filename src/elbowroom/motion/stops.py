@@ -96,7 +96,11 @@ class Stops:
         return speeds.min(axis=0, initial=0.0), speeds.max(axis=0, initial=0.0)
 
     def first(
-        self, length: float, finest_s: float, look: Callable[[float, float], Found | None]
+        self,
+        length: float,
+        finest_s: float,
+        look: Callable[[float, float], Found | None],
+        begin: Callable[[float, float], None] | None = None,
     ) -> tuple[float, Found] | None:
         """The first moment of the path from which a stop is not free, and what was found there; None: all are.
 
@@ -104,11 +108,17 @@ class Stops:
             length: so far is looked [s].
             finest_s: the moment is found to within this [s].
             look: says what is found of the stops commanded between two times; None: they are free.
+            begin: is told before looks at several pieces of the path from when to when they are; None: nobody is.
         """
-        for begin_s, end_s in self._pieces(length):
-            found = _first(begin_s, end_s, finest_s, look)
-            if found is not None:
-                return found
+        pieces = list(self._pieces(length))
+        for first in range(0, len(pieces), PIECES_A_STOP):
+            together = pieces[first : first + PIECES_A_STOP]
+            if begin is not None:
+                begin(together[0][0], together[-1][1])
+            for begin_s, end_s in together:
+                found = _first(begin_s, end_s, finest_s, look)
+                if found is not None:
+                    return found
         return None
 
     def _pieces(self, length: float) -> Iterator[tuple[float, float]]:

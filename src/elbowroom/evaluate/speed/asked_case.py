@@ -15,6 +15,8 @@ from elbowroom.files.peak_memory import peak_memory_mb
 from elbowroom.geometry import VoxelGrid, parallel
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
+from elbowroom.monitor.garbage import what_is_here_stays
+from elbowroom.monitor.stages import uncollected
 from elbowroom.motion import joint_motions
 from elbowroom.reconstruct import Terms, carve
 from elbowroom.sensing import NOISE_PRESETS, Snapshot
@@ -24,7 +26,7 @@ Pass = Callable[[int], Mapping[str, float]]
 
 
 def run_asked(scene_file: Path, asked: Asked) -> dict[str, Any]:
-    """Measures one case.
+    """Measures one case; garbage waits for the end of a pass, as it does in the monitor.
 
     Args:
         scene_file: as `asked_scene.save_scene` wrote it.
@@ -36,10 +38,11 @@ def run_asked(scene_file: Path, asked: Asked) -> dict[str, Any]:
         for n in range(2):
             once(n)
         spent = []
-        for n in range(asked.rounds):
-            with Watch() as watch:
-                stage_ms = once(n)
-            spent.append(watch.spent(stage_ms))
+        with what_is_here_stays():
+            for n in range(asked.rounds):
+                with uncollected(), Watch() as watch:
+                    stage_ms = once(n)
+                spent.append(watch.spent(stage_ms))
     names = list(spent[-1].stage_ms)
     stages = {name: float(np.median([one.stage_ms[name] for one in spent])) for name in names}
     return {

@@ -16,6 +16,8 @@ from elbowroom.files.peak_memory import peak_memory_mb
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, parallel
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
+from elbowroom.monitor.garbage import what_is_here_stays
+from elbowroom.monitor.stages import uncollected
 from elbowroom.motion import joint_motions
 from elbowroom.reconstruct import Terms, carve
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame, NoiseModel, Snapshot
@@ -26,19 +28,21 @@ BRAKING_TIME_S = 0.5
 
 
 def _times(work: Callable[[int], object], rounds: int, beside: list[float]) -> list[float]:
-    """Milliseconds of each round, each beside one of the reference kernel."""
+    """Milliseconds of each round, each beside one of the reference kernel; garbage waits as it does in the monitor."""
     table = np.linspace(0, 1, 1 << 18, dtype=np.float32)
     reference(table)
     work(0)
     work(1)
     spent = []
-    for n in range(rounds):
-        start = time.perf_counter()
-        reference(table)
-        middle = time.perf_counter()
-        work(n)
-        spent.append((time.perf_counter() - middle) * 1e3)
-        beside.append((middle - start) * 1e3)
+    with what_is_here_stays():
+        for n in range(rounds):
+            start = time.perf_counter()
+            reference(table)
+            middle = time.perf_counter()
+            with uncollected():
+                work(n)
+                spent.append((time.perf_counter() - middle) * 1e3)
+            beside.append((middle - start) * 1e3)
     return spent
 
 

@@ -248,28 +248,9 @@ def _count_like(view, measured, freed, start, stop, counts):
     low, high, pitch = least_from(view.min_depth), most_to(view.max_depth), min(view.fx, view.fy)
     for n in range(start, stop):
         u = np.uint64(n)
-        left, right = u - np.uint64(1), u + np.uint64(1)
         d = measured.here[u]
         slack = 4.5 * sigma(view, d) + d / pitch
-        like = (d, slack, low, high)
-        counts[u] = (
-            _is_like(measured.above[left], freed.above[left], like)
-            + _is_like(measured.above[u], freed.above[u], like)
-            + _is_like(measured.above[right], freed.above[right], like)
-            + _is_like(measured.here[left], freed.here[left], like)
-            + _is_like(measured.here[right], freed.here[right], like)
-            + _is_like(measured.below[left], freed.below[left], like)
-            + _is_like(measured.below[u], freed.below[u], like)
-            + _is_like(measured.below[right], freed.below[right], like)
-        )
-
-
-@njit(inline="always")
-def _is_like(other, free_to, like):
-    """Whether a neighbour has no return, or is unexplained and about as deep: 1 or 0."""
-    d, slack, low, high = like
-    lost = not ((other > np.float32(0.0)) & (other >= low) & (other <= high))
-    return np.uint8(lost | ((free_to <= np.float32(0.0)) & (abs(other - d) <= slack)))
+        counts[u] = _of_eight(_is_like, measured, freed, u, (d, slack, low, high))
 
 
 @uncounted(error_model="numpy")
@@ -278,18 +259,31 @@ def _count_near(view, measured, freed, start, stop, counts):
     low, high = least_from(view.min_depth), most_to(min(view.max_depth, MOST_M))
     for n in range(start, stop):
         u = np.uint64(n)
-        left, right = u - np.uint64(1), u + np.uint64(1)
-        far = (-freed.here[u], low, high)
-        counts[u] = (
-            _is_near(measured.above[left], freed.above[left], far)
-            + _is_near(measured.above[u], freed.above[u], far)
-            + _is_near(measured.above[right], freed.above[right], far)
-            + _is_near(measured.here[left], freed.here[left], far)
-            + _is_near(measured.here[right], freed.here[right], far)
-            + _is_near(measured.below[left], freed.below[left], far)
-            + _is_near(measured.below[u], freed.below[u], far)
-            + _is_near(measured.below[right], freed.below[right], far)
-        )
+        counts[u] = _of_eight(_is_near, measured, freed, u, (-freed.here[u], low, high))
+
+
+@njit(inline="always")
+def _of_eight(test, measured, freed, u, pixel):
+    """For how many of the eight pixels about one of column u a test of depth, what is freed, and that pixel is 1."""
+    left, right = u - np.uint64(1), u + np.uint64(1)
+    return (
+        test(measured.above[left], freed.above[left], pixel)
+        + test(measured.above[u], freed.above[u], pixel)
+        + test(measured.above[right], freed.above[right], pixel)
+        + test(measured.here[left], freed.here[left], pixel)
+        + test(measured.here[right], freed.here[right], pixel)
+        + test(measured.below[left], freed.below[left], pixel)
+        + test(measured.below[u], freed.below[u], pixel)
+        + test(measured.below[right], freed.below[right], pixel)
+    )
+
+
+@njit(inline="always")
+def _is_like(other, free_to, like):
+    """Whether a neighbour has no return, or is unexplained and about as deep: 1 or 0."""
+    d, slack, low, high = like
+    lost = not ((other > np.float32(0.0)) & (other >= low) & (other <= high))
+    return np.uint8(lost | ((free_to <= np.float32(0.0)) & (abs(other - d) <= slack)))
 
 
 @njit(inline="always")

@@ -1,7 +1,8 @@
 """Boxes of joint positions: whether the machine meets anything at any of them, all joints moving by themselves.
 
 A box is looked at in its middle, all balls grown by the most that they are elsewhere in the box. Where none meets a
-block the box is free; else it is cut in half, along the joint that moves what is left the most, until no point moves
+block the box is free; so it is where no cluster and no triangle about a sample does, as far as joints carry them to and
+fro (`sway`). Else it is cut in half, along the joint that moves what is left the most, until no point moves
 farther than `Cutting.finest`. So the answer errs on the side of blocked alone.
 """
 
@@ -16,8 +17,10 @@ from elbowroom.machine.kernels.body import FIXED, SLIDES, place_links
 from elbowroom.motion.kernels.closing import space
 from elbowroom.motion.kernels.meeting import gap_of
 from elbowroom.motion.kernels.mover import Course, Mover, Skin, carried, distance_to_axis
-from elbowroom.motion.kernels.near import TOGETHER, near_clusters, near_members
+from elbowroom.motion.kernels.near import TOGETHER, near_boxes, near_members
+from elbowroom.motion.kernels.sway import first_unclear
 from elbowroom.motion.kernels.touched import NOTHING, touched_block
+from elbowroom.motion.kernels.volume import Volume
 
 DEPTH = 128
 """No box is cut more often."""
@@ -151,26 +154,30 @@ def block_in_box(tree, world_from_base, skin, box, volume, asked, cutting):
     mover = Mover(tree, world_from_base, skin, course, np.zeros(skin.link.size))
     placed, place = np.empty((1, tree.parent.size, 4, 4)), np.zeros(3)
     triangle, by_joint = np.empty((3, 3)), np.zeros(box.middle.size)
+    ways, unclear = np.empty((tree.parent.size, 3)), np.full(1, -1, dtype=np.int32)
     depth, looks = 0, 0
     while depth >= 0:
         looks += 1
         place_links(tree, world_from_base, cuts.middle[depth : depth + 1], placed)
-        _grow(mover, placed[0], cuts.half[depth], clusters[depth, : counts[depth]], by_joint)
-        near = clusters[depth + 1]
-        left = near_clusters(placed[0], mover, 1.0, volume, clusters[depth, : counts[depth]], near)
+        near, half = clusters[depth + 1], cuts.half[depth]
+        left = near_boxes(placed[0], mover, half, 0.0, volume, clusters[depth, : counts[depth]], near, ways)
+        _grow(mover, placed[0], half, near[:left], by_joint)
         growth, fastest = _most(mover.speeds, near[:left])
         many = 0
         if left > 0 and growth <= SAMPLES_BELOW * volume.lattice.edge:
             many = near_members(placed[0], mover, 1.0, volume, near[:left], samples, corners)
             left = _members(skin, samples[:many], near)
             growth, fastest = _most(mover.speeds, near[:left])
+            if growth > cutting.finest:
+                sways = Sways(mover, placed[0], half, volume, ways, triangle)
+                left = 0 if _are_clear(sways, samples[:many], unclear) else left
         counts[depth + 1] = left
         if left == 0:
             depth = _next(cuts, depth)
             continue
         last = growth <= cutting.finest or depth == DEPTH or looks >= cutting.most
         if not last:
-            joint = _along(mover, placed[0], cuts.half[depth], fastest, by_joint)
+            joint = _along(mover, placed[0], half, fastest, by_joint)
             depth = _cut(cuts, depth, joint)
             continue
         if many == 0:
@@ -180,6 +187,49 @@ def block_in_box(tree, world_from_base, skin, box, volume, asked, cutting):
             return kind, by, place
         depth = _next(cuts, depth)
     return NOTHING, -1, place
+
+
+@njit(cache=True, nogil=True)
+def near_in_box(tree, world_from_base, skin, box, volume, asked):
+    """The clusters of a skin that may meet a block somewhere in a box, int32; others meet none in any part of it.
+
+    Args:
+        tree, world_from_base, skin, box, volume, asked: as of `block_in_box`.
+    """
+    placed, ways = np.empty((1, tree.parent.size, 4, 4)), np.empty((tree.parent.size, 3))
+    course = Course(np.zeros(1), np.zeros((1, box.middle.size)))
+    mover = Mover(tree, world_from_base, skin, course, np.zeros(skin.link.size))
+    near = np.empty(asked.size, dtype=np.int32)
+    place_links(tree, world_from_base, box.middle.reshape(1, -1), placed)
+    left = near_boxes(placed[0], mover, box.half, 0.0, volume, asked, near, ways)
+    return near[:left]
+
+
+class Sways(NamedTuple):
+    """What is asked of samples in one box: the arguments of `first_unclear` beside them, and (3, 3) to work in."""
+
+    mover: Mover
+    placed: np.ndarray
+    half: np.ndarray
+    volume: Volume
+    ways: np.ndarray
+    triangle: np.ndarray
+
+
+@njit
+def _are_clear(sways, samples, unclear):
+    """Whether no patch of some samples may meet a block in a box.
+
+    The one that was not clear before is asked first: `unclear` (1,), -1 for none, written.
+    """
+    room = sways.ways, sways.triangle
+    if (
+        unclear[0] >= 0
+        and first_unclear(sways.placed, sways.mover, sways.half, sways.volume, unclear, room) >= 0
+    ):
+        return False
+    unclear[0] = first_unclear(sways.placed, sways.mover, sways.half, sways.volume, samples, room)
+    return unclear[0] < 0
 
 
 @njit

@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry.kernels.bits import bit_of, word_of
-from elbowroom.motion.kernels.mover import ROUNDING_M, carried
+from elbowroom.geometry.kernels.bits import bit_of, uncounted, word_of
+from elbowroom.motion.kernels.mover import ROUNDING_M, Skin, carried
+from elbowroom.motion.kernels.near import TOGETHER, near_members
 from elbowroom.motion.kernels.shared import CELLS
-from elbowroom.motion.kernels.volume import cell_of, counted, gap, meets_block, meets_voxel
+from elbowroom.motion.kernels.volume import cell_of, counted, gap, meets_in_box
 
 OPEN, COVERED = 0, 1
 """What is known of a cell: nothing yet, or that the body covers it. From 2 on: it is in a room beside the body."""
@@ -38,6 +39,13 @@ class Pieces(NamedTuple):
     upper: np.ndarray
 
 
+class Grown(NamedTuple):
+    """A skin that stands still, and by how much its samples are grown, by cluster [m]: as `near_members` takes them."""
+
+    skin: Skin
+    speeds: np.ndarray
+
+
 @njit(cache=True, nogil=True)
 def reached(placed, skin, reach, volume, numbers):
     """The blocked voxels within reach of a skin's samples, in any order, some more than once.
@@ -50,35 +58,58 @@ def reached(placed, skin, reach, volume, numbers):
         numbers: written, int64.
 
     Returns:
-        How many were found: more than there is room for if not all could be written.
+        How many were found; if there is not room for all, one more than there is.
     """
-    lattice, count = volume.lattice, 0
+    # the filter of samples grows them by what a cluster moves: a little more than reach, and what is found decides
+    grown = Grown(skin, np.full(skin.link.size, reach - skin.cover + ROUNDING_M))
+    near, at = np.empty(skin.cluster_of.size, dtype=np.int32), np.empty((3, TOGETHER), dtype=np.int32)
+    clusters, count = np.empty(1, dtype=np.int32), 0
     for cluster in range(skin.link.size):
-        world_from_link = placed[skin.link[cluster]]
-        x, y, z = carried(world_from_link, skin.centre[cluster])
-        r = skin.radius[cluster] + reach + ROUNDING_M
-        if not meets_block(volume.words, volume.cubes, lattice, x, y, z, r):
+        if not _reaches_into(placed[skin.link[cluster]], skin, cluster, reach + ROUNDING_M, volume):
             continue
-        for sample in range(skin.start[cluster], skin.stop[cluster]):
-            x, y, z = carried(world_from_link, skin.points[sample])
-            if not meets_voxel(volume.words, lattice, x, y, z, reach + ROUNDING_M):
-                continue
-            u, v, w, s = counted(x, y, z, reach + ROUNDING_M, lattice)
-            for i in range(cell_of(u - s, lattice.nx), cell_of(u + s, lattice.nx) + 1):
-                du = gap(u, i * 1.0, i + 1.0)
-                for j in range(cell_of(v - s, lattice.ny), cell_of(v + s, lattice.ny) + 1):
-                    dv = gap(v, j * 1.0, j + 1.0)
-                    for k in range(cell_of(w - s, lattice.nz), cell_of(w + s, lattice.nz) + 1):
-                        dw = gap(w, k * 1.0, k + 1.0)
-                        word = word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)
-                        if not volume.words[word] & bit_of(i, j, k) or du * du + dv * dv + dw * dw > s * s:
-                            continue
-                        number = (i * lattice.ny + j) * lattice.nz + k
-                        if count and count <= numbers.size and numbers[count - 1] == number:
-                            continue
-                        if count < numbers.size:
-                            numbers[count] = number
-                        count += 1
+        clusters[0] = cluster
+        many = near_members(placed, grown, 1.0, volume, clusters, near, at)
+        count = _list_reached(placed[skin.link[cluster]], skin, near[:many], reach, volume, numbers, count)
+        if count > numbers.size:
+            break
+    return count
+
+
+@uncounted()
+def _reaches_into(world_from_link, skin, cluster, reach, volume):
+    """Whether the box along the axes about a cluster's samples, grown, may hold a part of a block."""
+    rx, ry, rz = reach, reach, reach
+    for axis in range(3):
+        rx += abs(world_from_link[0, axis]) * skin.half[cluster, axis]
+        ry += abs(world_from_link[1, axis]) * skin.half[cluster, axis]
+        rz += abs(world_from_link[2, axis]) * skin.half[cluster, axis]
+    middle = carried(world_from_link, skin.centre[cluster])
+    return meets_in_box(volume.words, volume.cubes, volume.lattice, middle, (rx, ry, rz))
+
+
+@uncounted()
+def _list_reached(world_from_link, skin, samples, reach, volume, numbers, count):
+    """Lists the blocked voxels within reach of some samples after those that are listed; how many there are then."""
+    lattice = volume.lattice
+    for sample in samples:
+        x, y, z = carried(world_from_link, skin.points[sample])
+        u, v, w, s = counted(x, y, z, reach + ROUNDING_M, lattice)
+        for i in range(cell_of(u - s, lattice.nx), cell_of(u + s, lattice.nx) + 1):
+            du = gap(u, i * 1.0, i + 1.0)
+            for j in range(cell_of(v - s, lattice.ny), cell_of(v + s, lattice.ny) + 1):
+                dv = gap(v, j * 1.0, j + 1.0)
+                for k in range(cell_of(w - s, lattice.nz), cell_of(w + s, lattice.nz) + 1):
+                    dw = gap(w, k * 1.0, k + 1.0)
+                    word = word_of(i, j, k, lattice.cubes_y, lattice.cubes_z)
+                    if not volume.words[word] & bit_of(i, j, k) or du * du + dv * dv + dw * dw > s * s:
+                        continue
+                    number = (i * lattice.ny + j) * lattice.nz + k
+                    if count and numbers[count - 1] == number:
+                        continue
+                    if count == numbers.size:
+                        return count + 1
+                    numbers[count] = number
+                    count += 1
     return count
 
 

@@ -23,9 +23,10 @@ class Course(NamedTuple):
 class Skin(NamedTuple):
     """A machine's surface in its links' frames: samples, sorted by cluster, and triangles.
 
-    A cluster lies on one link. The patch of a sample is the triangles that come within `cover` of it;
-    together its patches are the surface, or lie off it by `off` at most. `columns` are the points again, (3, n): loops
-    over many at once read them five times as fast so; none in skins that are not swept.
+    A cluster lies on one link, its samples no farther from its centre than `half` along each axis. The patch
+    of a sample is the triangles that come within `cover` of it; together its patches are the surface, or lie off it by
+    `off` at most. `columns` are the points again, (3, n): loops over many at once read them five times as fast so; none
+    in skins that are not swept.
     """
 
     points: np.ndarray
@@ -35,6 +36,7 @@ class Skin(NamedTuple):
     link: np.ndarray
     centre: np.ndarray
     radius: np.ndarray
+    half: np.ndarray
     cover: float
     off: float
     triangles: np.ndarray

@@ -1,20 +1,18 @@
-"""Which clusters and samples of a moving skin may meet a block: balls against voxels."""
+"""Which clusters and samples of a moving skin may meet a block: boxes and balls against voxels."""
 
 import numpy as np
 from numba import njit
 
 from elbowroom.geometry.kernels.bits import bit_of, uncounted, word_of
 from elbowroom.motion.kernels.mover import ROUNDING_M
-from elbowroom.motion.kernels.volume import meets_block, meets_voxel
+from elbowroom.motion.kernels.sway import sway
+from elbowroom.motion.kernels.volume import meets_in_box, meets_voxel
 
 QUICK_BELOW = 0.499
 """Balls of smaller radius meet none but the eight voxels about the nearest corner [voxel edges]."""
 
 TOGETHER = 64
 """So many samples are placed at once."""
-
-EXACT_UP_TO = 2.0
-"""Larger balls are tested against blocks of 64 voxels alone [voxel edges]."""
 
 
 @njit(inline="always")
@@ -28,19 +26,39 @@ def _placed(placed, link, points, n):
 
 
 @uncounted()
-def near_clusters(placed, mover, half, volume, asked, near):
-    """The clusters among `asked` that may meet a block within half an interval either way; how many."""
-    skin, speeds = mover.skin, mover.speeds
-    link, centre, radius, cover = skin.link, skin.centre, skin.radius, skin.cover
+def near_boxes(placed, mover, turns, spare, volume, asked, near, ways):
+    """The clusters among `asked` that may meet a block within a box of joint positions; how many.
+
+    Each is a box along the axes of the world about its samples, as far as joints carry it (`sway`): where it lies flat
+    or slides along something, it is asked of much less space than by the ball about it.
+
+    Args:
+        placed: where links are in the box's middle, (links, 4, 4).
+        mover: what moves.
+        turns: the most that joints change, (joints,).
+        spare: by so much, times its speed, a cluster's samples are grown besides.
+        volume: what is blocked.
+        asked: which, int32.
+        near: written, int32.
+        ways: (rows of a tree, 3), room to work in.
+    """
+    skin, speeds, cover = mover.skin, mover.speeds, mover.skin.cover + mover.skin.off + 2 * ROUNDING_M
     words, cubes, lattice = volume.words, volume.cubes, volume.lattice
     count = 0
     for n in range(asked.size):
         cluster = asked[n]
-        x, y, z = _placed(placed, link[cluster], centre, cluster)
-        r = radius[cluster] + cover + speeds[cluster] * half + ROUNDING_M
-        if not meets_block(words, cubes, lattice, x, y, z, r):
-            continue
-        if r > EXACT_UP_TO * lattice.edge or meets_voxel(words, lattice, x, y, z, r):
+        link, half = skin.link[cluster], skin.half
+        middle = _placed(placed, link, skin.centre, cluster)
+        ball = (middle[0], middle[1], middle[2], skin.radius[cluster] + cover)
+        moving, rest = sway(mover.tree, placed, turns, link, ball, ways)
+        rx = ry = rz = cover + rest + speeds[cluster] * spare
+        for axis in range(3):
+            rx += abs(placed[link, 0, axis]) * half[cluster, axis]
+            ry += abs(placed[link, 1, axis]) * half[cluster, axis]
+            rz += abs(placed[link, 2, axis]) * half[cluster, axis]
+        for row in range(moving):
+            rx, ry, rz = rx + abs(ways[row, 0]), ry + abs(ways[row, 1]), rz + abs(ways[row, 2])
+        if meets_in_box(words, cubes, lattice, middle, (rx, ry, rz)):
             near[count] = cluster
             count += 1
     return count
@@ -48,7 +66,7 @@ def near_clusters(placed, mover, half, volume, asked, near):
 
 @uncounted()
 def near_samples(placed, mover, half, volume, asked, near):
-    """The same for samples."""
+    """The samples among `asked` whose balls may meet a block within half an interval either way; how many."""
     skin, speeds = mover.skin, mover.speeds
     link, points, cluster_of, cover = skin.link, skin.points, skin.cluster_of, skin.cover
     words, lattice = volume.words, volume.lattice

@@ -7,11 +7,27 @@ from numba import njit
 
 from elbowroom.geometry.kernels.bits import uncounted
 from elbowroom.motion.kernels.mover import Mover, place_at
-from elbowroom.motion.kernels.near import TOGETHER, near_clusters, near_members, near_samples
+from elbowroom.motion.kernels.near import TOGETHER, near_boxes, near_members, near_samples
 from elbowroom.motion.kernels.touched import NOTHING, list_touched, touched_block
 
 MOST_MET = 64
 """So many voxels that are met in one interval are told."""
+
+
+class Turns(NamedTuple):
+    """How joints change in an interval.
+
+    Fields:
+        rates: the most of each joint per unit of travel, (joints,).
+        half: the most in half of the interval that is looked at, (joints,), written.
+        shortest: half of the shortest interval that is looked at, as travel.
+        ways: (rows of a tree, 3), room to work in.
+    """
+
+    rates: np.ndarray
+    half: np.ndarray
+    shortest: float
+    ways: np.ndarray
 
 
 class Asked(NamedTuple):
@@ -59,10 +75,11 @@ def to_ask(skin, speeds, of_clusters, most):
 def first_block(tree, world_from_base, skin, course, length, speeds, volume, asked):
     """The first of 2^most equal intervals of [0, length] in which the machine meets a block.
 
-    An interval is tested at its middle, every ball grown by the most that it moves in half of it (its cluster's
-    speed times half its length). Where no ball meets a block the interval is free; else its halves are looked at,
-    the earlier one first, with the balls that are left: clusters first, then samples, and in the shortest intervals the
-    samples' triangles. Where it found a block it goes on when it is called again.
+    An interval is tested at its middle, all that is asked grown by the most that it moves in half of it: boxes about
+    clusters along each axis, balls about samples by their cluster's speed times half its length. Where none meets a
+    block the interval is free; else its halves are looked at, the earlier one first, with what is left: clusters first,
+    then samples, and in the shortest intervals the samples' triangles, which decide alone. Where it found a block it
+    goes on when it is called again.
 
     Args:
         tree, world_from_base, skin, course, speeds: what moves, and how (`Mover`).
@@ -78,12 +95,13 @@ def first_block(tree, world_from_base, skin, course, length, speeds, volume, ask
     mover = Mover(tree, world_from_base, skin, course, speeds)
     of_clusters, most = asked.clusters.shape[0] - 2, asked.counts.size - 1
     placed = np.empty((1, mover.tree.parent.size, 4, 4))
-    place = np.zeros(3)
+    place, rates = np.zeros(3), _rates(course)
+    turns = Turns(rates, np.empty_like(rates), length / 2.0 ** (most + 1), np.empty((placed.shape[1], 3)))
     depth, index = asked.at[0], asked.at[1]
     while True:
         half = length / 2.0 ** (depth + 1)
         place_at(mover, (2 * index + 1) * half, placed)
-        left = _ask(placed[0], mover, half, volume, asked, depth)
+        left = _ask(placed[0], mover, half, volume, asked, depth, turns)
         if left > 0 and depth == most:
             samples = asked.samples[depth - of_clusters + 1, :left]
             kind, by = touched_block(placed[0], mover, half, volume, samples, place, asked.triangle)
@@ -104,8 +122,20 @@ def first_block(tree, world_from_base, skin, course, length, speeds, volume, ask
         index += 1
 
 
+@njit
+def _rates(course):
+    """The most that each joint changes per unit of a course's travel, (joints,)."""
+    rates = np.zeros(course.positions.shape[1])
+    for knot in range(course.travel.size - 1):
+        step = course.travel[knot + 1] - course.travel[knot]
+        for joint in range(rates.size):
+            change = abs(course.positions[knot + 1, joint] - course.positions[knot, joint])
+            rates[joint] = max(rates[joint], change / step)
+    return rates
+
+
 @uncounted()
-def _ask(placed, mover, half, volume, asked, depth):
+def _ask(placed, mover, half, volume, asked, depth, turns):
     """How many of the clusters or samples asked at a depth may meet a block: they are what the next depth asks."""
     row = depth - (asked.clusters.shape[0] - 2)
     before = asked.clusters.shape[1] if depth == 0 else asked.counts[depth - 1]
@@ -113,7 +143,10 @@ def _ask(placed, mover, half, volume, asked, depth):
         samples = asked.samples
         return near_samples(placed, mover, half, volume, samples[row, :before], samples[row + 1])
     near = asked.clusters[depth + 1]
-    left = near_clusters(placed, mover, half, volume, asked.clusters[depth, :before], near)
+    for joint in range(turns.half.size):
+        turns.half[joint] = turns.rates[joint] * half
+    clusters = asked.clusters[depth, :before]
+    left = near_boxes(placed, mover, turns.half, turns.shortest, volume, clusters, near, turns.ways)
     if row == 0:
         left = near_members(placed, mover, half, volume, near[:left], asked.samples[1], asked.corners)
     return left

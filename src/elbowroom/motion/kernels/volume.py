@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from elbowroom.geometry.kernels.bits import Lattice, bit_of, word_of
+from elbowroom.geometry.kernels.bits import Lattice, bit_of, uncounted, word_of
 from elbowroom.motion.kernels.shared import Shared
 
 
@@ -138,6 +138,45 @@ def counted(x, y, z, r, lattice):
 def cell_of(coordinate, count):
     """The cell of a coordinate counted in lattice, held within the grid; it is known to be finite."""
     return int(min(max(coordinate, 0.0), count - 1.0))
+
+
+@uncounted()
+def meets_in_box(words, cubes, lattice, middle, half):
+    """Whether a box along the axes, middle and half edges [m], holds a part of a blocked voxel, or leaves the grid."""
+    x, y, z = middle
+    rx, ry, rz = half
+    inside = x - rx >= lattice.x0 and y - ry >= lattice.y0 and z - rz >= lattice.z0
+    inside = inside and x + rx <= lattice.x0 + lattice.nx * lattice.edge
+    inside = inside and y + ry <= lattice.y0 + lattice.ny * lattice.edge
+    if not (inside and z + rz <= lattice.z0 + lattice.nz * lattice.edge):
+        return True
+    scale = 1.0 / lattice.edge
+    u, v, w = (x - lattice.x0) * scale, (y - lattice.y0) * scale, (z - lattice.z0) * scale
+    ru, rv, rw = rx * scale, ry * scale, rz * scale
+    i0, i1 = cell_of(u - ru, lattice.nx), cell_of(u + ru, lattice.nx)
+    j0, j1 = cell_of(v - rv, lattice.ny), cell_of(v + rv, lattice.ny)
+    k0, k1 = cell_of(w - rw, lattice.nz), cell_of(w + rw, lattice.nz)
+    for a in range(i0 >> 2, (i1 >> 2) + 1):
+        # rows of voxels in the box: 16 bits a step in i, 4 in j, 1 in k
+        along_i = _run(max(i0 - 4 * a, 0), min(i1 - 4 * a, 3), 16)
+        for b in range(j0 >> 2, (j1 >> 2) + 1):
+            along_j = _run(max(j0 - 4 * b, 0), min(j1 - 4 * b, 3), 4)
+            along_ij = along_i & (along_j * np.uint64(0x0001000100010001))
+            for c in range(k0 >> 2, (k1 >> 2) + 1):
+                cube = ((a >> 2) * lattice.cubes_y + (b >> 2)) * lattice.cubes_z + (c >> 2)
+                if not cubes[cube]:
+                    continue
+                word = words[cube * 64 + ((a & 3) * 4 + (b & 3)) * 4 + (c & 3)]
+                along_k = _run(max(k0 - 4 * c, 0), min(k1 - 4 * c, 3), 1)
+                if word & along_ij & (along_k * np.uint64(0x1111111111111111)):
+                    return True
+    return False
+
+
+@njit(inline="always")
+def _run(first, last, step):
+    """The bits from `first` steps up to the end of `last`, each of some bits."""
+    return (~np.uint64(0) << np.uint64(first * step)) & (~np.uint64(0) >> np.uint64(64 - (last + 1) * step))
 
 
 @njit
