@@ -51,7 +51,9 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
             units_m = units_of(room.site, room.cameras)
             findings = found_at(room.grid, room.cameras, snapshot.frames, units_m, room.terms.margin)
             if room.machine is not None:
-                findings = (*findings, *machine_there(room.machine, room.cameras, snapshot))
+                is_absent = room.terms.without_machine
+                there = machine_there(room.machine, room.cameras, snapshot, is_absent=is_absent)
+                findings = (*findings, *there)
             refuse(findings)
             steps.begin("reconstructing")
             space = room.space_of(snapshot)
@@ -61,7 +63,8 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
             steps.begin("writing points")
             files.append(save_ply(out_dir / "blocked.ply", space))
             steps.begin("drawing sections")
-            files += save_sections(space, out_dir, room.machine, snapshot.joints, room.cameras)
+            machine = room.machine if snapshot.joints is not None else None
+            files += save_sections(space, out_dir, machine, snapshot.joints, room.cameras)
         row = _row(room, moment, snapshot, space, steps.seconds, files)
         row["findings"] = [asdict(finding) for finding in findings]
         add(row)

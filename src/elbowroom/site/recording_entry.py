@@ -4,13 +4,22 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from elbowroom.site.entry import Entry, NotNegative, Positive, Text, Whole
+from elbowroom.site.entry import Entry, Flag, NotNegative, Positive, Text, Whole
 
 StampUnit = Literal["ns", "us", "ms", "s"]
 """Of the times that name images."""
 
 
-class StampedFolder(Entry):
+class AnyRecording(Entry):
+    """What is said of every recording: `without_machine`, that the machine never stood in its images.
+
+    They were taken before it was installed; its model came later.
+    """
+
+    without_machine: Flag = False
+
+
+class StampedFolder(AnyRecording):
     """`<folder>/<camera>/<stamp>.png` and, for a machine, a CSV of joints.
 
     Stamps are whole nanoseconds unless `stamp_unit` says otherwise, or seconds where they have a decimal point; angles
@@ -29,7 +38,7 @@ class StampedFolder(Entry):
     ignore: tuple[Text, ...] = ()
 
 
-class StamplessFolder(Entry):
+class StamplessFolder(AnyRecording):
     """Images without times: the n-th of each camera, in order of names, make the n-th moment.
 
     `files` gives per camera a pattern or a list of paths below the folder; what it leaves out is
@@ -41,7 +50,7 @@ class StamplessFolder(Entry):
     files: dict[Text, Text | tuple[Text, ...]] = Field(default_factory=dict)
 
 
-class SevenScenes(Entry):
+class SevenScenes(AnyRecording):
     """The layout of 7-Scenes and TSDF-fusion: `frame-NNNNNN.depth.png` and `.pose.txt`, one static room.
 
     Each frame is a camera of its own; all of them together are one moment. The camera matrix is
@@ -62,7 +71,7 @@ class SevenScenes(Entry):
         return self
 
 
-class BagRecording(Entry):
+class BagRecording(AnyRecording):
     """A bag of ROS 2: the folder of `ros2 bag record`, or an MCAP file. `elbowroom site from-bag` writes this.
 
     `topics` gives each camera its topic of depth images (sensor_msgs/Image of 16UC1 or 32FC1, or the transport

@@ -78,13 +78,13 @@ class Folder:
         return rows
 
     def joints(self) -> JointRecord | None:
-        """The joints of `joints_file`; None: there is no such file, and no machine that needs it.
+        """The joints of `joints_file`; None: there is no such file, and no machine that was there.
 
         Raises:
             JointsError: the file is not usable, missing where there is a machine, or not of this machine.
         """
         path, machine = self.joints_path, self.site.machine()
-        if not path.exists() and machine is None:
+        if not path.exists() and (machine is None or self.recording.without_machine):
             return None
         record = JointRecord.from_csv(path, max_gap_ns=round(self.recording.max_joint_gap_ms * 1e6))
         if machine is None:
