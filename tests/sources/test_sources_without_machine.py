@@ -1,4 +1,4 @@
-"""A recording from before its machine was installed: by the site's word alone, without joints, and never with a gate."""
+"""A recording from before its machine was installed: by the site's word alone, and never with a gate."""
 
 import pytest
 

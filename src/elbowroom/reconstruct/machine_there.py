@@ -107,7 +107,7 @@ def _or_never(found: Elsewhere) -> str:
     """The key for images in which it never stood, where next to nothing of it is seen."""
     if found.share < MOST:
         return ""
-    return "; or, if the images were taken before it was installed, say so in the site: recording: {without_machine: true}"
+    return "; or, if the images are from before it was installed, the site says recording: {without_machine: true}"
 
 
 def _likely(found: Elsewhere) -> str:
