@@ -1,4 +1,7 @@
-"""Recordings as a site file describes them: three ways in which people lay out depth images, and bags of ROS 2."""
+"""Recordings as a site file describes them: three ways in which people lay out depth images, and bags of ROS 2.
+
+`without_machine` says of any that the machine stood in none of its images: they were taken before it was installed.
+"""
 
 from typing import Annotated, Literal
 
@@ -10,16 +13,7 @@ StampUnit = Literal["ns", "us", "ms", "s"]
 """Of the times that name images."""
 
 
-class AnyRecording(Entry):
-    """What is said of every recording: `without_machine`, that the machine never stood in its images.
-
-    They were taken before it was installed; its model came later.
-    """
-
-    without_machine: Flag = False
-
-
-class StampedFolder(AnyRecording):
+class StampedFolder(Entry):
     """`<folder>/<camera>/<stamp>.png` and, for a machine, a CSV of joints.
 
     Stamps are whole nanoseconds unless `stamp_unit` says otherwise, or seconds where they have a decimal point; angles
@@ -36,9 +30,10 @@ class StampedFolder(AnyRecording):
     max_skew_ms: NotNegative = 50.0
     max_joint_gap_ms: Positive = 500.0
     ignore: tuple[Text, ...] = ()
+    without_machine: Flag = False
 
 
-class StamplessFolder(AnyRecording):
+class StamplessFolder(Entry):
     """Images without times: the n-th of each camera, in order of names, make the n-th moment.
 
     `files` gives per camera a pattern or a list of paths below the folder; what it leaves out is
@@ -48,9 +43,10 @@ class StamplessFolder(AnyRecording):
     layout: Literal["stampless"]
     folder: Text
     files: dict[Text, Text | tuple[Text, ...]] = Field(default_factory=dict)
+    without_machine: Flag = False
 
 
-class SevenScenes(AnyRecording):
+class SevenScenes(Entry):
     """The layout of 7-Scenes and TSDF-fusion: `frame-NNNNNN.depth.png` and `.pose.txt`, one static room.
 
     Each frame is a camera of its own; all of them together are one moment. The camera matrix is
@@ -62,6 +58,7 @@ class SevenScenes(AnyRecording):
     folder: Text
     include: tuple[Whole, ...] | None = None
     exclude: tuple[Whole, ...] = ()
+    without_machine: Flag = False
 
     @model_validator(mode="after")
     def _nothing_in_both(self) -> "SevenScenes":
@@ -71,7 +68,7 @@ class SevenScenes(AnyRecording):
         return self
 
 
-class BagRecording(AnyRecording):
+class BagRecording(Entry):
     """A bag of ROS 2: the folder of `ros2 bag record`, or an MCAP file. `elbowroom site from-bag` writes this.
 
     `topics` gives each camera its topic of depth images (sensor_msgs/Image of 16UC1 or 32FC1, or the transport
@@ -87,6 +84,7 @@ class BagRecording(AnyRecording):
     angle_unit: Literal["rad", "deg"] = "rad"
     max_skew_ms: NotNegative = 50.0
     max_joint_gap_ms: Positive = 500.0
+    without_machine: Flag = False
 
     @model_validator(mode="after")
     def _each_its_own(self) -> "BagRecording":

@@ -76,3 +76,21 @@ def test_surfaces_that_are_the_same_lie_on_each_other_and_one_camera_has_none_to
     wrong = misfit(views, {n: replace(eye, scale=1.2) for n, eye in enumerate(views.eyes)})
     assert 2 * right.mean < wrong.mean and right.places > 500
     assert said(RIGHT["exact"].cameras[:1], RIGHT["exact"].snapshot.frames[:1]) == ()
+
+
+def test_a_squeezed_image_is_told_by_its_side_and_not_by_a_pose_of_some_cameras():
+    site = RIGHT["exact"]
+    wide = [replace(c, intrinsics=replace(c.intrinsics, fx=c.intrinsics.fx * 1.2)) for c in site.cameras]
+    (found,) = contradictions(wide, site.snapshot.frames, MARGIN)
+    assert found.kind == KIND and "fx looks 1.19 times" in found.text and "too long" in found.text
+
+
+def test_poses_in_feet_are_told_as_such():
+    site = RIGHT["exact"]
+    feet = []
+    for camera in site.cameras:
+        pose = camera.world_from_camera.copy()
+        pose[:3, 3] /= 0.3048
+        feet.append(replace(camera, world_from_camera=pose))
+    (found,) = contradictions(feet, site.snapshot.frames, MARGIN)
+    assert found.stops and "in feet" in found.text

@@ -112,7 +112,10 @@ def found_in(views: Views) -> tuple[Finding, ...]:
     if not standing(views.pairs).suspects:
         return scale_findings(views)
     suspicions, left = explained(views)
-    scales = () if suspicions else scale_findings(views)
+    of_all = any(len(suspicion.cameras) == len(views.eyes) for suspicion in suspicions)
+    scales = () if of_all else scale_findings(views, wholly=bool(suspicions))
+    if scales and suspicions:
+        return scales
     scaled = {name for finding in scales for name in finding.about}
     named = {camera for each in suspicions for camera in each.cameras}
     named |= {number for number, eye in enumerate(views.eyes) if eye.name in scaled}

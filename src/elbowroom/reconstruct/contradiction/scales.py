@@ -15,6 +15,7 @@ from elbowroom.finding import Finding
 from elbowroom.reconstruct.contradiction.eye import Array, Eye
 from elbowroom.reconstruct.contradiction.pairs import Points, points_of, together
 from elbowroom.reconstruct.contradiction.sample import Whole, about
+from elbowroom.reconstruct.contradiction.suspicion import standing
 from elbowroom.reconstruct.contradiction.views import Views
 
 KIND = "scale"
@@ -122,18 +123,25 @@ class Words(NamedTuple):
     scaled: Scaled
 
 
-def _focal(eye: Eye, factor: float) -> Eye:
-    k = eye.intrinsics
-    return replace(eye, intrinsics=replace(k, fx=k.fx * factor, fy=k.fy * factor))
+def _focal(across: bool, down: bool) -> Scaled:
+    """How a camera sees whose focal lengths are larger, across the image, down it, or both."""
+
+    def scaled(eye: Eye, factor: float) -> Eye:
+        k = eye.intrinsics
+        fx, fy = k.fx * (factor if across else 1.0), k.fy * (factor if down else 1.0)
+        return replace(eye, intrinsics=replace(k, fx=fx, fy=fy))
+
+    return scaled
 
 
+OF_THE_IMAGE = "give fx and fy of the images as they are (another mode, images that were cropped or scaled)"
 KINDS = (
     Words(
         "focal lengths look",
         "long",
         "short",
-        "give fx and fy of the images as they are (another mode, images that were cropped or scaled)",
-        _focal,
+        OF_THE_IMAGE,
+        _focal(across=True, down=True),
     ),
     Words(
         "depths look",
@@ -144,13 +152,22 @@ KINDS = (
     ),
 )
 
+OF_ALL = (
+    *KINDS,
+    Words("fx looks", "long", "short", OF_THE_IMAGE, _focal(across=True, down=False)),
+    Words("fy looks", "long", "short", OF_THE_IMAGE, _focal(across=False, down=True)),
+)
+"""Images that were squeezed are so of all cameras."""
 
-def scale_findings(views: Views) -> tuple[Finding, ...]:
+
+def scale_findings(views: Views, *, wholly: bool = False) -> tuple[Finding, ...]:
     """Focal lengths and depths that look too large or too small.
 
     Args:
         views: of one moment.
+        wholly: only if nobody contradicts anybody any more with them taken out.
     """
+    given = views
     found, findings = list[Scale](), list[Finding]()
     views = _thinned(views)
     while len(views.eyes) > 1 and len(found) < MOST_ALONE:
@@ -163,8 +180,8 @@ def scale_findings(views: Views) -> tuple[Finding, ...]:
         found.append(best)
         findings.append(_told(views, sorted(alike, key=_gain, reverse=True)))
         others = {n: best.words.scaled(views.eyes[n], 1 / best.factor) for n in best.cameras}
-        views = views.with_eyes(others)
-    return tuple(findings)
+        views, given = views.with_eyes(others), given.with_eyes(others)
+    return () if wholly and standing(given.pairs).suspects else tuple(findings)
 
 
 def _thinned(views: Views) -> Views:
@@ -192,7 +209,7 @@ def _scales(views: Views, named: set[int]) -> Iterator[Scale]:
     for group, before in groups:
         if before.places < COMPARED or before.mean < LESS:
             continue
-        for words in KINDS:
+        for words in OF_ALL if group == everybody else KINDS:
             factor, after = _best(views, group, words, before)
             yield Scale(group, words, factor, before, after)
 
