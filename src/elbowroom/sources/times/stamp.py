@@ -113,7 +113,7 @@ def require_padded(paths: Sequence[Path]) -> None:
         np.sort([int(whole) * 10**9 + int(fill(rest)) for whole, _, rest in parted])
         for fill in (lambda rest: f"{rest:0<9}", lambda rest: f"{rest:0>9}")
     )
-    spread, even = (np.diff(times).max() / max(np.median(np.diff(times)), 1) for times in (read, padded))
+    spread, even = (np.diff(times).max() / max(np.diff(times).min(), 1) for times in (read, padded))
     if even < UNEVEN and spread > 1.2 * even:
         short = next(path for path in paths if len(path.stem.partition(".")[2]) < max(lengths))
         whole, _, rest = short.stem.partition(".")
