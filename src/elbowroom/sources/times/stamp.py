@@ -114,7 +114,7 @@ def require_padded(paths: Sequence[Path]) -> None:
         for fill in (lambda rest: f"{rest:0<9}", lambda rest: f"{rest:0>9}")
     )
     spread, even = (np.diff(times).max() / max(np.diff(times).min(), 1) for times in (read, padded))
-    if even < UNEVEN and spread > 1.2 * even:
+    if even < UNEVEN and spread > 1.02 * even:
         short = next(path for path in paths if len(path.stem.partition(".")[2]) < max(lengths))
         whole, _, rest = short.stem.partition(".")
         raise FrameError(
