@@ -39,18 +39,22 @@ def looks_tables(rows: Sequence[Row]) -> list[str]:
                 "nothing said": of("unsaid", due=LOOKS),
             },
         ),
-        "",
-        *table(
-            scaled,
-            {
-                "off by a factor": of("kind"),
-                "sites": of("scenes"),
-                "stopped": of("stopped"),
-                "named": of("named"),
-                "nothing said [%]": of("unsaid_pct", due=LOOKS),
-            },
-        ),
+        *(("", *_scaled_table(scaled)) if scaled else ()),
     ]
+
+
+def _scaled_table(rows: Sequence[Row]) -> list[str]:
+    """From which size on a focal length that is off is told."""
+    return table(
+        rows,
+        {
+            "off by a factor": of("kind"),
+            "sites": of("scenes"),
+            "stopped": of("stopped"),
+            "named": of("named"),
+            "nothing said [%]": of("unsaid_pct", due=LOOKS),
+        },
+    )
 
 
 def contradiction_tables(rows: Sequence[Row]) -> list[str]:
