@@ -25,7 +25,7 @@ MOST = 4.0
 """What lies farther apart than so many times that is another thing, and counts no more than that."""
 STEP = 1.11
 """By so much up and down is tried first,"""
-FINE, WIDE = np.log(1.03), 18
+FINE, WIDE = np.log(1.03), 27
 """then in steps of this, so many at most."""
 LEAST = 1.045
 """A factor nearer to 1 is not told: calibrations of the usual size leave that open."""
