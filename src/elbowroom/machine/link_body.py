@@ -25,6 +25,8 @@ SUSPECT_LINK_M = 2.0
 """From this length on, a mesh is compared with the rest of the machine [m]."""
 SMALLEST_MESH_M = 0.001
 """A smaller mesh is said: it may have been scaled twice [m]."""
+MOST_NAMED = 3
+"""So many links are named in one line."""
 HEAVY_KG = 0.1
 """A link without any geometry is said from this mass on [kg]; lighter ones mark frames."""
 WITHOUT_BODY = "or name links that may move without a body in machine.without_body (without_body= in Python)"
@@ -120,16 +122,17 @@ class Bodies:
 
     def _say_heavy(self, links: Iterable[RawLink]) -> None:
         """Links that move, have no geometry at all, and a mass: something is there."""
-        for link in links:
-            masses = [at for at in link.element.iter("{*}mass") if tag_of(at.getparent()) == "inertial"]
-            with suppress(ValueError):
-                mass_kg = max((float(mass.get("value", "0")) for mass in masses), default=0.0)
-                if mass_kg >= HEAVY_KG:
-                    self.report.warn(
-                        "no body",
-                        link.element,
-                        f"has a mass of {mass_kg:.3g} kg and no geometry: what it would hit is not noticed",
-                    )
+        masses = {link.name: _mass_kg(link) for link in links}
+        heavy = {name: mass for name, mass in masses.items() if mass >= HEAVY_KG}
+        if not heavy:
+            return
+        shown = ", ".join(f"{name} {mass:.3g} kg" for name, mass in list(heavy.items())[:MOST_NAMED])
+        more = f" and {len(heavy) - MOST_NAMED} more" if len(heavy) > MOST_NAMED else ""
+        self.report.warn(
+            "no body",
+            None,
+            f"links that move with a mass and without any geometry: {shown}{more}; what they would hit is not noticed",
+        )
 
     def _surface(self, link: RawLink, shapes: Sequence[Shape]) -> Surface:
         """All of some shapes of a link in its frame; those that are lost are left out, which is noted."""
@@ -206,6 +209,14 @@ class Bodies:
             self._taken.add(taken)
         if read.note:
             self._axes.append((shape, read.note))
+
+
+def _mass_kg(link: RawLink) -> float:
+    """What a link weighs as its element says; 0: it does not."""
+    masses = [at for at in link.element.iter("{*}mass") if tag_of(at.getparent()) == "inertial"]
+    with suppress(ValueError):
+        return max((float(mass.get("value", "0")) for mass in masses), default=0.0)
+    return 0.0
 
 
 def _check_sizes(
