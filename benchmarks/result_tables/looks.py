@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from elbowroom.evaluate.contradictions.rows import DUE as CONTRADICTIONS
 from elbowroom.evaluate.looks.looks import DUE as LOOKS
-from elbowroom.evaluate.looks.looks import RIGHT
+from elbowroom.evaluate.looks.looks import RIGHT, SCALED_KIND, WRONG_KIND
 from result_tables.cells import Row, of, same, table
 
 
@@ -12,7 +12,8 @@ def looks_tables(rows: Sequence[Row]) -> list[str]:
     """False alarms, what was said of rooms that are right, and silence on each kind that is wrong."""
     summaries = [row for row in rows if "scenes" in row]
     right = [row for row in summaries if row["what"] == RIGHT]
-    wrong = [row for row in summaries if row["what"] != RIGHT]
+    wrong = [row for row in summaries if row["what"] == WRONG_KIND]
+    scaled = [row for row in summaries if row["what"] == SCALED_KIND]
     alarms = [row for row in rows if row["what"] == RIGHT and row.get("warns")]
     return [
         *table(
@@ -38,7 +39,22 @@ def looks_tables(rows: Sequence[Row]) -> list[str]:
                 "nothing said": of("unsaid", due=LOOKS),
             },
         ),
+        *(("", *_scaled_table(scaled)) if scaled else ()),
     ]
+
+
+def _scaled_table(rows: Sequence[Row]) -> list[str]:
+    """From which size on a focal length that is off is told."""
+    return table(
+        rows,
+        {
+            "off by a factor": of("kind"),
+            "sites": of("scenes"),
+            "stopped": of("stopped"),
+            "named": of("named"),
+            "nothing said [%]": of("unsaid_pct", due=LOOKS),
+        },
+    )
 
 
 def contradiction_tables(rows: Sequence[Row]) -> list[str]:

@@ -6,6 +6,7 @@ import trimesh
 
 from elbowroom.errors import MachineError, MachineWarning
 from elbowroom.machine import Machine
+from elbowroom.machine.mesh_file import read_mesh
 from reference import machine_twins as naive
 from reference.small_urdf import BOX, joint, mesh_link, stl_link, urdf
 
@@ -172,3 +173,16 @@ def test_a_link_that_has_a_picture_and_no_body_is_refused_or_moves_without_one_b
     assert machine.bodiless_links == ("b",)
     with pytest.raises(MachineError, match="link without body 'c' does not exist; links are a, b"):
         Machine.from_urdf(path, without_body=("c",))
+
+
+@pytest.mark.parametrize("change", ["cut", "more", "no count"])
+def test_a_binary_stl_of_another_length_than_it_says_is_named(tmp_path, change):
+    whole = trimesh.creation.box((0.1, 0.1, 0.1)).export(file_type="stl")
+    content = {
+        "cut": whole[:-60],
+        "more": whole + bytes(37),
+        "no count": whole[:80] + bytes(4) + whole[84:],
+    }[change]
+    (tmp_path / "a.stl").write_bytes(content)
+    with pytest.raises(MachineError, match=r"says that it has (12|0) triangles, and its .* bytes hold"):
+        read_mesh(tmp_path / "a.stl")

@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
+from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, looking_at
 from elbowroom.machine.elsewhere import elsewhere
 from elbowroom.machine.rasterise import rasterise
+from elbowroom.reconstruct import Terms, free_space_of
 from elbowroom.reconstruct.machine_there import machine_there
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame, Snapshot
 from reference.contact_machines import joint, link, machine
@@ -124,3 +125,29 @@ def test_pixels_that_see_through_are_those_that_a_plain_count_finds(arm, cameras
                 through += depth[row, column] > around.max() + 0.1
                 agree += around.min() - 0.1 < depth[row, column] <= around.max() + 0.1
     assert (found.through, found.agree) == (through, agree) and through > 100 and agree > 100
+
+
+def test_a_room_from_before_the_machine_names_the_key_that_says_so(arm, cameras):
+    joints = {"turn": 0.2, "bend": 0.3}
+    empty = [DepthFrame(camera.name, 1, np.full((96, 128), WALL_M, np.float32)) for camera in cameras]
+    (found,) = machine_there(arm, cameras, Snapshot.taken(empty, joints, None, None))
+    assert found.stops and "recording: {without_machine: true}" in found.text
+    assert machine_there(arm, cameras, Snapshot.taken(empty, joints, None, None), is_absent=True) == ()
+
+
+def test_a_machine_that_is_seen_though_it_is_declared_absent_is_a_warning(arm, cameras):
+    joints = {"turn": 0.2, "bend": 0.3}
+    (found,) = machine_there(arm, cameras, seen(arm, cameras, joints), is_absent=True)
+    assert not found.stops and "leave recording.without_machine out" in found.text
+
+
+def test_where_the_machine_never_stood_nothing_is_taken_for_it(arm, cameras):
+    """Also what lies on its surface and within it: the space is that of the bare room."""
+    snapshot = seen(arm, cameras, {"turn": 0.2, "bend": 0.3})
+    grid = VoxelGrid.covering((-0.8, -0.8, 0.0), (0.8, 0.8, 1.0), 0.1)
+    terms = Terms(without_machine=True)
+    declared = free_space_of(grid, cameras, snapshot, arm, terms)
+    bare = free_space_of(grid, cameras, snapshot, None, Terms())
+    as_it_is = free_space_of(grid, cameras, snapshot, arm, Terms())
+    assert np.array_equal(declared.free_words, bare.free_words) and not declared.body_words.any()
+    assert as_it_is.body_words.any() and len(terms.allowances) == 1 and Terms().allowances == ()

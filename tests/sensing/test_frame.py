@@ -48,3 +48,13 @@ def test_few_depths_far_away_and_what_is_no_number_are_no_millimetres():
     assert DepthFrame("one", 0, depth).depth_m[0, 0] == 3000.0
     DepthFrame("one", 0, np.zeros((6, 8)))
     DepthFrame("one", 0, np.full((6, 8), np.inf))
+
+
+@pytest.mark.parametrize("stamp", [1.7e9, "5", np.float64(3.0)])
+def test_a_time_that_is_no_whole_number_is_refused(stamp):
+    with pytest.raises(FrameError, match="whole nanoseconds"):
+        DepthFrame("c", stamp, np.ones((2, 2), np.float32))
+
+
+def test_a_time_of_numpy_is_a_time():
+    assert type(DepthFrame("c", np.int64(5), np.ones((2, 2), np.float32)).stamp_ns) is int

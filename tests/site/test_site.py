@@ -11,7 +11,7 @@ from elbowroom.geometry import looking_at
 from elbowroom.sensing import Margin, NoiseModel
 from elbowroom.site import Site
 from elbowroom.site.notes import notes_of
-from elbowroom.site.paths import expand
+from elbowroom.site.paths import existing_folder, expand
 from elbowroom.site.site import NEW_SITE
 
 
@@ -207,3 +207,19 @@ def test_the_new_site_is_valid_and_so_are_the_keys_that_it_shows_in_comments(fol
     gate = "\n".join(line.removeprefix("# ") for line in text[text.index("# gate:") :].splitlines())
     site = Site.load(folder.write(content | yaml.safe_load(gate)))
     assert site.entry.gate is not None and site.entry.gate.modbus.port == 5020
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("~/rec", "write ${HOME}"),
+        ("$HOME/rec", "written ${HOME}"),
+        ("%USERPROFILE%/rec", "written ${USERPROFILE}"),
+        ("..\\rec", "write / for"),
+        ("file:///data/rec", "without what stands before"),
+    ],
+)
+def test_paths_that_another_program_would_read_are_told_what_to_write(tmp_path, text, words):
+    with pytest.raises(SiteError) as error:
+        existing_folder(text, tmp_path)
+    assert words in str(error.value)

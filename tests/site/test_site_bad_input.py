@@ -77,7 +77,7 @@ POSE = np.eye(4).tolist()
         # grids
         (["grid"], None, "grid: missing; it must be given"),
         (["grid", "upper_m"], [1, -1, 1], "grid: empty, upper corner [1.0, -1.0, 1.0] is not above"),
-        (["grid", "voxel_size_m"], 0, "grid.voxel_size_m: found 0, allowed: greater than or equal to 0.000001"),
+        (["grid", "voxel_size_m"], 0, "grid.voxel_size_m: found 0, allowed: greater than or equal to 0.0001"),
         (["grid", "voxel_size_m"], 1e-4, "choose larger voxels or a smaller box"),
         (["grid", "shape"], [1, 1, 1], "exactly one of upper_m and shape"),
         (["grid", "origin_m"], [0, 0], "grid.origin_m[2]: missing"),

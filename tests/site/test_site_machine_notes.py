@@ -54,7 +54,7 @@ def test_slips_of_a_description_are_notes_and_no_warnings(site_of):
 
 
 def test_many_slips_are_told_once(site_of):
-    points = '<collision><geometry><sphere radius="0"/></geometry></collision>' * 20
+    points = '<collision><geometry><sphere radius="0"/></geometry></collision>\n' * 20
     notes = notes_of(site_of(BOX.format("base").replace("</link>", f"{points}</link>")))
     assert "and 12 slips more in the description of the machine" in notes
     assert len(notes) < 12

@@ -34,8 +34,9 @@ def checked_space(
         steps.begin("loading kernels")
         warm_up(machine, [room.terms.detail])
         steps.begin("reading images")
-        snapshot = room.snapshot(moment)
-        refuse(machine_there(machine, room.cameras, snapshot))
+        snapshot = room.placed(room.snapshot(moment))
+        is_absent = room.terms.without_machine
+        refuse(machine_there(machine, room.cameras, snapshot, is_absent=is_absent))
         steps.begin("reconstructing")
         space = room.space_of(snapshot)
         steps.begin(checking)

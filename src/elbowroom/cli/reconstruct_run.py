@@ -10,6 +10,7 @@ from rich.table import Table
 from elbowroom.cli.progress import Steps
 from elbowroom.files.atomic import folder
 from elbowroom.files.json_rows import json_rows
+from elbowroom.finding import Finding
 from elbowroom.monitor.rows import shares_pct
 from elbowroom.monitor.start.compiling import compile_kernels
 from elbowroom.reconstruct import FreeSpace, warm_up
@@ -51,21 +52,37 @@ def export(room: Room, moment: int, out_dir: Path, json_file: Path | None) -> No
             units_m = units_of(room.site, room.cameras)
             findings = found_at(room.grid, room.cameras, snapshot.frames, units_m, room.terms.margin)
             if room.machine is not None:
-                findings = (*findings, *machine_there(room.machine, room.cameras, snapshot))
+                is_absent = room.terms.without_machine
+                there = machine_there(room.machine, room.cameras, snapshot, is_absent=is_absent)
+                findings = (*findings, *there)
             refuse(findings)
             steps.begin("reconstructing")
             space = room.space_of(snapshot)
-            findings = (*findings, *found_in_space(space))
+            findings = (*findings, *found_in_space(space), *_nothing_free(space))
             steps.begin("writing arrays")
             files = [save_npz(out_dir / "free_space.npz", space)]
             steps.begin("writing points")
             files.append(save_ply(out_dir / "blocked.ply", space))
             steps.begin("drawing sections")
-            files += save_sections(space, out_dir, room.machine, snapshot.joints, room.cameras)
+            machine = room.machine if snapshot.joints is not None else None
+            files += save_sections(space, out_dir, machine, snapshot.joints, room.cameras)
         row = _row(room, moment, snapshot, space, steps.seconds, files)
         row["findings"] = [asdict(finding) for finding in findings]
         add(row)
     _say(row, out_dir)
+
+
+def _nothing_free(space: FreeSpace) -> tuple[Finding, ...]:
+    """That nothing is free but the machine's own body, with where to look."""
+    if (space.free_words & ~space.body_words).any():
+        return ()
+    shares = shares_pct(space)
+    text = (
+        f"nothing is free: {shares['surface_pct']:.1f} % is surface, {shares['blind_pct']:.1f} % blind, and no camera "
+        "sees through the rest, or others dispute it. Check that cameras look into the grid (elbowroom site check "
+        "--out room.png), units and frames of their poses, and whether images are mostly without returns"
+    )
+    return (Finding("nothing free", (), text, stops=False),)
 
 
 def _row(

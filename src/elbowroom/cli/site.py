@@ -166,11 +166,10 @@ def _of_the_model(site: "Site", found: "Sequence[Finding]") -> "Sequence[Finding
     snapshot = next(iter(room.source), None)
     if snapshot is None:
         return ()
-    there = machine_there(machine, room.cameras, snapshot)
-    return (
-        *there,
-        *([] if any(each.stops for each in there) else model_findings(machine, room.cameras, snapshot)),
-    )
+    is_absent = room.terms.without_machine
+    there = machine_there(machine, room.cameras, snapshot, is_absent=is_absent)
+    is_over = is_absent or any(each.stops for each in there)
+    return (*there, *([] if is_over else model_findings(machine, room.cameras, snapshot)))
 
 
 def _coverage(grid: "VoxelGrid", cameras: "Sequence[DepthCamera]") -> dict[str, float]:

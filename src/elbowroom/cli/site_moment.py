@@ -37,7 +37,7 @@ def tight_notes(site: "Site") -> list[str]:
     from elbowroom.sources import open_room
 
     snapshot = _recorded(site) if has_images else _simulated(site)
-    if snapshot is None:
+    if snapshot is None or snapshot.joints is None:
         return []
     compile_kernels(Console(stderr=True), machine=True, motion=True, simulator=not has_images)
     by = "" if has_images else "by the room that the site describes: "

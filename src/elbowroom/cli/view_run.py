@@ -142,7 +142,7 @@ def _there(site: Site, asked: Asked, how: Mapping[str, Any]) -> There:
 def _moment_of(room: Room, number: int) -> tuple[Snapshot, Moment | None]:
     """What cameras saw, and what was really there, if anybody knows."""
     if not isinstance(room.source, Simulated):
-        return room.snapshot(number), None
+        return room.placed(room.snapshot(number)), None
     snapshot = next(room.source.at([float(number)]))
     there = InterventionRoom(machine=room.machine, staff=walking_staff())
     return snapshot, there.at(float(number), joints=room.source.joints)

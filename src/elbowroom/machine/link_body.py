@@ -1,6 +1,7 @@
 """The triangles of each link: read, put where they belong, and refused where they cannot be meant."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,7 +11,7 @@ from elbowroom.choices import ExplainWith
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
 from elbowroom.machine.description.packages import Packages
-from elbowroom.machine.description.report import Report
+from elbowroom.machine.description.report import Report, tag_of
 from elbowroom.machine.description.robot import RawLink, Robot
 from elbowroom.machine.description.shapes import Shape
 from elbowroom.machine.link import Link, Surface
@@ -24,6 +25,10 @@ SUSPECT_LINK_M = 2.0
 """From this length on, a mesh is compared with the rest of the machine [m]."""
 SMALLEST_MESH_M = 0.001
 """A smaller mesh is said: it may have been scaled twice [m]."""
+MOST_NAMED = 3
+"""So many links are named in one line."""
+HEAVY_KG = 0.1
+"""A link without any geometry is said from this mass on [kg]; lighter ones mark frames."""
 WITHOUT_BODY = "or name links that may move without a body in machine.without_body (without_body= in Python)"
 
 
@@ -88,6 +93,9 @@ class Bodies:
         """
         by_name = {link.name: link for link in self.robot.links}
         read = {name: by_name[name].body(self.report) for name in order if name not in self.without_body}
+        self._say_heavy(
+            by_name[name] for name in order if name in machine.moving and not read.get(name, [True])
+        )
         self.packages.expect(shape.filename for shapes in read.values() for shape in shapes)
         bodies = {name: self._surface(by_name[name], read.get(name, [])) for name in order}
         # pictures after that, so that what they name changes nothing about where bodies are found
@@ -111,6 +119,20 @@ class Bodies:
             )
         _check_sizes(self.report, links, read, self.largest_link_m, machine)
         return links
+
+    def _say_heavy(self, links: Iterable[RawLink]) -> None:
+        """Links that move, have no geometry at all, and a mass: something is there."""
+        masses = {link.name: _mass_kg(link) for link in links}
+        heavy = {name: mass for name, mass in masses.items() if mass >= HEAVY_KG}
+        if not heavy:
+            return
+        shown = ", ".join(f"{name} {mass:.3g} kg" for name, mass in list(heavy.items())[:MOST_NAMED])
+        more = f" and {len(heavy) - MOST_NAMED} more" if len(heavy) > MOST_NAMED else ""
+        self.report.warn(
+            "no body",
+            None,
+            f"links that move with a mass and without any geometry: {shown}{more}; what they would hit is not noticed",
+        )
 
     def _surface(self, link: RawLink, shapes: Sequence[Shape]) -> Surface:
         """All of some shapes of a link in its frame; those that are lost are left out, which is noted."""
@@ -187,6 +209,14 @@ class Bodies:
             self._taken.add(taken)
         if read.note:
             self._axes.append((shape, read.note))
+
+
+def _mass_kg(link: RawLink) -> float:
+    """What a link weighs as its element says; 0: it does not."""
+    masses = [at for at in link.element.iter("{*}mass") if tag_of(at.getparent()) == "inertial"]
+    with suppress(ValueError):
+        return max((float(mass.get("value", "0")) for mass in masses), default=0.0)
+    return 0.0
 
 
 def _check_sizes(

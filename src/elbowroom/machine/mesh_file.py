@@ -10,6 +10,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from elbowroom.errors import MachineError
+from elbowroom.files.content import head_of, what_it_is
 from elbowroom.machine.collada import read_collada
 
 MESH_SUFFIXES = (".stl", ".obj", ".glb", ".gltf", ".ply", ".dae")
@@ -53,12 +54,11 @@ def read_mesh(path: Path) -> MeshFile:
     size = path.stat().st_size
     if size > MAX_MESH_BYTES:
         raise MachineError(f"mesh {path} has {size:,} bytes; at most {MAX_MESH_BYTES:,} are read")
-    with path.open("rb") as file:
-        is_pointer = file.read(24).startswith(b"version https://git-lfs")
-    if is_pointer:
-        raise MachineError(
-            f"mesh {path} is a pointer of Git LFS, not the file; run git lfs pull where it comes from"
-        )
+    found = what_it_is(head_of(path))
+    if found:
+        raise MachineError(f"mesh {path} is {found}")
+    if suffix == ".stl":
+        _require_whole_stl(path)
     if suffix == ".dae":
         scene = read_collada(path)
         mesh = trimesh.Trimesh(scene.vertices, scene.faces)
@@ -73,6 +73,22 @@ def read_mesh(path: Path) -> MeshFile:
     read = _checked(loaded, path)
     _require_all(path, len(read.faces))
     return read
+
+
+def _require_whole_stl(path: Path) -> None:
+    """Refuses a binary STL that is shorter or longer than it says: its reader would find other triangles, or none."""
+    size, head = path.stat().st_size, head_of(path)
+    if b"\0" not in head:  # in letters
+        return
+    if size < 84:
+        raise MachineError(f"mesh {path} has {size} bytes, fewer than the head of an STL")
+    count = int.from_bytes(head[80:84], "little")
+    if size != 84 + 50 * count:
+        holds = (size - 84) / 50
+        raise MachineError(
+            f"mesh {path} says that it has {count:,} triangles, and its {size:,} bytes hold {holds:,.1f}: "
+            f"{'it was cut off' if holds < count else 'more follows, or its count was never written'}; export it anew"
+        )
 
 
 def _checked(mesh: object, path: Path, note: str = "") -> MeshFile:

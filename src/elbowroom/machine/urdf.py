@@ -110,7 +110,8 @@ def _tree_order(robot: Robot) -> list[str]:
     roots = [name for name in names if name not in parents]
     if len(roots) != 1:
         raise MachineError(
-            f"{robot.path}: links must form one tree; without a parent are: {', '.join(roots) or 'none'}"
+            f"{robot.path}: links must form one tree; without a parent are: "
+            f"{', '.join(roots) or 'none, they hang on each other in a ring'}"
         )
     order, waiting = [], roots
     while waiting:

@@ -14,6 +14,8 @@ from elbowroom.reconstruct.machine_images import machine_images
 from elbowroom.sensing import Snapshot
 
 KIND = "machine"
+MUCH = 4
+"""So many times the pixels of a link say that a machine is seen."""
 MOST, MANY = 0.5, 0.1
 """Where so many of the pixels see through it, its base is doubted first; from the lesser share on it stops."""
 FITS = 0.1
@@ -21,7 +23,7 @@ FITS = 0.1
 
 
 def machine_there(
-    machine: Machine, cameras: Sequence[DepthCamera], snapshot: Snapshot
+    machine: Machine, cameras: Sequence[DepthCamera], snapshot: Snapshot, *, is_absent: bool = False
 ) -> tuple[Finding, ...]:
     """A finding where cameras see through links of the machine: a verdict would be on another machine.
 
@@ -33,6 +35,7 @@ def machine_there(
         machine: where it is said to be.
         cameras: of the room.
         snapshot: their frames, and where the joints were; without joints nothing is found.
+        is_absent: somebody vouches that it is in none of the images; a warning if it is seen all the same.
 
     Raises:
         CameraError, FrameError: frames of other cameras or sizes.
@@ -46,12 +49,26 @@ def machine_there(
         return elsewhere(as_said, *images)
 
     found = seen_if(machine)
+    if is_absent:
+        return _seen_all_the_same(machine, found)
     if not found.links:
         return _unseen(machine, found) or _a_little(machine, found)
     better = _better(machine, found, seen_if)
     several = len(found.links) > 1 and found.share >= MANY
     stops = found.cameras > 1 and (several or bool(better) or found.links == found.shown)
     return (Finding(KIND, found.links, _text(machine, found, better), stops),)
+
+
+def _seen_all_the_same(machine: Machine, found: Elsewhere) -> tuple[Finding, ...]:
+    """That it stands where it is said to come, though somebody says that it is in no image."""
+    if found.links or found.share >= MANY or found.agree < MUCH * LEAST_PIXELS:
+        return ()
+    text = (
+        f"{machine.name} is seen where it is to stand by {1 - found.share:.0%} of {found.through + found.agree} "
+        "pixels, or something of its shape: all of it is taken for something else, so that everything stops there. If "
+        "it is the machine, leave recording.without_machine out"
+    )
+    return (Finding(KIND, (machine.name,), text, stops=False),)
 
 
 def _unseen(machine: Machine, found: Elsewhere) -> tuple[Finding, ...]:
@@ -82,8 +99,15 @@ def _text(machine: Machine, found: Elsewhere, better: str) -> str:
     return (
         f"{links} of {machine.name}: cameras see through the place where it is said to be, {found.share:.0%} of "
         f"{found.through + found.agree} pixels through the machine: verdicts would be on a machine that stands "
-        f"elsewhere. {better or _likely(found)}"
+        f"elsewhere. {better or _likely(found) + _or_never(found)}"
     )
+
+
+def _or_never(found: Elsewhere) -> str:
+    """The key for images in which it never stood, where next to nothing of it is seen."""
+    if found.share < MOST:
+        return ""
+    return "; or, if the images are from before it was installed, the site says recording: {without_machine: true}"
 
 
 def _likely(found: Elsewhere) -> str:

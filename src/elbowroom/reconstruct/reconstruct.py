@@ -133,7 +133,7 @@ def free_space_of(
         grid: the watched box.
         cameras: all cameras of the room.
         snapshot: their newest frames, and where the machine was.
-        machine: whose body is explained and taken out; None: the bare room.
+        machine: whose body is explained and taken out, unless it stood in no image; None: the bare room.
         terms: how strictly space is judged.
         focus, timer: as of `reconstruct`.
 
@@ -144,6 +144,7 @@ def free_space_of(
     frames_by_camera(cameras, snapshot.frames)  # a frame past its age must be of this room, too
     fresh = snapshot.fresh(terms.max_age_ns)
     images = room_images(cameras, fresh.frames, aged_m(cameras, fresh, terms))
+    machine = None if terms.without_machine else machine
     with stage("explain"):
         explained = explain(grid, machine, images, fresh, terms)
         # what is free as body whatever cameras say is not asked of them

@@ -14,6 +14,15 @@ MOST_ANGLE_DEG = 45.0
 PEOPLE_SPEED_M_S = 2.0
 """How fast a hand is taken to reach out where nobody measured it (ISO 13855:2010); people walk at 1.6 m/s."""
 
+_NOTHING_MOVES = (
+    "nothing but the machine moves here (nothing_moves, people_speed_m_s 0): what a camera saw to be free is taken to "
+    "be so for as long as its image counts"
+)
+_ABSENT = (
+    "the machine stood in none of these images (recording.without_machine): all that they show is something else, also "
+    "where it is to stand; nothing is said of a room in which it stands"
+)
+
 
 @dataclass(frozen=True, slots=True)
 class Terms:
@@ -35,6 +44,8 @@ class Terms:
             such a thing cannot have reached since [m/s].
         nothing_moves: somebody vouches that nothing but the machine moves here: only then that speed is 0.
         pass_ns: how long after the snapshot verdicts count, at most: a pass that is assumed to take so long [ns].
+        without_machine: somebody vouches that the machine is in none of the images: nothing in them is taken for it,
+            and no space is its body's.
 
     Raises:
         InputError: an unknown rule or detail, an age or a time of a pass below zero, or a speed that is not above zero
@@ -53,6 +64,7 @@ class Terms:
     people_speed_m_s: float = PEOPLE_SPEED_M_S
     nothing_moves: bool = False
     pass_ns: int = 0
+    without_machine: bool = False
 
     def __post_init__(self) -> None:
         if self.rule not in RULES:
@@ -77,11 +89,9 @@ class Terms:
     @property
     def allowances(self) -> tuple[str, ...]:
         """What somebody vouches for, and what nobody checks: a line each."""
-        if not self.nothing_moves:
-            return ()
         return (
-            "nothing but the machine moves here (nothing_moves, people_speed_m_s 0): what a camera saw to be free is "
-            "taken to be so for as long as its image counts",
+            *((_NOTHING_MOVES,) if self.nothing_moves else ()),
+            *((_ABSENT,) if self.without_machine else ()),
         )
 
     @property

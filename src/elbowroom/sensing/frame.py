@@ -1,5 +1,6 @@
 """One depth image of one camera with its time of exposure."""
 
+import operator
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +28,8 @@ class DepthFrame:
             read-only.
 
     Raises:
-        FrameError: not a two-dimensional floating image, or most of its depths are hundreds of metres.
+        FrameError: not a two-dimensional floating image, a time that is no whole number, or most of its depths are
+            hundreds of metres.
     """
 
     camera: str
@@ -45,6 +47,7 @@ class DepthFrame:
             depth = np.array(depth, dtype=np.float32, order="C")
             depth.setflags(write=False)
         _refuse_millimetres(self.camera, depth)
+        object.__setattr__(self, "stamp_ns", _whole(self.camera, self.stamp_ns))
         object.__setattr__(self, "depth_m", depth)
 
     @classmethod
@@ -81,6 +84,18 @@ class DepthFrame:
         depth[(raw == 0) | (raw == 65535)] = 0
         depth.setflags(write=False)
         return cls(camera=camera, stamp_ns=stamp_ns, depth_m=depth)
+
+
+def _whole(camera: str, stamp_ns: object) -> int | None:
+    """A time as a whole number; raises FrameError where it is another kind of value: seconds are floats."""
+    if stamp_ns is None or type(stamp_ns) is int:
+        return stamp_ns
+    try:
+        return operator.index(stamp_ns)  # type: ignore[arg-type]
+    except TypeError:
+        raise FrameError(
+            f"frame of {camera}: stamp_ns is {stamp_ns!r}, must be whole nanoseconds, as time.time_ns() gives them"
+        ) from None
 
 
 def _is_fixed(depth: NDArray[np.floating]) -> bool:

@@ -20,6 +20,20 @@ VELOCITY = "_velocity"
 STAMP_COLUMN = "stamp_ns"
 STAMP_COLUMNS = {"stamp_ns": 1, "stamp_us": 1_000, "stamp_ms": 1_000_000, "stamp_s": 1_000_000_000}
 """Names that the column of times may have, and the nanoseconds of its unit."""
+SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}
+"""What other programs part columns by, in words."""
+LIKE_TIMES = (
+    "time",
+    "times",
+    "timestamp",
+    "stamp",
+    "t",
+    "secs",
+    "epoch",
+    "header.stamp",
+    "header.stamp.secs",
+)
+"""Names of a column of times that does not say its unit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -231,10 +245,16 @@ def _time_column(path: Path, header: list[str]) -> int:
     shown = ",".join(header)[:80]
     found = [n for n, name in enumerate(header) if name in STAMP_COLUMNS]
     if len(header) < 2 or len(found) != 1:
-        semicolons = "; separate columns by commas" if len(header) == 1 and ";" in shown else ""
+        parted = next((name for sign, name in SEPARATORS.items() if len(header) == 1 and sign in shown), "")
+        times = [name for name in header if name.lower().strip("_%#") in LIKE_TIMES]
+        more = f"; these are {parted}, separate columns by commas" if parted else ""
+        if not more and len(found) > 1:
+            more = f"; {' and '.join(header[n] for n in found)} are both there"
+        elif not more and times:
+            more = f"; is it {times[0]}? name it by its unit"
         raise JointsError(
             f"{path}: line 1: header is {shown!r}, must be {STAMP_COLUMN},<joint>,... with one column of times, "
-            f"{', '.join(STAMP_COLUMNS)}{semicolons}"
+            f"{', '.join(STAMP_COLUMNS)}{more}"
         )
     if len(set(header)) != len(header) or not all(header):
         raise JointsError(f"{path}: line 1: header has an empty or a doubled name, each column needs its own")
@@ -248,7 +268,8 @@ def _stamp(text: str, where: str, column: str) -> int:
         stamp = int(text) if unit == 1 else int(Decimal(text.strip()) * unit)
     except (ValueError, ArithmeticError):
         allowed = "whole nanoseconds" if unit == 1 else "a number"
-        raise JointsError(f"{where}: {column} is {text[:40]!r}, must be {allowed}") from None
+        rounded = "; a spreadsheet has rounded it" if "e" in text.lower() and unit == 1 else ""
+        raise JointsError(f"{where}: {column} is {text[:40]!r}, must be {allowed}{rounded}") from None
     if not -(2**63) <= stamp < 2**63:
         raise JointsError(f"{where}: {column} is {text[:40]}, must fit 64 bits of nanoseconds")
     return stamp

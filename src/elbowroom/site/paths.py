@@ -71,6 +71,7 @@ def existing_folder(text: str, beside: Path) -> Path:
     if not folder.is_dir():
         names = _VARIABLE.findall(text)
         advice = f"set {names[0][0]} to where it lies" if names else "correct the path or fetch the recording"
+        advice = foreign(text) or advice
         raise SiteError(f"no folder {folder} (written {text}); {advice}")
     return folder
 
@@ -83,8 +84,25 @@ def existing_bag(text: str, beside: Path) -> Path:
     """
     place = expand(text, beside)
     if not place.exists():
-        raise SiteError(f"no folder or file {place} (written {text}); correct the path or fetch the bag")
+        advice = foreign(text) or "correct the path or fetch the bag"
+        raise SiteError(f"no folder or file {place} (written {text}); {advice}")
     return place
+
+
+def foreign(text: str) -> str:
+    """What to write instead of a path that another program would read; "": it is none.
+
+    Args:
+        text: as written.
+    """
+    if text.startswith("~"):
+        return "~ is not read: write ${HOME}"
+    named = re.match(r"\$([A-Za-z_]\w*)|%([A-Za-z_]\w*)%", text)
+    if named is not None:
+        return f"a variable is written ${{{named[1] or named[2]}}}"
+    if re.match(r"[a-z]+://", text):
+        return "a path is meant, without what stands before ://"
+    return "write / for \\" if "\\" in text and os.sep == "/" else ""
 
 
 def inside(folder: Path, text: str) -> str:

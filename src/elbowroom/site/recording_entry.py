@@ -1,10 +1,13 @@
-"""Recordings as a site file describes them: three ways in which people lay out depth images, and bags of ROS 2."""
+"""Recordings as a site file describes them: three ways in which people lay out depth images, and bags of ROS 2.
+
+`without_machine` says of any that the machine stood in none of its images: they were taken before it was installed.
+"""
 
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from elbowroom.site.entry import Entry, NotNegative, Positive, Text, Whole
+from elbowroom.site.entry import Entry, Flag, NotNegative, Positive, Text, Whole
 
 StampUnit = Literal["ns", "us", "ms", "s"]
 """Of the times that name images."""
@@ -27,6 +30,7 @@ class StampedFolder(Entry):
     max_skew_ms: NotNegative = 50.0
     max_joint_gap_ms: Positive = 500.0
     ignore: tuple[Text, ...] = ()
+    without_machine: Flag = False
 
 
 class StamplessFolder(Entry):
@@ -39,6 +43,7 @@ class StamplessFolder(Entry):
     layout: Literal["stampless"]
     folder: Text
     files: dict[Text, Text | tuple[Text, ...]] = Field(default_factory=dict)
+    without_machine: Flag = False
 
 
 class SevenScenes(Entry):
@@ -53,6 +58,7 @@ class SevenScenes(Entry):
     folder: Text
     include: tuple[Whole, ...] | None = None
     exclude: tuple[Whole, ...] = ()
+    without_machine: Flag = False
 
     @model_validator(mode="after")
     def _nothing_in_both(self) -> "SevenScenes":
@@ -78,6 +84,7 @@ class BagRecording(Entry):
     angle_unit: Literal["rad", "deg"] = "rad"
     max_skew_ms: NotNegative = 50.0
     max_joint_gap_ms: Positive = 500.0
+    without_machine: Flag = False
 
     @model_validator(mode="after")
     def _each_its_own(self) -> "BagRecording":

@@ -35,7 +35,7 @@ class GridEntry(Entry):
     origin_m: Point
     upper_m: Point | None = None
     shape: tuple[Count, Count, Count] | None = None
-    voxel_size_m: Annotated[Positive, Field(ge=1e-6), up_to(1, "m", MILLIMETRES, CENTIMETRES, usual=0.01)]
+    voxel_size_m: Annotated[Positive, Field(ge=1e-4), up_to(1, "m", MILLIMETRES, CENTIMETRES, usual=0.01)]
 
     @model_validator(mode="after")
     def _one_extent(self) -> "GridEntry":

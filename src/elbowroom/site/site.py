@@ -132,6 +132,7 @@ class Site:
             people_speed_m_s=self.entry.people_speed_m_s,
             nothing_moves=self.entry.nothing_moves,
             pass_ns=round((self.entry.pass_time_ms or 0.0) * 1e6),
+            without_machine=self.entry.recording is not None and self.entry.recording.without_machine,
         )
 
     def margin(self) -> Margin:

@@ -1,5 +1,6 @@
 """Depth images on disk, of whichever format: 16 bits of grey, as PNG or PGM."""
 
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -10,11 +11,34 @@ from elbowroom.sources.depth_png import check_depth_png, read_depth_png
 
 KINDS = (".png", ".pgm")
 """Endings of the names of depth images."""
+OF_A_RECORDING = (*KINDS, ".csv", ".json", ".yaml", ".yml", ".txt", ".md")
+"""Endings of what may lie there, too."""
 
 
 def images_in(folder: Path) -> list[Path]:
-    """The files of a folder whose names end as those of depth images, in the order of their names."""
-    return sorted(path for kind in KINDS for path in folder.glob(f"*{kind}"))
+    """The files of a folder whose names end as those of depth images, in the order of their names; no hidden ones."""
+    return sorted(path for path in folder.glob("*") if path.suffix.lower() in KINDS and not is_hidden(path))
+
+
+def is_hidden(path: Path) -> bool:
+    """Whether a file or folder is none of the user's: systems and viewers write `._name`, `.thumbnails`, `@eaDir`."""
+    return path.name.startswith((".", "@"))
+
+
+def others_text(folder: Path) -> str:
+    """What is there instead of depth images, as the end of a sentence; "": nothing.
+
+    Args:
+        folder: of a recording, with a folder for each camera.
+    """
+    files = [path for path in folder.glob("*/*") if path.is_file() and not is_hidden(path)]
+    files += [path for path in folder.glob("*") if path.is_file() and not is_hidden(path)]
+    endings = Counter(path.suffix.lower() for path in files if path.suffix.lower() not in OF_A_RECORDING)
+    if not endings:
+        return ""
+    ending, count = endings.most_common(1)[0]
+    kind = f"files {ending}" if ending else "files without an ending"
+    return f"; there are {count} {kind}: write depth as 16-bit PNG"
 
 
 def check_depth_image(path: Path, width: int, height: int) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from elbowroom.errors import FrameError
+from elbowroom.files.content import what_it_is
 from elbowroom.files.damaged_picture import DAMAGED, chunk_beyond_end
 from elbowroom.sources.depth_pgm import exchanged
 
@@ -43,8 +44,11 @@ def _require_header(name: str, header: bytes, length: int, size: tuple[int, int]
     """Looks at the first bytes of a PNG, and at how long it is; raises as `check_depth_png`."""
     width, height = size
     if len(header) < HEADER or header[:8] != SIGNATURE or header[12:16] != b"IHDR":
+        found = what_it_is(header)
         raise FrameError(
-            f"{name}: not a PNG file, or cut off in its first bytes; expected a 16-bit PNG or PGM"
+            f"{name}: {found}; expected a 16-bit PNG or PGM"
+            if found and not header.startswith(SIGNATURE)
+            else f"{name}: not a PNG file, or cut off in its first bytes; expected a 16-bit PNG or PGM"
         )
     found_width, found_height, depth, colour = struct.unpack(">IIBB", header[16:26])
     if (found_width, found_height) != (width, height):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from elbowroom.errors import InputError, JointsError
+from elbowroom.errors import JointsError
 from elbowroom.finding import Finding
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 from elbowroom.site.recording_entry import BagRecording
@@ -14,7 +14,7 @@ from elbowroom.site.site import Site
 from elbowroom.sources.layouts.bag import BagFrames
 from elbowroom.sources.layouts.bag_image import Arrival
 from elbowroom.sources.newest import Newest
-from elbowroom.sources.recorded import Joints
+from elbowroom.sources.recorded import Joints, require_joints
 from elbowroom.sources.room_clock import RoomClock
 from elbowroom.sources.times.clock import ClockEstimate
 from elbowroom.sources.times.series import length_text
@@ -64,10 +64,7 @@ class Played:
         arrivals, joints = layout.arrivals(), self.joints if self.joints is not None else layout.joints()
         if not arrivals:
             layout.moments()  # says that there are none
-        if self.site.entry.machine is not None and joints is None:
-            raise InputError(
-                f"joints: {self.site.path} records none of its machine; give positions that hold throughout"
-            )
+        require_joints(self.site, joints)
         stampless = frozenset(c.name for c in self.site.cameras() if not layout.by_header(c.name))
         max_skew_ns = round(recording.max_skew_ms * 1e6)
         return self._snapshots(arrivals, Newest(RoomClock(stampless), max_skew_ns), joints)

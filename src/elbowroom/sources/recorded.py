@@ -79,11 +79,26 @@ def moments(site: Site, joints: Joints | None = None) -> Iterator[Snapshot]:
     layout = layout_of(site)
     groups = layout.moments()
     known = joints if joints is not None else layout.joints()
-    if site.entry.has_machine and known is None:
+    require_joints(site, known)
+    return (_snapshot(group, known) for group in groups)
+
+
+def require_joints(site: Site, known: Joints | None) -> None:
+    """Refuses a recording of which nobody knows where its machine was, unless it was not there.
+
+    Args:
+        site: with a recording.
+        known: its joints.
+
+    Raises:
+        SiteError: there is a machine, and none.
+    """
+    recording = site.entry.recording
+    is_absent = recording is not None and recording.without_machine
+    if site.entry.has_machine and known is None and not is_absent:
         raise SiteError(
             f"joints: {site.path} records none of its machine; give positions that hold throughout"
         )
-    return (_snapshot(group, known) for group in groups)
 
 
 def check_images(site: Site) -> tuple[int, int]:

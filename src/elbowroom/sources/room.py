@@ -55,6 +55,19 @@ class Room:
             )
         return self.machine, motions
 
+    def placed(self, snapshot: Snapshot) -> Snapshot:
+        """A moment, if it says where the machine is.
+
+        Raises:
+            InputError: the recording is from before the machine stood there, and nobody says where it is to be.
+        """
+        if snapshot.joints is None and self.terms.without_machine:
+            raise InputError(
+                f"joints: {self.site.path} was recorded without its machine, and has no joints: say where they are to "
+                "be, as --joints NAME=VALUE,..."
+            )
+        return snapshot
+
     @property
     def allowances(self) -> tuple[str, ...]:
         """What the site lets pass by somebody's word, a line each: every summary says it."""

@@ -1,5 +1,7 @@
 """Slips of published URDFs: harmless ones pass with a warning, the others are named with their place."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -199,3 +201,35 @@ def test_a_capsule_contains_what_is_within_its_radius_of_its_line(tmp_path):
     rim = np.column_stack([0.1 * np.cos(turns), 0.1 * np.sin(turns), np.full(7, 0.25)])
     to_faces = np.einsum("ij,kij->ki", body.face_normals, rim[:, None] - body.triangles[:, 0][None])
     assert to_faces.max() < 1e-9
+
+
+def test_a_link_that_moves_with_a_mass_and_without_geometry_is_said(tmp_path):
+    joint = '<joint name="j" type="revolute"><parent link="a"/><child link="{}"/><limit lower="-1" upper="1"/></joint>'
+    body = '<link name="a"><collision><geometry><box size="1 1 1"/></geometry></collision></link>'
+    for mass, said in (("3.2", True), ("0.001", False), ("much", False)):
+        text = f'{body}<link name="b"><inertial><mass value="{mass}"/></inertial></link>{joint.format("b")}'
+        (tmp_path / "r.urdf").write_text(f'<robot name="r">{text}</robot>')
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = Machine.from_urdf(tmp_path / "r.urdf").findings
+        assert any("without any geometry: b 3.2 kg;" in each.text for each in found) is said
+
+
+def test_a_slip_is_said_once_and_a_ring_and_an_include_are_named(tmp_path):
+    path = tmp_path / "r.urdf"
+    joint = (
+        '<joint name="{}" type="fixed"><parent link="{}"/><child link="{}"/><origin xyz="0, 0, 1"/></joint>'
+    )
+    body = '<link name="{}"><collision><geometry><box size="1 1 1"/></geometry></collision></link>'
+    bodies = body.format("a") + body.format("b")
+    path.write_text(f'<robot name="r">{bodies}{joint.format("j", "a", "b")}</robot>')
+    with pytest.warns(MachineWarning, match="commas"):
+        assert len(Machine.from_urdf(path).findings) == 1
+    ring = joint.format("j", "a", "b") + joint.format("k", "b", "a")
+    path.write_text(f'<robot name="r">{bodies}{ring}</robot>')
+    with pytest.raises(MachineError, match="in a ring"):
+        Machine.from_urdf(path)
+    include = '<xi:include href="x" xmlns:xi="http://www.w3.org/2001/XInclude"/>'
+    path.write_text(f'<robot name="r">{include}{bodies}</robot>')
+    with pytest.raises(MachineError, match="XInclude"):
+        Machine.from_urdf(path)

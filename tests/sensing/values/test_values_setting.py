@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 
 from elbowroom.geometry import DepthCamera, Intrinsics, looking_at
+from elbowroom.sensing import DepthFrame, Margin
 from elbowroom.sensing.values import look_at_setting
+from elbowroom.sensing.values.lens import look_at_lens
+from elbowroom.sensing.values.scatter import look_at_scatter
 from reference import values_room as room
 
 AZURE = (3.13, 2.32, 8.0e-05, -5.0e-05, 0.13, 3.46, 3.35, 0.66)
@@ -137,3 +140,21 @@ def test_a_camera_that_sees_nothing_is_named_with_the_frame_that_shows_most(hous
     assert finding.stops and finding.kind == "view" and says in finding.text
     one = look_at_setting(room.GRID, [turned[0], *room.cameras()[1:]])
     assert [(finding.about, finding.stops) for finding in one] == [(("ne",), False)]
+
+
+@pytest.mark.parametrize(
+    ("cx", "cy", "said"), [(419.5, 239.5, "cx"), (319.5, 179.5, "cy"), (330.0, 250.0, "")]
+)
+def test_one_side_of_an_image_that_was_cut_or_squeezed_is_said(cx, cy, said):
+    camera = DepthCamera("c", 640, 480, np.eye(4), Intrinsics(400, 400, cx, cy))
+    found = look_at_lens(camera)
+    assert [finding.stops for finding in found] == ([False] if said else [])
+    assert not said or f"subtract where the cut begins from {said}" in found[0].text
+
+
+@pytest.mark.filterwarnings("error")
+def test_infinity_beside_infinity_is_passed_in_silence():
+    camera = DepthCamera("c", 160, 120, np.eye(4), Intrinsics(80, 80, 79.5, 59.5))
+    depth = np.full((120, 160), 2.0, np.float32)
+    depth[:, 80:] = np.inf
+    assert look_at_scatter([camera], [DepthFrame("c", 0, depth)], Margin()) == ()

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from mcap.writer import CompressionType
 
+from elbowroom.errors import InputError
 from elbowroom.site import Site
 from elbowroom.sources import check_images, clocks_of, moments, open_room, time_findings, times_of
 from reference import bag_files as bags
@@ -187,3 +188,19 @@ def test_a_site_of_a_bag_is_written_again_elsewhere(tmp_path):
     assert (
         found["recording"]["file"] == "../../bags/run" and found["recording"]["topics"] == recording["topics"]
     )
+
+
+def test_a_bag_from_before_the_machine_needs_no_joints(tmp_path):
+    room = bag_room()
+    messages = [message for message in room.messages() if message[0] != "/joint_states"]
+    bags.written(tmp_path / "bag", messages)
+    recording = {
+        "layout": "bag",
+        "file": "bag",
+        "topics": {c.name: f"/{c.name}/depth/image_raw" for c in room.cameras},
+    }
+    room.site(tmp_path / "site.yaml", recording)
+    with pytest.raises(InputError, match="joint"):
+        next(moments(Site.load(tmp_path / "site.yaml")))
+    room.site(tmp_path / "site.yaml", recording | {"without_machine": True})
+    assert next(moments(Site.load(tmp_path / "site.yaml"))).joints is None

@@ -14,7 +14,7 @@ from elbowroom.sources.bags.bag import Bag
 from elbowroom.sources.bags.depth_topics import camera_name
 from elbowroom.sources.bags.frames import frames_of
 from elbowroom.sources.bags.lenses import lens_of
-from elbowroom.sources.bags.messages import camera_info_of
+from elbowroom.sources.bags.messages import CameraInfo, Header, camera_info_of
 from elbowroom.sources.bags.site_of import Wish, site_of
 from reference import bag_files as bags
 from reference.bag_room import bag_room
@@ -313,3 +313,24 @@ def test_monitor_plays_a_bag_and_tells_of_its_clocks(tmp_path, run):
     clocks = {row["camera"]: row for row in rows if row["kind"] == "clock"}
     assert set(clocks) == {camera.name for camera in room.cameras}
     assert all(row["offset_ms"] == 12 and 4 < row["bound_ms"] < 5 for row in clocks.values())
+
+
+def test_what_rectifying_turned_or_moved_is_said():
+    turn = np.array([[np.cos(0.05), 0, np.sin(0.05)], [0, 1, 0], [-np.sin(0.05), 0, np.cos(0.05)]])
+    p = np.hstack([np.array([[80.0, 0, 79.5], [0, 80, 59.5], [0, 0, 1]]), [[-4.0], [0], [0]]])
+    for r, beside, rectified, words in (
+        (turn, p, True, ("a turn of 2.9 degrees", "50 mm to the right")),
+        (np.zeros((3, 3)), p * [1, 1, 1, 0], True, ()),
+        (turn, p, False, ()),
+    ):
+        info = CameraInfo(
+            Header(0, "c"), 120, 160, "plumb_bob", np.zeros(5), p[:, :3], r, beside, (0, 0), (0, 0, 0, 0)
+        )
+        notes = lens_of(info, (160, 120), rectified, "/depth").notes
+        assert len(notes) == len(words) and all(word in note for word, note in zip(words, notes, strict=True))
+
+
+def test_a_folder_with_a_bag_of_ros_1_is_told_how_to_convert_it(tmp_path):
+    (tmp_path / "old.bag").write_bytes(b"#ROSBAG V2.0\n")
+    with pytest.raises(BagError, match=r"old\.bag is a bag of ROS 1: rosbags-convert --src"):
+        Bag(tmp_path)

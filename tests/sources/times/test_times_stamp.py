@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from elbowroom.errors import FrameError, SiteError
-from elbowroom.sources.times.stamp import NS, WORDS, require_possible, stamp_of, unit_of
+from elbowroom.sources.times.stamp import NS, WORDS, require_padded, require_possible, stamp_of, unit_of
 
 SITE = Path("room.yaml")
 EPOCH_NS = 1_700_000_000_000_000_000
@@ -113,3 +113,33 @@ def test_what_cameras_do_is_not_refused(rate_hz, first):
 
 def test_one_odd_step_among_many_is_not_another_unit():
     require_possible(SITE, {"north": [*steady(33_333_333, 20), 700_000_000]}, "ns", False)
+
+
+@pytest.mark.parametrize("sign", "_-, :")
+def test_seconds_and_nanoseconds_parted_by_another_sign_are_told_with_their_zeros(sign):
+    with pytest.raises(FrameError, match=r"rename it to 1700000000\.000000067\.png"):
+        stamp_of(Path(f"1700000000{sign}67.png"), "ns")
+
+
+def test_times_before_zero_are_not_told_to_lose_their_sign():
+    with pytest.raises(FrameError, match="none before 0"):
+        stamp_of(Path("-1700000000000.png"), "ns")
+
+
+def test_steps_of_100_ns_are_told_as_what_windows_counts():
+    stamps = {"north": [5_000_000_000 + 666_667 * n for n in range(9)]}
+    with pytest.raises(SiteError, match=r"steps of 100 ns, as Windows counts, 15\.0 images a second"):
+        require_possible(Path("site.yaml"), stamps, "ns", False)
+
+
+@given(st.integers(0, 10**9 - 1), st.integers(5, 120))
+def test_nanoseconds_without_their_zeros_are_refused_and_other_names_are_not(begin, rate):
+    times = [1_700_000_000 * 10**9 + begin + n * 10**9 // rate for n in range(40)]
+    named = [divmod(ns, 10**9) for ns in times]
+    require_padded([Path(f"{whole}.{rest:09d}.png") for whole, rest in named])
+    require_padded([Path(f"{whole}.{f'{rest:09d}'[:6].rstrip('0') or '0'}.png") for whole, rest in named])
+    require_padded([Path(f"{ns}.png") for ns in times])
+    lacking = [Path(f"{whole}.{rest}.png") for whole, rest in named]
+    if any(0 < rest < 10**8 for _, rest in named):
+        with pytest.raises(FrameError, match="without leading zeros"):
+            require_padded(lacking)

@@ -64,6 +64,11 @@ def run_commission(options: CommissionOptions, json_file: Path | None) -> None:
     with options_named(joints="--joints"):
         room = open_room(site, joints=options.joints)
         wanted, given = _moments(room, options.frames, options.every_s)
+    if room.terms.without_machine:
+        raise CalibrationError(
+            f"{site.path}: the machine stood in none of the images (recording.without_machine); commission the room as "
+            "it is watched, with the machine"
+        )
     commissioning, found = Commissioning(room.cameras, room.machine, wanted), _Found(room)
     with json_rows(json_file) as add:
         for snapshot in track(given, "looking", total=wanted, console=Console(stderr=True), transient=True):

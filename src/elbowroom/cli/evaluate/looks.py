@@ -37,12 +37,13 @@ def looks(
     from elbowroom.cli.evaluate.shown import as_table, text
     from elbowroom.evaluate.due import sentence
     from elbowroom.evaluate.examples import EXAMPLES
-    from elbowroom.evaluate.looks.looks import DUE, looks_summary, right_rows, wrong_rows
+    from elbowroom.evaluate.looks.looks import DUE, SCALED_KIND, looks_summary, right_rows, wrong_rows
     from elbowroom.evaluate.looks.rooms import package_scenes, recorded_scenes
+    from elbowroom.evaluate.looks.scaled import SCALED
 
     folder = data or Path(os.environ.get("ELBOWROOM_DATA", "../shared/data"))
     known = chain(recorded_scenes(EXAMPLES, folder), package_scenes()) if rooms else ()
-    rows = chain(right_rows(sites, known), wrong_rows(wrong))
+    rows = chain(right_rows(sites, known), wrong_rows(wrong), wrong_rows(wrong, SCALED, SCALED_KIND))
     show = as_table(
         {
             "kind": "{kind}",

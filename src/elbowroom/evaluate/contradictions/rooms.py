@@ -12,6 +12,7 @@ from elbowroom.geometry.noise import NoiseModel
 from elbowroom.geometry.twist import exp
 from elbowroom.sensing import NOISE_PRESETS, Snapshot
 from elbowroom.simulate import InterventionRoom, Moment, Optics, Solid, Walls, render, wall_cameras
+from elbowroom.simulate.inside import solid_about
 from elbowroom.simulate.shapes import box, join
 
 FEWEST, MOST = 3, 21
@@ -70,6 +71,9 @@ def random_site(number: int) -> RandomSite:
     size = np.array(THEATRE_M) if is_theatre else rng.uniform((1.6, 1.6, 2.4), (4.0, 4.0, 4.5))
     cameras = _cameras(rng, NOISE_PRESETS.get(noise), size)
     moment_at = _theatre(rng) if is_theatre else _hall(rng, size)
+    solids = moment_at(0.0).solids
+    # nobody hangs a camera into a cabinet
+    cameras = tuple(camera for camera in cameras if solid_about(camera.centre_in_world, solids) is None)
     skew_s = SKEW_S if rng.random() < 0.5 else 0.0
     frames = [
         frame

@@ -11,16 +11,24 @@ from elbowroom.errors import InputError
 from elbowroom.evaluate.due import Due, where
 from elbowroom.evaluate.looks.random_site import random_site
 from elbowroom.evaluate.looks.rooms import random_scenes
+from elbowroom.evaluate.looks.scaled import is_much
 from elbowroom.evaluate.looks.scene import Scene
 from elbowroom.evaluate.looks.wrong import WRONG, Wrong
 from elbowroom.reconstruct.looking import found_at
 
 Row = Mapping[str, Any]
-RIGHT, WRONG_KIND = "right", "wrong"
+RIGHT, WRONG_KIND, SCALED_KIND = "right", "wrong", "scaled"
 DUE = (
     Due("refused", "≤", 0, where(what=RIGHT), "rooms that are right and are refused"),
     Due("warned_pct", "≤", 1, where(what=RIGHT), "of them are warned of"),
     Due("unsaid", "≤", 0, where(what=WRONG_KIND), "wrong rooms of which nothing is said"),
+    Due(
+        "unsaid_pct",
+        "≤",
+        10,
+        where(what=SCALED_KIND, is_much=True),
+        "rooms with focal lengths a fifth off of which nothing is said",
+    ),
 )
 
 
@@ -53,17 +61,18 @@ def _ms(scene: Scene) -> float:
     return (perf_counter() - begun) * 1e3
 
 
-def wrong_rows(count: int, kinds: Mapping[str, Wrong] = WRONG) -> Iterator[Row]:
+def wrong_rows(count: int, kinds: Mapping[str, Wrong] = WRONG, what: str = WRONG_KIND) -> Iterator[Row]:
     """Of random sites that were made wrong, each in each kind.
 
     Args:
         count: of random sites; others than those that are right.
         kinds: by name.
+        what: rows are of.
     """
     for number in range(count):
         scene = random_site(10_000 + number)
         for kind, wrong in kinds.items():
-            yield {"what": WRONG_KIND, "kind": kind, "scene": scene.name, **_found(scene, wrong, number)}
+            yield {"what": what, "kind": kind, "scene": scene.name, **_found(scene, wrong, number)}
 
 
 def _found(scene: Scene, wrong: Wrong, seed: int) -> dict[str, Any]:
@@ -95,16 +104,19 @@ def looks_summary(rows: Sequence[Row]) -> list[Row]:
                 "median_ms_a_camera": float(np.median([row["ms_a_camera"] for row in right])),
             }
         )
-    for kind in dict.fromkeys(row["kind"] for row in rows if row["what"] == WRONG_KIND):
+    for what, kind in dict.fromkeys((row["what"], row["kind"]) for row in rows if row["what"] != RIGHT):
         of_kind = [row for row in rows if row.get("kind") == kind]
+        of_scale = {"is_much": is_much(kind)} if what == SCALED_KIND else {}
         summary.append(
             {
-                "what": WRONG_KIND,
+                "what": what,
                 "kind": kind,
+                **of_scale,
                 "scenes": len(of_kind),
                 "stopped": sum(row["stops"] for row in of_kind),
                 "named": sum(row["named"] for row in of_kind),
                 "unsaid": sum(not row["said_at_all"] for row in of_kind),
+                "unsaid_pct": 100 * sum(not row["said_at_all"] for row in of_kind) / len(of_kind),
             }
         )
     return summary

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from lxml import etree
 
 from elbowroom.errors import MachineError
+from elbowroom.files.content import HEAD, what_it_is
 from elbowroom.machine.description import xacro
 from elbowroom.machine.description.packages import Packages
 from elbowroom.machine.description.report import Report, tag_of
@@ -25,6 +26,7 @@ _HARMLESS = {
     etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE: "a prefix is not declared",
     etree.ErrorTypes.ERR_HYPHEN_IN_COMMENT: "a comment holds two hyphens",
 }
+_INCLUDES = "{http://www.w3.org/2001/XInclude}"
 _DECLARATION = re.compile(rb"<\?xml\b[^>]*\?>")
 _VERSION = re.compile(rb"(<\?xml\s+version\s*=\s*[\"'])(?!1\.)([^\"']*)")
 _BEFORE_DECLARATION = re.compile(rb"(\s|<!--.*?-->)*(?=<\?xml\b)", re.DOTALL)
@@ -56,6 +58,10 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
         raise MachineError(f"{path}: {size:,} bytes, a URDF may have {MAX_URDF_BYTES:,}")
     report = Report(path)
     root = _parsed(path.read_bytes(), report)
+    for element in root.iter(f"{_INCLUDES}*"):
+        raise report.error(
+            element, "stands for another file (XInclude), which is not read: put its content there"
+        )
     written, sign = root, xacro.first_sign(root)
     if sign is not None:
         text = xacro.expanded(path, report.said(sign.element, sign.text), packages, xacro_arguments)
@@ -96,6 +102,9 @@ def _parsed(content: bytes, report: Report) -> etree._Element:
     """The outermost element; what other readers pass over passes with a warning."""
     if not content.strip():
         raise MachineError(f"{report.path}: is empty; expected a URDF")
+    found = what_it_is(content[:HEAD])
+    if found:
+        raise MachineError(f"{report.path}: is {found}; expected a URDF")
     content = _without_what_stands_first(content, report)
     version = _VERSION.match(content)
     if version is not None:

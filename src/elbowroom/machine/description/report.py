@@ -42,7 +42,9 @@ class Report:
         """
         owner = None if element is None else owner_of(element)
         about = () if owner is None else (owner.get("name", ""),)
-        self.findings.append(Finding(kind, about, self.said(element, text), stops=False))
+        finding = Finding(kind, about, self.said(element, text), stops=False)
+        if finding not in self.findings:
+            self.findings.append(finding)
 
     def said(self, element: etree._Element | None, text: str) -> str:
         """A sentence with its place: file, line, link or joint, element."""

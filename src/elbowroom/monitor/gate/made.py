@@ -26,7 +26,7 @@ def gate_of(room: Room, folder: Path | None = None, callback: str | None = None)
 
     Raises:
         InputError: the site has a gate and nobody says where its latch lies; or no motion is judged, or more than an
-            output can tell.
+            output can tell; or the machine stood in none of the images.
         PackageError: the site asks for Modbus, and pymodbus is not installed.
     """
     entry = room.site.entry.gate
@@ -40,6 +40,11 @@ def gate_of(room: Room, folder: Path | None = None, callback: str | None = None)
         if callback is not None:
             raise InputError("callback: there is no gate that could call it; give --gate")
         return None
+    if room.terms.without_machine:
+        raise InputError(
+            f"{room.site.path}: gate: the machine stood in none of the images (recording.without_machine), so nothing "
+            "that they show can let it move; leave the gate or that key out"
+        )
     entry = entry or GateEntry()
     if room.unasked is not None:
         raise InputError(f"{room.site.path}: gate: {room.unasked}, so there is nothing to let through")

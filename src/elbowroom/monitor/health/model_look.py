@@ -20,10 +20,12 @@ class ModelLook:
     Args:
         cameras: of the room.
         machine: whose model.
+        is_absent: somebody vouches that it is in none of the images.
     """
 
     cameras: Sequence[DepthCamera]
     machine: Machine
+    is_absent: bool = False
     name: str = "model"
     found: tuple[Finding, ...] | None = field(default=None, init=False)
     _looked: int = field(default=0, init=False)
@@ -34,9 +36,9 @@ class ModelLook:
         many = len({frame.camera for frame in snapshot.frames})
         if snapshot.joints is not None and self._is_due(many):
             self._looked = many
-            there = machine_there(self.machine, self.cameras, snapshot)
-            stops = any(finding.stops for finding in there)
-            self.found = there if stops else (*there, *model_findings(self.machine, self.cameras, snapshot))
+            there = machine_there(self.machine, self.cameras, snapshot, is_absent=self.is_absent)
+            is_over = self.is_absent or any(finding.stops for finding in there)
+            self.found = there if is_over else (*there, *model_findings(self.machine, self.cameras, snapshot))
         return self.found or ()
 
     def _is_due(self, many: int) -> bool:

@@ -18,7 +18,8 @@ from elbowroom.sources.looked import units_of
 def looks_of(room: Room) -> tuple[Look, ...]:
     """All looks at what a room's source brings."""
     said = tuple(look_at_site(room.site))
-    model = () if room.machine is None else (ModelLook(room.cameras, room.machine),)
+    is_absent = room.terms.without_machine
+    model = () if room.machine is None else (ModelLook(room.cameras, room.machine, is_absent),)
     return (
         ValuesLook(room.grid, room.cameras, units_of(room.site, room.cameras), said),
         ContradictionLook(room.cameras, room.terms.margin),

@@ -74,6 +74,7 @@ def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
     if snapshot is None:
         return
     if isinstance(cycle, Cycle):
+        loop.room.placed(snapshot)
         begin("motions that are blocked")
         nothing = bits.empty(cycle.grid)
         all_blocked = FreeSpace(cycle.grid, nothing, nothing, nothing, nothing)

@@ -10,6 +10,7 @@ from elbowroom.geometry.margin import Margin
 from elbowroom.reconstruct.contradiction.eye import Eye
 from elbowroom.reconstruct.contradiction.outside import looks_out, room_of
 from elbowroom.reconstruct.contradiction.pairs import Pairs
+from elbowroom.reconstruct.contradiction.scales import scale_findings
 from elbowroom.reconstruct.contradiction.suspicion import (
     FEW,
     Share,
@@ -106,12 +107,21 @@ def found_in(views: Views) -> tuple[Finding, ...]:
     Args:
         views: of one moment.
     """
-    if len(views.eyes) < 2 or not standing(views.pairs).suspects:
+    if len(views.eyes) < 2:
         return ()
+    if not standing(views.pairs).suspects:
+        return scale_findings(views)
     suspicions, left = explained(views)
+    of_all = any(len(suspicion.cameras) == len(views.eyes) for suspicion in suspicions)
+    scales = () if of_all else scale_findings(views, wholly=bool(suspicions))
+    if scales and suspicions:
+        return scales
+    scaled = {name for finding in scales for name in finding.about}
     named = {camera for each in suspicions for camera in each.cameras}
+    named |= {number for number, eye in enumerate(views.eyes) if eye.name in scaled}
     return (
         *(_of_mistake(views.eyes, suspicion) for suspicion in suspicions),
+        *scales,
         *unexplained(views.eyes, left.pairs, named),
         *_alone(left, named),
     )

@@ -13,8 +13,10 @@ from elbowroom.reconstruct.contradiction.eye import Array, Eye
 
 SIZES = (2.0, 0.5, 4.0, 0.25, 3.0, 1 / 3, 1.5, 1 / 1.5)
 """By how much larger an image is than the one that a lens belongs to."""
-UNITS = {"millimetres": 1e-3, "centimetres": 1e-2, "inches": 0.0254, "kilometres": 1e3}
+UNITS = {"millimetres": 1e-3, "centimetres": 1e-2, "inches": 0.0254, "feet": 0.3048, "kilometres": 1e3}
 """Of a place, by name [m]."""
+FEET_M = 2.0
+"""Places that are farther from the world's origin, and of a few metres, may be in feet."""
 NEAR_M, FAR_M = 0.1, 15.0
 """Of places in metres none are nearer to the world's origin, or farther; others may be in another unit."""
 DEPTHS = (10.0, 0.1, 4.0, 0.25, 5.0, 0.2, 8.0, 0.125, 2.0, 0.5, 1000.0, 1e-3)
@@ -224,7 +226,7 @@ def _units() -> tuple[Mistake, ...]:
     def scaled(factor: float) -> Undo:
         def undone(eye: Eye) -> Eye | None:
             away = float(np.linalg.norm(eye.centre))
-            meant = away > FAR_M if factor < 1 else away < NEAR_M
+            meant = away > (FEET_M if factor == UNITS["feet"] else FAR_M) if factor < 1 else away < NEAR_M
             return replace(eye, centre=eye.centre * factor) if meant else None
 
         return undone

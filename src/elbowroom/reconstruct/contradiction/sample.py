@@ -1,6 +1,7 @@
 """Some pixels of an image that surely measured a surface, and the image about any place in it."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,6 +137,12 @@ def _steps(eye: Eye) -> Whole:
     """Offsets at which the image about a place is looked at, along each side [px]."""
     reach = max(1.0, SPAN * max(eye.intrinsics.fx, eye.intrinsics.fy))
     reach = min(reach, min(eye.width, eye.height) / 8)
+    return _offsets(reach)
+
+
+@lru_cache(maxsize=256)
+def _offsets(reach: float) -> Whole:
+    """Of so far to both sides, halfway, and none."""
     return np.unique(np.rint(np.array((-1.0, -0.5, 0.0, 0.5, 1.0)) * reach)).astype(np.intp)
 
 

@@ -26,6 +26,8 @@ ALIKE = 0.05
 """A principal point fits another size if both sides ask for the same factor, to this share."""
 EXCHANGED = 0.02
 """Off the middle by less than this share, once cx and cy are exchanged."""
+IN_THE_MIDDLE, ONE_SIDE = 0.02, 0.12
+"""Of the image's side: so near to its middle, and so far from it, cx and cy lie where one side was cut or squeezed."""
 FACTORS = (
     0.2,
     0.25,
@@ -127,6 +129,9 @@ def _principal_point(camera: DepthCamera) -> Iterator[Finding]:
     alike = abs(across - down) <= ALIKE * max(across, down, 1e-9) and factor > 0.05
     usual = alike and any(abs(factor / each - 1) < ALIKE / 2 for each in FACTORS)
     if inside and not usual:
+        one = _of_one_side(camera)
+        if one:
+            yield Finding(CENTRE, (camera.name,), f"{size}: {one}", stops=False)
         return
     if alike:
         wide, high = round(camera.width * factor), round(camera.height * factor)
@@ -145,6 +150,20 @@ def _principal_point(camera: DepthCamera) -> Iterator[Finding]:
         )
     outside = not (0 <= across <= 1 and 0 <= down <= 1)
     yield Finding(CENTRE, (camera.name,), text, stops=usual or outside)
+
+
+def _of_one_side(camera: DepthCamera) -> str:
+    """What is said where one of cx and cy lies in the middle, and the other clearly not; "": nothing."""
+    k = camera.intrinsics
+    off = ((k.cx + 0.5) / camera.width - 0.5, (k.cy + 0.5) / camera.height - 0.5)
+    middle, odd = sorted(range(2), key=lambda side: abs(off[side]))
+    if abs(off[middle]) > IN_THE_MIDDLE or not ONE_SIDE < abs(off[odd]) < 0.5:
+        return ""
+    name, other, at, side = (("cx", "cy", k.cx, "wide"), ("cy", "cx", k.cy, "high"))[odd]
+    return (
+        f"{other} is its middle and {name} is not; it is that of an image {2 * at + 1:.0f} pixels {side}: if it was "
+        f"cut, subtract where the cut begins from {name}; if it was squeezed, scale {name} and f{name[1]} alike"
+    )
 
 
 def _off_middle(across: float, down: float) -> float:

@@ -71,7 +71,7 @@ def _distance(camera: DepthCamera, grid: VoxelGrid) -> list[Finding]:
     if unit:
         text += f": most likely its pose is in {unit}, and must be in metres"
     elif away > FARTHEST_M or away > camera.max_depth_m:
-        text += ": check the unit of its pose (metres) and the frame that it is in"
+        text += ": check the unit of its pose and of the grid (metres), and the frame that they are in"
     else:
         return []
     return [Finding(KIND, (camera.name,), text, stops=away > FARTHEST_M or bool(unit))]

@@ -97,6 +97,7 @@ def _differences(
         other = step[:, 1:] if columns else step[1:]
         step = step[:, :-1] if columns else step[:-1]
         off = np.abs(other - step) * one.astype(np.float64) ** 2
-    near = (one > 0) & (next_to_it > 0) & (np.abs(next_to_it - one) < 0.05 * one)
+        # infinity beside infinity is no return beside another
+        near = (one > 0) & (next_to_it > 0) & (np.abs(next_to_it - one) < 0.05 * one)
     is_there = near & np.isfinite(off)
     return off[is_there], one[is_there].astype(np.float64)

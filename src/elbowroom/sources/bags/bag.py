@@ -10,6 +10,7 @@ from types import TracebackType
 from typing import Self
 
 from elbowroom.errors import BagError
+from elbowroom.files.content import head_of, what_it_is
 from elbowroom.sources.bags import mcap_file, sqlite_file
 from elbowroom.sources.bags.cdr import stamp_at_head
 from elbowroom.sources.bags.mcap_file import McapFile
@@ -157,7 +158,11 @@ class Bag:
             raise BagError(
                 f"{file}: a bag of ROS 1; convert it: rosbags-convert --src {file.name} --dst {file.stem}"
             )
-        raise BagError(f"{file}: neither MCAP nor a database of rosbag2; is it cut off in its first bytes?")
+        found = what_it_is(head_of(file))
+        raise BagError(
+            f"{file}: neither MCAP nor a database of rosbag2; "
+            + (f"it is {found}" if found else "is it cut off in its first bytes?")
+        )
 
     def _unpacked(self, file: Path, number: int) -> tuple[Storage, list[str]]:
         """A file that is compressed as a whole, unpacked into a folder that vanishes with the bag."""

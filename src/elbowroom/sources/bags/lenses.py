@@ -13,6 +13,8 @@ from elbowroom.sources.depth_pgm import exchanged
 PLUMB_BOB, RATIONAL, NO_MODEL = "plumb_bob", "rational_polynomial", ""
 MODELS = {NO_MODEL: 0, "none": 0, "pinhole": 0, PLUMB_BOB: 5, RATIONAL: 8}
 """Models that are read, and how many coefficients of them."""
+TURNED_DEG, BESIDE_M = 0.2, 0.001
+"""What rectifying turns or moves by more is said [deg], [m]."""
 RECTIFIED = "image_rect"
 """A topic whose last word begins so has images without distortion, whatever D says (REP 118, image_proc)."""
 
@@ -61,6 +63,8 @@ def lens_of(info: CameraInfo, size: tuple[int, int], rectified: bool, what: str)
         raise BagError(f"{what}: {error}") from None
     if rectified and np.any(info.d):
         notes.append("the images are rectified: P is taken, and D, which was before that, is not")
+    if rectified:
+        notes += _moved(info)
     own = Intrinsics(
         fx=plain.fx / binning[0],
         fy=plain.fy / binning[1],
@@ -69,6 +73,23 @@ def lens_of(info: CameraInfo, size: tuple[int, int], rectified: bool, what: str)
         distortion=plain.distortion,
     )
     return Lens(own, tuple(notes))
+
+
+def _moved(info: CameraInfo) -> list[str]:
+    """What rectifying changed of where a camera is and how it looks, which the pose of its frame may not hold."""
+    notes = []
+    turn = float(np.degrees(np.arccos(np.clip((np.trace(info.r) - 1) / 2, -1, 1)))) if info.r.any() else 0.0
+    if turn > TURNED_DEG:
+        notes.append(
+            f"rectified by R, a turn of {turn:.2g} degrees: is the pose of its frame that of the rectified axes?"
+        )
+    beside = -info.p[0, 3] / info.p[0, 0]
+    if abs(beside) > BESIDE_M:
+        notes.append(
+            f"P says that it stands {1e3 * beside:.0f} mm to the right of its frame, as the second camera of a stereo "
+            "pair does: is the pose of its frame that of the first?"
+        )
+    return notes
 
 
 def _binning(info: CameraInfo) -> tuple[int, int]:

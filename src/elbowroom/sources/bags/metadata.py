@@ -48,7 +48,13 @@ def parts_of(path: Path) -> Parts:
     if not said.is_file():
         found = sorted((p for p in path.iterdir() if p.name.endswith(ENDINGS)), key=_natural)
         if not found:
-            raise BagError(f"{path}: no bag: neither {METADATA} nor files *.mcap or *.db3")
+            old = sorted(path.glob("*.bag"))
+            more = (
+                f"; {old[0].name} is a bag of ROS 1: rosbags-convert --src {old[0]} --dst {old[0].stem}"
+                if old
+                else ""
+            )
+            raise BagError(f"{path}: no bag: neither {METADATA} nor files *.mcap or *.db3{more}")
         note = f"{path}: {METADATA} is missing, as where recording was killed; {len(found)} files are read without it"
         return Parts(found, [note])
     return _named(path, said)

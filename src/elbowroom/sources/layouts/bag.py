@@ -97,7 +97,7 @@ class BagFrames:
     def notes(self) -> tuple[str, ...]:
         """What is wrong with the bag and odd about its stamps; raises as `moments`."""
         told = [note for times in self._times.values() for note in times.notes]
-        has_joints = self.site.entry.machine is not None
+        has_joints = self.site.entry.machine is not None and self._has_told
         lenses = [self._lens_note(camera) for camera in self.site.cameras()]
         odd = [note for note in lenses if note is not None]
         return (*self._bag.notes, *told, *odd, *(self._told.notes if has_joints else ()))
@@ -127,7 +127,7 @@ class BagFrames:
             JointsError: a joint that nobody publishes, another machine's units, or never at the images' times.
         """
         machine = self.site.machine()
-        if machine is None:
+        if machine is None or not self._has_told:
             return None
         told = self._told
         for name in machine.joint_names:
@@ -141,6 +141,12 @@ class BagFrames:
     @cached_property
     def _bag(self) -> Bag:
         return opened(self.path)
+
+    @property
+    def _has_told(self) -> bool:
+        """Whether joints are looked for: where the machine was not there yet, only if a topic of them is."""
+        topics = self.recording.joint_topics
+        return not self.recording.without_machine or any(topic in self._bag.topics for topic in topics)
 
     @cached_property
     def _told(self) -> Told:

@@ -11,13 +11,13 @@ from elbowroom.sensing import JointRecord
 from elbowroom.site.paths import inside
 from elbowroom.site.recording_entry import StampedFolder, StampUnit
 from elbowroom.site.site import Site
-from elbowroom.sources.depth_image import images_in
+from elbowroom.sources.depth_image import images_in, is_hidden, others_text
 from elbowroom.sources.layouts.gathered import gathered, series_of
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.times.company import require_dates
 from elbowroom.sources.times.joints import of_machine, require_meeting
 from elbowroom.sources.times.meeting import Meeting
-from elbowroom.sources.times.stamp import require_possible, stamp_of, unit_of
+from elbowroom.sources.times.stamp import require_padded, require_possible, stamp_of, unit_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +52,7 @@ class Folder:
         if not any(map(len, series)):
             raise SiteError(
                 f"{self.site.path}: recording: no frames; expected {self.folder}/<camera>/<stamp_ns>.png, or .pgm"
+                f"{others_text(self.folder)}"
             )
         declared = self.recording.stamp_unit is not None
         return Meeting(series, round(self.recording.max_skew_ms * 1e6), declared)
@@ -71,6 +72,8 @@ class Folder:
         self._refuse_unknown({camera.name for camera in cameras})
         paths = {camera.name: images_in(self.folder / camera.name) for camera in cameras}
         declared = self.recording.stamp_unit
+        for row in paths.values():
+            require_padded(row)
         unit = unit_of([path for row in paths.values() for path in row], declared)
         rows = {camera.name: self._images_of(camera, paths[camera.name], unit) for camera in cameras}
         stamps = {name: [image.stamp_ns or 0 for image in row] for name, row in rows.items()}
@@ -78,13 +81,13 @@ class Folder:
         return rows
 
     def joints(self) -> JointRecord | None:
-        """The joints of `joints_file`; None: there is no such file, and no machine that needs it.
+        """The joints of `joints_file`; None: there is no such file, and no machine that was there.
 
         Raises:
             JointsError: the file is not usable, missing where there is a machine, or not of this machine.
         """
         path, machine = self.joints_path, self.site.machine()
-        if not path.exists() and machine is None:
+        if not path.exists() and (machine is None or self.recording.without_machine):
             return None
         record = JointRecord.from_csv(path, max_gap_ns=round(self.recording.max_joint_gap_ms * 1e6))
         if machine is None:
@@ -96,6 +99,7 @@ class Folder:
         for path in sorted(self.folder.iterdir()):
             if (
                 path.is_dir()
+                and not is_hidden(path)
                 and path.name not in known
                 and path.name not in self.recording.ignore
                 and images_in(path)

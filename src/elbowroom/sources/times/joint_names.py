@@ -1,6 +1,7 @@
 """Which name of a record most likely is a joint of the machine under another name."""
 
 import difflib
+import re
 from collections.abc import Iterable
 
 
@@ -12,6 +13,11 @@ def meant(name: str, names: Iterable[str]) -> str:
         names: that the record has.
     """
     told = list(names)
+    unit = next(
+        (other for other in told if re.match(rf"{re.escape(name)}\s*[\[(]", other, re.IGNORECASE)), None
+    )
+    if unit is not None:
+        return f" (is it {unit}? its name alone, and angle_unit: deg in recording if it is in degrees)"
     ends = [other for other in told if other.lower().endswith(name.lower()) and _is_a_word(name, other)]
     near = ends or difflib.get_close_matches(name, told, n=1)
     if not near:

@@ -26,8 +26,14 @@ FASTEST_BY_WORD_HZ = 1000
 """Nor than this where the site says by `stamp_unit` that its unit is meant."""
 SLOWEST_HZ = 1 / 3600
 """What is suggested as the unit gives an image an hour at least."""
+UNEVEN = 1.5
+"""Steps of a camera that loses nothing are alike to this factor."""
+TICK_NS = 100
+"""What Windows counts time in [ns]."""
 COUNTED = 1_000_000
 """Numbers below this, in equal steps, are more likely a count than times."""
+_SECONDS = re.compile(r"(?<![0-9])([0-9]{10})[_\-,: ]([0-9]{1,9})(?![0-9])", re.ASCII)
+"""Seconds since 1970 and nanoseconds, parted by something else than a dot."""
 _STAMP = re.compile(r"[0-9]{1,19}(\.[0-9]{1,12})?", re.ASCII)
 
 
@@ -70,12 +76,51 @@ def _hint(path: Path) -> str:
     numbers = re.findall(r"[0-9]+", path.stem)
     if not numbers:
         return ""
+    seconds = _SECONDS.search(path.stem)
+    if seconds is not None:
+        whole, rest = seconds.groups()
+        return f"; seconds and nanoseconds? rename it to {whole}.{rest:0>9}{path.suffix}"
+    if path.stem.startswith("-"):
+        return "; there is none before 0: let the clock count from its start"
     longest = max(numbers, key=len)
     if len(longest) >= 10:
         return (
             f"; rename it to {longest}{path.suffix}, and say recording.stamp_unit if that is not nanoseconds"
         )
     return "; if its number is a count, say layout: stampless"
+
+
+def require_padded(paths: Sequence[Path]) -> None:
+    """Refuses names of seconds and nanoseconds whose nanoseconds lack their zeros: 1.66 for 1.000000066.
+
+    Read as a decimal, 66666667 ns are 0.67 s. Such names have decimals of unlike lengths, of which none begins with a
+    zero, though many end with other digits; and with their zeros they step evenly.
+
+    Args:
+        paths: of one camera's images.
+
+    Raises:
+        FrameError: they look so.
+    """
+    parted = [path.stem.partition(".") for path in paths if _STAMP.fullmatch(path.stem)]
+    rests = [rest for _, dot, rest in parted if dot]
+    lengths = {len(rest) for rest in rests}
+    if len(rests) < len(paths) or len(lengths) < 2 or max(lengths) > 9 or max(lengths) < 7:
+        return
+    if any(rest.startswith("0") and rest != "0" for rest in rests):
+        return
+    read, padded = (
+        np.sort([int(whole) * 10**9 + int(fill(rest)) for whole, _, rest in parted])
+        for fill in (lambda rest: f"{rest:0<9}", lambda rest: f"{rest:0>9}")
+    )
+    spread, even = (np.diff(times).max() / max(np.diff(times).min(), 1) for times in (read, padded))
+    if even < UNEVEN and spread > 1.02 * even:
+        short = next(path for path in paths if len(path.stem.partition(".")[2]) < max(lengths))
+        whole, _, rest = short.stem.partition(".")
+        raise FrameError(
+            f"{short}: seconds and nanoseconds without leading zeros? Then it is {whole}.{rest:0>9}{short.suffix}: "
+            "rename all of them so, with nine digits behind the dot"
+        )
 
 
 def require_possible(
@@ -125,6 +170,12 @@ def _likely(step: float, last: float, unit: StampUnit, others: Sequence[str]) ->
     if counts or not fitting:
         return "If they are counts and no times, say layout: stampless"
     found = fitting[0]
+    ticks = step * TICK_NS
+    if found == "us" and unit == "ns" and 1e9 / ticks >= 5 > 1e9 / (step * NS[found]):
+        return (
+            f"They look like steps of 100 ns, as Windows counts, {hz(ticks)}: multiply them by 100 (or, as "
+            f"microseconds, {hz(step * NS[found])}: stamp_unit: us)"
+        )
     else_ = ", or layout: stampless if they are counts" if last < COUNTED else ""
     if step * NS[unit] >= 1e9 / FASTEST_BY_WORD_HZ:
         else_ += f", or stamp_unit: {unit} if they are right"
