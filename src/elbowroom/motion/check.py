@@ -205,7 +205,7 @@ class Scene:
 
     def _block_on(self, start: Start, speeds: NDArray[np.float64], way: Way) -> tuple[Block | None, bool]:
         """The first block of a ground's links in parts of voxels, or the last of those that are looked at; and whether
-        these links reach into blocked space at the start."""
+        these links reach into blocked space at the start, and it is not that space that ends the way."""
         ends, left = NOT_LOOKED, MOST_LOOKS
         while True:
             ends = start.ends(self.machine, self.skin, speeds, way, ends)
@@ -219,7 +219,10 @@ class Scene:
             left -= 1 + len(more)
             free = {one: self._free_parts(start.ground.space, one) for one in (index, *more)}
             start = start.with_parts(free)
-        return block, start.holds(self.skin, np.where(start.ground.links[self.skin.link], speeds, 0.0))
+        leads_out = block is None or block is not ends.within
+        return block, leads_out and start.holds(
+            self.skin, np.where(start.ground.links[self.skin.link], speeds, 0.0)
+        )
 
     def _free_parts(self, space: FreeSpace, index: Index) -> np.uint64:
         """Which parts of a voxel are free."""
