@@ -60,20 +60,18 @@ def first_pressed(
     """
     rates = np.zeros(len(machine.links))
     np.maximum.at(rates, skin.link, speeds)
-    own = boxes._replace(links=boxes.links & (rates > 0))
-    some = own.links.any(axis=1)
-    if not some.any():
+    links = boxes.links & (rates > 0)
+    some = np.flatnonzero(links.any(axis=1))
+    if not some.size:
         return None
-    own = own._replace(corner=own.corner[some], parts=own.parts[some], links=own.links[some])
-    mine: NDArray[np.bool_] = own.links.any(axis=0, keepdims=True)[0]
-    groups = {
-        name: getattr(faces, name)[mine[faces.link]] for name in ("start", "stop", "link", "centre", "radius")
-    }
+    own = Boxes(boxes.corner[some], boxes.edge, boxes.parts[some], links[some])
+    mine = np.isin(faces.link, np.flatnonzero(links.any(axis=0)))
+    groups = {name: getattr(faces, name)[mine] for name in ("start", "stop", "link", "centre", "radius")}
     asked = faces._replace(**groups)
     moves = Moves(machine.tree, machine.world_from_base, way.course)
     at = _intervals(way, rates.max(), own.edge)
     index, box, link = first_outward(moves, asked, own, at, rates, PRESSED_M)
-    return None if index < 0 else Pressed(float(at[index]), int(np.flatnonzero(some)[box]), link)
+    return None if index < 0 else Pressed(float(at[index]), int(some[box]), link)
 
 
 def _intervals(way: Way, fastest: float, edge: float) -> NDArray[np.float64]:
