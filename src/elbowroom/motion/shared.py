@@ -10,7 +10,8 @@ that part blocks which the body does not cover at the start:
 with the blocked space B, the solid body M(t) after travel t, the voxel's edge h. No object lies in M(0), so what stands
 farther than eps from it lies in B', and the surface of M passes it before M covers it. What stands nearer is pressed by
 eps at most; so a motion that ends at a voxel within eps of the link that meets it ends earlier, by as much travel as
-the slowest part that may come there needs for 2 eps. Less evidence leaves more of B, so more of B'.
+the slowest part that may come there needs for 2 eps; and before its links may press what they reach into by more than
+a hair (`motion.outward`). Less evidence leaves more of B, so more of B'.
 """
 
 from collections.abc import Mapping
