@@ -170,15 +170,10 @@ S. *beyond*: free travel is longer than the truth.
 Things that move in an empty room, twelve cameras of 640 x 480 at 2.4 and 0.4 m in turn, ages evenly spread from 0 and
 dealt out at random: a ball of 6 cm radius, and a person who walks straight on and swings the arms. Of the voxels (2 cm;
 3 cm) that they touch now, those declared free: the worst of details footprint and pixel, with noise of a time-of-flight
-camera and without, with the margin of a site that says nothing of it (half a pixel to the side). *fastest point*: of
-hands and feet, which are faster than who walks
-([what the law says](safety.md#free-is-a-claim-about-a-time)); aged for 5.5 m/s none of them is. `veto` and `any` are not
-lawful, and for comparison.
+camera and without. *fastest point*: of hands and feet, which are faster than who walks
+([what the law says](safety.md#free-is-a-claim-about-a-time)). `veto` and `any` are not lawful, and for comparison.
 
-Second table: exact images of one time, `pixel` and `three`: what lies between the rays of all cameras by less than a tenth
-of a pixel's pitch is free without a margin to the side.
-
-Third table: what it costs where everything stands still, exact images, 2 cm, rule `three`, 21 cameras, found as above.
+Second table: what it costs where everything stands still, exact images, 2 cm, rule `three`, 21 cameras, found as above.
 """,
         "elbowroom evaluate skew",
         tables.skew_tables,

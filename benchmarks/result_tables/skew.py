@@ -29,7 +29,8 @@ def skew_tables(rows: Sequence[Row]) -> list[str]:
         "touched voxels": of("touched"),
         "of these free": of("false_free_voxels", due=moving.DUE[1:]),
     }
-    lines += ["", *table([row for row in rows if row.get("kind") == "still"], rays)]
+    still = [row for row in rows if row.get("kind") == "still"]
+    lines += ["", *table(still, rays)] if still else []
     lost = {
         **same("room", "detail"),
         "aged for, m/s": of("law_m_s"),
