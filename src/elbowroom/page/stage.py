@@ -49,6 +49,7 @@ class Stage:
     def draw(self) -> None:
         """Draws what stays."""
         assert self.scene is not None
+        self.scene.draw_light()
         self.scene.draw_box(self.grid)
         if self.machine is not None:
             self.scene.draw_machine(self.machine)

@@ -79,7 +79,7 @@ def test_a_capture_with_near_poses_gives_intrinsics(tmp_path):
 
 def test_a_capture_with_stands_fixes_the_world_by_what_was_measured_there(tmp_path):
     out, rows = tmp_path / "capture", tmp_path / "rows.json"
-    size = ("--cameras", 6, "--size", "qqvga", "--poses", 12, "--stands", 3)
+    size = ("--cameras", 4, "--size", "qqvga", "--poses", 8, "--stands", 3)
     assert call("simulate", "board", "--out", out, *size).exit_code == 0
     site, truth = Site.load(out / "site.yaml"), read_truth(out)
     anchor = anchor_of(site)

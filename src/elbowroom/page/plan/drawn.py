@@ -54,6 +54,7 @@ class Drawn:
 
     def __post_init__(self) -> None:
         self.scene = Scene(self.server)
+        self.scene.draw_light()
         self.scene.draw_box(self.ground.grid)
         if self.ground.room is not None:
             self._draw_room()

@@ -19,6 +19,7 @@ FRUSTUM_M = 0.16
 """A camera's frustum is drawn so far [m]."""
 ONE_LABEL_M = 0.2
 """Contacts that are no farther apart have one label: theirs would lie over each other [m]."""
+GROUND_LIGHT = (120, 120, 130)
 KINDS: dict[str, Colour] = {
     "surface": colours.SURFACE,
     "unseen": colours.UNSEEN,
@@ -41,6 +42,17 @@ class Scene:
     _clouds: dict[str, Any] = field(default_factory=dict, init=False)
     _labels: dict[int, Any] = field(default_factory=dict, init=False)
     _sent: dict[str, bytes] = field(default_factory=dict, init=False)
+
+    def draw_light(self) -> None:
+        """Lights the room evenly, from above, without shadows.
+
+        A picture of surroundings, by which viser lights unless told otherwise, takes a browser that draws by software
+        four seconds of processor time before it shows anything.
+        """
+        scene = self.server.scene
+        scene.configure_environment_map(None)
+        scene.configure_default_lights(cast_shadow=False)
+        scene.add_light_hemisphere("/light", intensity=2.0, ground_color=GROUND_LIGHT)
 
     def draw_box(self, grid: VoxelGrid) -> None:
         """Draws the watched box: its edges, and a floor."""
