@@ -9,7 +9,8 @@ from elbowroom.motion import Cause, Level, Motion, check_motion, check_motions, 
 from elbowroom.motion.ground import grounds_of
 from elbowroom.motion.kernels.covered import COVERED, cover
 from elbowroom.motion.kernels.shared import triangle_meets_cells
-from elbowroom.motion.shared import MOST_SHARED, Start, _pieces, _words
+from elbowroom.motion.pieces import pieces
+from elbowroom.motion.shared import MOST_SHARED, Start, _words
 from elbowroom.reconstruct.free_space import FreeSpace
 from reference import contact_machines as contacts
 from reference import motion_machines as machines
@@ -43,7 +44,7 @@ def test_covered_cells_are_those_near_the_surface_or_within(arm, place, seed, re
     on = arm.links[row].triangles[rng.integers(len(arm.links[row].faces))].T @ rng.dirichlet((1, 1, 1))
     corner = at[row][:3, :3] @ on + at[row][:3, 3] - rng.uniform(0, 0.05, 3)
     found, links = np.zeros((16, 16, 16), dtype=np.uint8), np.zeros(len(arm.links), dtype=np.bool_)
-    cover(_pieces(arm, 0.05), at, np.append(corner, 0.05), (reach, reach), found, links)
+    cover(pieces(arm, 0.05), at, np.append(corner, 0.05), (reach, reach), found, links)
     some = rng.integers(16, size=(60, 3))
     away, within = naive.distance(arm, at, naive.middles(corner, 0.05)[tuple(some.T)])
     is_sure = abs(away - reach) > 1e-7
@@ -142,15 +143,12 @@ def test_no_motion_meets_what_stands_beside_it_before_its_travel_ends(arm, place
     from reference import motion_exact as exact
 
     joints, trees = joints_at(place), exact.meshes_of(arm)
-    found, touched, solid = beside(arm, trees, joints, gap, seed)
+    _, touched, solid = beside(arm, trees, joints, gap, seed)
     space = FreeSpace.from_occupied(GRID, touched)
-    near_m = Start.of(arm, grounds_of(space, arm)[0], placed(arm, joints)).near_m
-    # what stands nearer than eps may be pressed by as much
-    less = 0.0 if found > near_m else near_m
     for verdict in check_motions(space, arm, joints, joint_motions(arm, SPEEDS, 0.4)):
         if verdict.free_travel > 0 and verdict.cause is not Cause.MACHINE:
             truth, _ = exact.travel_until_contact(
-                arm, trees, joints, verdict.motion, verdict.free_travel, [solid(less)]
+                arm, trees, joints, verdict.motion, verdict.free_travel, [solid(0.0)]
             )
             assert verdict.free_travel <= truth
 

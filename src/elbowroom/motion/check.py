@@ -17,7 +17,7 @@ from elbowroom.motion.inside import blocks_inside
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.meeting import Meeting
 from elbowroom.motion.motion import JointPath, Motion
-from elbowroom.motion.shared import NOT_LOOKED, Start
+from elbowroom.motion.shared import NOT_LOOKED, Ends, Start
 from elbowroom.motion.skin import skin_of
 from elbowroom.motion.sweep import Block, cluster_speeds
 from elbowroom.motion.verdict import Cause, Level, Verdict
@@ -161,7 +161,7 @@ class Scene:
     def verdict(self, motion: Motion | JointPath, way: Way) -> Verdict:
         """The answer for one motion, in the unit of its way."""
         speeds = cluster_speeds(self.machine, self.skin, self.world_from_link, way)
-        block, reaches = self._first_block(speeds, way)
+        block, leads_out = self._first_block(speeds, way)
         met = self.meeting.first(way, way.length if block is None else block.travel)
         if met is not None:
             return Verdict(
@@ -173,10 +173,12 @@ class Scene:
                 tuple(met.place_in_world.tolist()),
                 Cause.MACHINE if met.other in self.machine.link_names else Cause.SURFACE,
                 met.other,
-                escapes=reaches and met.travel > 0,
+                escapes=leads_out and met.travel > 0,
             )
         if block is None:
-            return Verdict(motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE, escapes=reaches)
+            return Verdict(
+                motion, Level.CLEAR, way.length, way.unit, None, None, Cause.NONE, escapes=leads_out
+            )
         zone = zone_of(block, self.space, self.machine)
         return Verdict(
             motion,
@@ -186,25 +188,27 @@ class Scene:
             self.machine.link_names[self.skin.link[block.cluster]],
             tuple(block.place_in_world.tolist()),
             CAUSES[block.kind] if zone is None else Cause.KEPT_OUT,
-            escapes=reaches and block.travel > 0,
+            escapes=leads_out and block.travel > 0,
             zone=zone,
         )
 
     def _first_block(self, speeds: NDArray[np.float64], way: Way) -> tuple[Block | None, bool]:
-        """The first block on a way, of what is about the links or in them; whether they reach into any at the start."""
-        ends = [self._block_on(start, speeds, way) for start in self.starts]
-        found = [block for block, _ in ends]
+        """The first block on a way, of what is about the links or in them; and whether the way leads out of blocked
+        space: links reach into some at the start, and that does not end the way."""
+        grounds = [self._ends_on(start, speeds, way) for start in self.starts]
+        found = [ends.first for ends, _ in grounds]
         if way.length > 0 and self.inside:
             for row in np.unique(self.skin.link[speeds > 0]):
                 if row in self.inside:
                     cluster = int(np.searchsorted(self.skin.link, row))
                     found.append(self.inside[row]._replace(cluster=cluster))
         blocks = [block for block in found if block is not None]
-        reaches = way.length > 0 and any(reaches for _, reaches in ends)
-        return min(blocks, key=lambda block: (block.travel, block.kind), default=None), reaches
+        first = min(blocks, key=lambda block: (block.travel, block.kind), default=None)
+        ends_within = first is not None and any(first is ends.within for ends, _ in grounds)
+        return first, way.length > 0 and not ends_within and any(reaches for _, reaches in grounds)
 
-    def _block_on(self, start: Start, speeds: NDArray[np.float64], way: Way) -> tuple[Block | None, bool]:
-        """The first block of a ground's links in parts of voxels, or the last of those that are looked at; and whether
+    def _ends_on(self, start: Start, speeds: NDArray[np.float64], way: Way) -> tuple[Ends, bool]:
+        """The first blocks of a ground's links in parts of voxels, or the last of those that are looked at; and whether
         these links reach into blocked space at the start."""
         ends, left = NOT_LOOKED, MOST_LOOKS
         while True:
@@ -219,7 +223,7 @@ class Scene:
             left -= 1 + len(more)
             free = {one: self._free_parts(start.ground.space, one) for one in (index, *more)}
             start = start.with_parts(free)
-        return block, start.holds(self.skin, np.where(start.ground.links[self.skin.link], speeds, 0.0))
+        return ends, start.holds(self.skin, np.where(start.ground.links[self.skin.link], speeds, 0.0))
 
     def _free_parts(self, space: FreeSpace, index: Index) -> np.uint64:
         """Which parts of a voxel are free."""

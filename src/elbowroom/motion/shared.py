@@ -10,7 +10,8 @@ that part blocks which the body does not cover at the start:
 with the blocked space B, the solid body M(t) after travel t, the voxel's edge h. No object lies in M(0), so what stands
 farther than eps from it lies in B', and the surface of M passes it before M covers it. What stands nearer is pressed by
 eps at most; so a motion that ends at a voxel within eps of the link that meets it ends earlier, by as much travel as
-the slowest part that may come there needs for 2 eps. Less evidence leaves more of B, so more of B'.
+the slowest part that may come there needs for 2 eps; and before its links may press what they reach into by more than
+a hair (`motion.outward`). Less evidence leaves more of B, so more of B'.
 """
 
 from collections.abc import Mapping
@@ -22,18 +23,19 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry import bits
 from elbowroom.geometry.bits import Words
-from elbowroom.geometry.kept import kept
-from elbowroom.geometry.kernels.bits import Lattice
-from elbowroom.machine import Machine, body_samples
-from elbowroom.machine.shape import Shape
+from elbowroom.geometry.kernels.bits import Lattice, plain
+from elbowroom.machine import Machine
 from elbowroom.motion.course import Way
 from elbowroom.motion.ground import Ground
-from elbowroom.motion.kernels.covered import COVERED, Pieces, cover, reached
+from elbowroom.motion.kernels.covered import COVERED, cover, reached
 from elbowroom.motion.kernels.mover import Skin
+from elbowroom.motion.kernels.outward import Boxes
 from elbowroom.motion.kernels.shared import CELLS, WORDS, Shared
 from elbowroom.motion.kernels.sweep import Asked
-from elbowroom.motion.kernels.touched import NOTHING
+from elbowroom.motion.kernels.touched import NOTHING, kind_of
 from elbowroom.motion.kernels.volume import Volume
+from elbowroom.motion.outward import faces_of, first_pressed
+from elbowroom.motion.pieces import checked_rows, pieces
 from elbowroom.motion.skin import skin_of
 from elbowroom.motion.sweep import Block, find_block, marked
 from elbowroom.reconstruct.free_space import Index
@@ -193,12 +195,47 @@ class Start:
     def _end_within(
         self, machine: Machine, skin: Skin, speeds: NDArray[np.float64], way: Way, asked: Asked | None
     ) -> Block | None:
-        """The first block of what links reach into, less what may stand within eps of them."""
+        """The first block of what links reach into, less what may stand within eps of them; or where they press it."""
         assert self.within is not None
+        pressed = None if way.stops is not None else self._pressed(machine, skin, speeds, way)
+        if pressed is not None:
+            way, asked = replace(way, length=pressed.travel), None
         block = find_block(machine, skin, speeds, way, self.within, asked)
         if block is None:
+            return pressed
+        back = self._back(skin, speeds, way, self.within)
+        block = block._replace(travel=max(0.0, block.travel - back))
+        # the sweep of a way that was cut short cannot go on
+        return block if pressed is None else block._replace(asked=None)
+
+    def _pressed(self, machine: Machine, skin: Skin, speeds: NDArray[np.float64], way: Way) -> Block | None:
+        """Where the way ends because links press what they reach into."""
+        assert self.within is not None
+        shared, lattice = self.within.shared, self.within.lattice
+        corners = _corners(shared, lattice)
+        parts = np.array([self._blocked_parts(number) for number in shared.numbers.tolist()], dtype=np.uint64)
+        faces = faces_of(machine.shape, checked_rows(machine), skin.off)
+        boxes = Boxes(corners, lattice.edge, parts, shared.links)
+        found = first_pressed(machine, faces, boxes, way, speeds, skin)
+        if found is None:
             return None
-        return block._replace(travel=max(0.0, block.travel - self._back(skin, speeds, way, self.within)))
+        index = _index(int(shared.numbers[found.box]), lattice)
+        word, bit = bits.place_of(index, self.ground.space.grid)
+        return Block(
+            found.travel,
+            int(plain(kind_of)(self.within, word, bit)),
+            int(np.flatnonzero((skin.link == found.link) & (speeds > 0))[0]),
+            corners[found.box] + lattice.edge / 2,
+            shared.numbers[[found.box]],
+        )
+
+    def _blocked_parts(self, number: int) -> np.uint64:
+        """Of a voxel, by its number: one bit for each part that is not known to be free."""
+        cells = self.parts.get(number)
+        if cells is None:
+            return ALL_CELLS
+        blocked: np.uint64 = np.packbits(cells != 0, bitorder="little").view(np.uint64)[0]
+        return blocked
 
     def _back(self, skin: Skin, speeds: NDArray[np.float64], way: Way, within: Volume) -> float:
         """How much travel the slowest part that may come to the shared voxels needs for 2 eps."""
@@ -282,11 +319,11 @@ def _open_cells(
         links: set for those that are near, shape (n_links,).
     """
     covered = np.empty((CELLS,) * 3, dtype=np.uint8)
-    cover(_pieces(machine, float(voxel[3])), placed, voxel, reach_m, covered, links)
+    cover(pieces(machine, float(voxel[3])), placed, voxel, reach_m, covered, links)
     seen = machine.as_seen
     if seen is not machine:
         truly = np.empty_like(covered)
-        cover(_pieces(seen, float(voxel[3])), placed, voxel, reach_m, truly, np.zeros_like(links))
+        cover(pieces(seen, float(voxel[3])), placed, voxel, reach_m, truly, np.zeros_like(links))
         if ((covered == COVERED) & (truly != COVERED)).any():
             return None
     return covered != COVERED
@@ -296,52 +333,3 @@ def _words(cells: NDArray[np.bool_]) -> NDArray[np.uint64]:
     """The words of a voxel's cells."""
     blocks = cells.reshape(4, 4, 4, 4, 4, 4).transpose(0, 2, 4, 1, 3, 5).reshape(-1)
     return np.packbits(blocks, bitorder="little").view(np.uint64)
-
-
-def _pieces(machine: Machine, voxel_size_m: float) -> Pieces:
-    """The surface of a machine's checked links in pieces, as coarse as it is swept."""
-    names = machine.checked_links
-    rows = tuple(row for row, link in enumerate(machine.links) if link.name in names and link.has_geometry)
-    return _pieces_of(machine.shape, rows, body_samples(machine, voxel_size_m).bound_m)
-
-
-@kept
-def _pieces_of(shape: Shape, rows: tuple[int, ...], bound_m: float) -> Pieces:
-    links = shape.within(bound_m)
-    found = [(row, piece) for row in rows for piece in _cut(links[row].triangles)]
-    triangles = np.concatenate([np.zeros((0, 3, 3)), *(piece for _, piece in found)])
-    low, high = triangles.min(axis=1), triangles.max(axis=1)
-    centre = (low + high) / 2
-    return Pieces(
-        triangles,
-        centre,
-        np.linalg.norm(triangles - centre[:, None], axis=2).max(axis=1, initial=0.0),
-        np.cumsum([0, *(len(piece) for _, piece in found)]),
-        np.array([row for row, _ in found], dtype=np.int64),
-        np.array([_is_closed(piece) for _, piece in found], dtype=np.bool_),
-        np.array([piece.min(axis=(0, 1)) for _, piece in found]).reshape(-1, 3),
-        np.array([piece.max(axis=(0, 1)) for _, piece in found]).reshape(-1, 3),
-    )
-
-
-def _cut(triangles: NDArray[np.float64]) -> list[NDArray[np.float64]]:
-    """Triangles that hang together by their corners."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    corners, number = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
-    faces = number.reshape(-1, 3)
-    edges = np.concatenate([faces[:, :2], faces[:, 1:]])
-    graph = coo_array((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(len(corners),) * 2)
-    _, label = connected_components(graph, directed=False)
-    of = label[faces[:, 0]]
-    return [triangles[of == one] for one in np.unique(of)]
-
-
-def _is_closed(triangles: NDArray[np.float64]) -> bool:
-    """Whether an even number of triangles meets at each edge: so a ray out of it tells within from without."""
-    _, number = np.unique(triangles.reshape(-1, 3), axis=0, return_inverse=True)
-    faces = number.reshape(-1, 3)
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    _, counts = np.unique(edges, axis=0, return_counts=True)
-    return bool((counts % 2 == 0).all())

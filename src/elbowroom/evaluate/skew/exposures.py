@@ -17,13 +17,15 @@ from elbowroom.simulate.furniture import shell
 
 SPREADS_MS = (0.0, 17.0, 33.0, 67.0, 100.0, 133.0)
 """Between the newest image and the oldest one: none; half a frame of 30 Hz, one, two, three, four."""
-LAWS_M_S = (0.0, 1.6, 2.0)
-"""How fast people are taken to be; 0: claims are not aged."""
+LAWS_M_S = (0.0, 1.6, 2.0, 5.5)
+"""How fast people are taken to be; 0: claims are not aged; 5.5: as fast as the feet of who walks at 1.6."""
 DETAILS_ASKED: tuple[Detail, ...] = tuple(detail for detail in DETAILS if detail != "point")
 NOW_S = 10.0
 """When everything is where it is asked for [s]."""
-MARGIN = Margin(lateral_px=0.0)
-"""Of cameras that are where they are said to be."""
+MARGIN = Margin()
+"""What a site has that says nothing of it: half a pixel to each side, and no further error."""
+LATERALS_PX = (0.0, 0.25, 0.5)
+"""Margins to the side that are compared where nothing is aged [px]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +98,7 @@ def falsely_free(
         scene: what moves.
         cameras, frames, ages: of `exposed`.
     """
-    now = true_occupancy(scene.grid, Moment(NOW_S, scene.at(NOW_S), {})).occupied
+    now = touched(scene)
     for law_m_s in LAWS_M_S:
         far = {c.name: law_m_s * age / 1e3 for c, age in zip(cameras, ages, strict=True)}
         for detail in DETAILS_ASKED:
@@ -112,3 +114,34 @@ def falsely_free(
                     "touched": int(now.sum()),
                     "false_free_voxels": int((free & now).sum()),
                 }
+
+
+def free_between_rays(
+    scene: Scene, cameras: Sequence[DepthCamera], frames: Sequence[DepthFrame]
+) -> Iterator[dict[str, object]]:
+    """By margin to the side, for detail `pixel` and rule `three`: of the voxels that are touched, how many are free.
+
+    Args:
+        scene: what moves.
+        cameras: of the room, without noise.
+        frames: of `exposed`, of no age.
+    """
+    now, none = touched(scene), {camera.name: 0.0 for camera in cameras}
+    for lateral_px in LATERALS_PX:
+        margin = Margin(lateral_px=lateral_px)
+        evidence = carve_aged(scene.grid, cameras, frames, none, detail="pixel", margin=margin)
+        free = resolve(evidence, cameras, detail="pixel", margin=margin).free
+        yield {
+            "lateral_px": lateral_px,
+            "touched": int(now.sum()),
+            "false_free_voxels": int((free & now).sum()),
+        }
+
+
+def touched(scene: Scene) -> NDArray[np.bool_]:
+    """The voxels that the things touch now, shape of the grid.
+
+    Args:
+        scene: what moves.
+    """
+    return true_occupancy(scene.grid, Moment(NOW_S, scene.at(NOW_S), {})).occupied

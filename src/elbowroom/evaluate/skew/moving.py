@@ -8,7 +8,15 @@ import numpy as np
 
 from elbowroom.choices import LAWFUL
 from elbowroom.evaluate.due import Due
-from elbowroom.evaluate.skew.exposures import NOW_S, SPREADS_MS, Scene, ages_ms, exposed, falsely_free
+from elbowroom.evaluate.skew.exposures import (
+    NOW_S,
+    SPREADS_MS,
+    Scene,
+    ages_ms,
+    exposed,
+    falsely_free,
+    free_between_rays,
+)
 from elbowroom.geometry import VoxelGrid
 from elbowroom.sensing import NOISE_PRESETS
 from elbowroom.simulate import Solid, wall_cameras
@@ -26,6 +34,8 @@ ROUND_GAIT = 720
 
 def _is_due(row: Mapping[str, Any]) -> bool:
     """Of things that go no faster than the law says, lawful rules, a spread up to 100 ms."""
+    if "lateral_px" in row:
+        return False
     slow = row["law_m_s"] >= row["speed_m_s"]
     return bool(slow and row["rule"] in LAWFUL and 0 < row["spread_ms"] <= 100)
 
@@ -37,6 +47,13 @@ DUE = (
         0,
         _is_due,
         "touched voxels of what goes no faster than the law says, free up to 100 ms",
+    ),
+    Due(
+        "false_free_voxels",
+        "≤",
+        0,
+        lambda row: row.get("lateral_px", 0.0) > 0,
+        "touched voxels that are free although nothing is aged, with a margin to the side",
     ),
 )
 
@@ -50,7 +67,8 @@ def moving_rows(places: int = 6, cameras: int = 12, seed: int = 1) -> Iterator[d
         seed: of places, ways and ages.
 
     Yields:
-        Rows of what, noise, speed_m_s, fastest_m_s, spread_ms, law_m_s, detail, rule, touched, false_free_voxels.
+        Rows of what, noise, speed_m_s, fastest_m_s, spread_ms, law_m_s, detail, rule, touched, false_free_voxels; and
+        of exact images of one time, lateral_px instead of the law.
     """
     for number, scene in enumerate(_scenes(places, seed)):
         shared = {"what": scene.what, "speed_m_s": scene.speed_m_s, "fastest_m_s": scene.fastest_m_s}
@@ -61,6 +79,8 @@ def moving_rows(places: int = 6, cameras: int = 12, seed: int = 1) -> Iterator[d
                 frames = exposed(scene, views, ages, noise)
                 said = {**shared, "noise": noise, "spread_ms": spread_ms}
                 yield from ({**said, **row} for row in falsely_free(scene, views, frames, ages))
+                if not noise and spread_ms == 0:
+                    yield from ({**said, **row} for row in free_between_rays(scene, views, frames))
 
 
 def _scenes(places: int, seed: int) -> Iterator[Scene]:
@@ -109,18 +129,24 @@ def _about(place: Any, half_m: Sequence[float], voxel_size_m: float) -> VoxelGri
 
 
 def moving_summary(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """A row of kind "moving" for each thing, speed, noise, spread, law, detail and rule, over all places."""
-    keys = ("what", "speed_m_s", "noise", "spread_ms", "law_m_s", "detail", "rule")
-    groups: dict[tuple[Any, ...], list[Mapping[str, Any]]] = {}
+    """Rows over all places, of kind "moving" or, of one time and by margin to the side, "still".
+
+    Args:
+        rows: of `moving_rows`.
+    """
+    aged = ("what", "speed_m_s", "noise", "spread_ms", "law_m_s", "detail", "rule")
+    still = ("what", "speed_m_s", "lateral_px")
+    groups: dict[tuple[tuple[str, Any], ...], list[Mapping[str, Any]]] = {}
     for row in rows:
-        groups.setdefault(tuple(row[key] for key in keys), []).append(row)
+        keys = still if "lateral_px" in row else aged
+        groups.setdefault(tuple((key, row[key]) for key in keys), []).append(row)
     summary = []
     for values, own in groups.items():
         touched, false = (sum(row[key] for row in own) for key in ("touched", "false_free_voxels"))
         summary.append(
             {
-                "kind": "moving",
-                **dict(zip(keys, values, strict=True)),
+                "kind": "still" if "lateral_px" in own[0] else "moving",
+                **dict(values),
                 "fastest_m_s": max(row["fastest_m_s"] for row in own),
                 "places": len(own),
                 "touched": touched,

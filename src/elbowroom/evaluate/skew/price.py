@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from elbowroom.choices import Detail
 from elbowroom.evaluate.due import Due, where
 from elbowroom.evaluate.rooms.room import ROOM_LOWER_M, ROOM_UPPER_M
-from elbowroom.evaluate.skew.exposures import MARGIN, SPREADS_MS, ages_ms
+from elbowroom.evaluate.rooms.scene import WELL_KNOWN
+from elbowroom.evaluate.skew.exposures import SPREADS_MS, ages_ms
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.reconstruct import reconstruct
 from elbowroom.sensing import DepthFrame
@@ -112,7 +113,7 @@ def _found_pct(room: _Room, detail: Detail, ages: NDArray[np.float64], law_m_s: 
         room.cameras,
         frames,
         detail=detail,
-        margin=MARGIN,
+        margin=WELL_KNOWN,
         now_ns=NOW_NS,
         people_speed_m_s=law_m_s,
         looks=False,
