@@ -49,7 +49,9 @@ def warm_up_pixel_test() -> None:
     try:
         boxes = Boxes(0.0, 0.0, 1.0, grid.voxel_size_m, 0)
         voxel, outlines = np.zeros(1, VOXEL)[0], np.zeros(1, OUTLINES)[0]
-        settle_block(views.cameras[0], views.texels, np.uint64(1), False, boxes, (outlines, voxel))
+        settle_block(
+            views.cameras[0], views.texels, (np.uint64(1), np.uint64(0)), False, boxes, (outlines, voxel)
+        )
     finally:
         layout.give_back(buffers)
 

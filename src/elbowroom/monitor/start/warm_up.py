@@ -4,6 +4,7 @@ import numpy as np
 
 from elbowroom.geometry import DepthCamera, Intrinsics
 from elbowroom.machine.probe import probe
+from elbowroom.monitor.health.drift.link_spots import LinkSpots
 from elbowroom.monitor.health.drift.reference import CameraReference, lens_of
 from elbowroom.monitor.health.drift.watch import Watch
 from elbowroom.sensing import DepthFrame, Snapshot
@@ -31,3 +32,5 @@ def warm_up_watch() -> None:
     for stamp in range(2):
         depth = np.full((24, 32), 2.0, dtype=np.float32)
         watch.hear(Snapshot((DepthFrame("one", stamp, depth),), {"slide": 0.0}, now_ns=stamp))
+    of_a_link = LinkSpots({"one": np.arange(2)}, np.ones((2, 3)), np.ones((2, 6)), np.ones(2), np.ones(2))
+    of_a_link.health("base")
