@@ -71,14 +71,18 @@ def test_a_box_is_asked_of_all_voxels_that_it_touches_and_of_no_others(middle, h
     rng = np.random.default_rng(seed)
     blocked = rng.random(GRID.shape) < 0.003
     volume, half = volume_of(FreeSpace.from_occupied(GRID, blocked)), np.abs(half) / 4
-    low, high = np.array(middle) - half, np.array(middle) + half
-    leaves = (low < GRID.lower_m).any() or (
-        high > GRID.lower_m + np.array(GRID.shape) * GRID.voxel_size_m
-    ).any()
-    first, last = ((ends - GRID.lower_m) / GRID.voxel_size_m for ends in (low, high))
-    i, j, k = (slice(max(int(a), 0), int(b) + 1) for a, b in zip(first, last, strict=True))
     met = plain(meets_in_box)(volume.words, volume.cubes, volume.lattice, middle, tuple(half))
-    assert met == (leaves or blocked[i, j, k].any())
+    # where a side lies on one of a voxel, rounding decides: whoever asks grows the box by more than that
+    assert met or not _meets(blocked, np.array(middle), half - 1e-9)
+    assert not met or _meets(blocked, np.array(middle), half + 1e-9)
+
+
+def _meets(blocked, middle, half):
+    low, high = ((middle + side * half - GRID.lower_m) / GRID.voxel_size_m for side in (-1, 1))
+    if (low < 0).any() or (high > GRID.shape).any():
+        return True
+    i, j, k = (slice(int(a), int(b) + 1) for a, b in zip(low, high, strict=True))
+    return bool(blocked[i, j, k].any())
 
 
 def test_what_slides_along_a_wall_is_clear_of_it_at_once(arm):
