@@ -108,6 +108,8 @@ def _own_links() -> None:
 
 
 def _stops() -> None:
+    import numpy as np
+
     from elbowroom.geometry import VoxelGrid, bits
     from elbowroom.machine import Part
     from elbowroom.machine.probe import probe
@@ -115,7 +117,9 @@ def _stops() -> None:
     from elbowroom.reconstruct import FreeSpace
 
     grid = VoxelGrid((-0.5, -0.5, -0.5), (20, 20, 20), 0.05)
-    both = replace(probe().with_part("base", Part.box("part", (0.1, 0.1, 0.1))), allowed_contacts=())
+    beside = np.eye(4)
+    beside[0, 3] = 0.3  # what touches already is not asked how soon it meets
+    both = replace(probe().with_part("base", Part.box("part", (0.1, 0.1, 0.1)), beside), allowed_contacts=())
     state = MachineState({"slide": 0.0}, {"slide": 0.1})
     nothing = bits.empty(grid)
     for free in (nothing, ~nothing):
