@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from elbowroom.geometry.kernels.bits import uncounted
+from elbowroom.geometry.kernels.triangle import normal_of
 from elbowroom.machine.kernels.body import Tree
 from elbowroom.motion.kernels.mover import ROUNDING_M, Course, carried, place_at
 from elbowroom.motion.kernels.triangles import triangle_meets_box
@@ -154,7 +155,7 @@ def _move(faces, m, there, rooms):
     for corner in range(3):
         x, y, z = carried(middle, faces.triangles[m, corner])
         triangle[corner, 0], triangle[corner, 1], triangle[corner, 2] = x, y, z
-    a, b, c = _normal(triangle)
+    a, b, c = normal_of(triangle)
     size = np.sqrt(a * a + b * b + c * c)
     most = 0.0
     for corner in range(3):
@@ -167,22 +168,6 @@ def _move(faces, m, there, rooms):
     if not faces.sided[m]:
         moved[0], moved[1], moved[2] = most, most, most
     return most
-
-
-@njit(inline="always")
-def _normal(triangle):
-    """Of a triangle (3, 3), twice as long as it is large."""
-    a, b, c = (
-        triangle[1, 0] - triangle[0, 0],
-        triangle[1, 1] - triangle[0, 1],
-        triangle[1, 2] - triangle[0, 2],
-    )
-    d, e, f = (
-        triangle[2, 0] - triangle[0, 0],
-        triangle[2, 1] - triangle[0, 1],
-        triangle[2, 2] - triangle[0, 2],
-    )
-    return b * f - c * e, c * d - a * f, a * e - b * d
 
 
 @uncounted()

@@ -155,7 +155,10 @@ def _may_meet_voxel(patch, index, skin, swayed, volume, triangle):
 
 @uncounted()
 def _sways_into_cells(triangle, cells, least, edge, swayed):
-    """Whether a triangle may meet any of a voxel's blocked cells; as of `shared.triangle_meets_cells`."""
+    """Whether a triangle may meet any of a voxel's blocked cells; as of `shared.triangle_meets_cells`.
+
+    Written out again: numba keeps no kernel on disk that hands another one on, measured with both tests as arguments.
+    """
     block, cell = edge / 4, edge / CELLS
     x, y, z = least
     for word in range(WORDS):

@@ -7,6 +7,7 @@ import numpy as np
 from numba import njit
 
 from elbowroom.geometry.kernels.bits import uncounted
+from elbowroom.geometry.kernels.triangle import normal_of
 
 
 class Boxes(NamedTuple):
@@ -71,7 +72,7 @@ def _touch_between(triangle, boxes, search, touched, mark):
     """
     lower, edge, half = boxes.lower, boxes.edge, boxes.half
     first, last, at = search.first, search.last, search.at
-    normal = _normal(triangle)
+    normal = normal_of(triangle)
     main = 0
     if abs(normal[1]) > abs(normal[main]):
         main = 1
@@ -155,22 +156,6 @@ def triangle_meets_box(corners, half):
     distance = nx * corners[0, 0] + ny * corners[0, 1] + nz * corners[0, 2]
     reach = half * (abs(nx) + abs(ny) + abs(nz))
     return reach == 0.0 or abs(distance) < reach
-
-
-@uncounted()
-def _normal(triangle):
-    """Normal of a triangle's plane, as long as twice its area."""
-    ux, uy, uz = (
-        triangle[1, 0] - triangle[0, 0],
-        triangle[1, 1] - triangle[0, 1],
-        triangle[1, 2] - triangle[0, 2],
-    )
-    vx, vy, vz = (
-        triangle[2, 0] - triangle[0, 0],
-        triangle[2, 1] - triangle[0, 1],
-        triangle[2, 2] - triangle[0, 2],
-    )
-    return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
 
 
 @njit(cache=True, nogil=True)
