@@ -12,7 +12,7 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager
 from dataclasses import replace
 from itertools import chain, repeat
 from pathlib import Path
@@ -85,8 +85,9 @@ def judged(room: Room) -> tuple[list[Pass], int]:
 
 def live(room: Room, passes: list[Pass], tab: Any) -> None:
     """The page of a run: as it is, why on a click, its controls, and when it is old."""
-    with TemporaryDirectory() as name, socket.create_server(("127.0.0.1", 0)) as free:
-        port, folder = free.getsockname()[1], Path(name)
+    # within the folder, so that no picture shows where it lies
+    with TemporaryDirectory() as name, chdir(name), socket.create_server(("127.0.0.1", 0)) as free:
+        port, folder = free.getsockname()[1], Path()
         free.close()
         _live(room, passes, tab, (folder, port))
 
