@@ -128,9 +128,19 @@ def test_file_urls_are_read_with_percent_signs(tmp_path):
         assert Machine.from_urdf(robot(tmp_path, name)).checked_links == ("a",)
 
 
+@pytest.mark.parametrize("filename", ["package:///a.stl", "package://a.stl", "package:///meshes/b%20b.stl"])
+def test_a_package_without_a_name_is_the_folder_of_the_urdf_and_it_is_said(tmp_path, filename):
+    mesh(tmp_path / "a.stl")
+    mesh(tmp_path / "meshes/b b.stl")
+    machine = Machine.from_urdf(robot(tmp_path, filename))
+    (finding,) = machine.findings
+    assert machine.checked_links == ("a",) and "names no package" in finding.text
+
+
 @pytest.mark.parametrize(
     ("filename", "message"),
     [
+        ("package:///gone.stl", "must be a package's name"),
         ("http://example.org/a.stl", "http:// is not read"),
         ("A.STL", "but a.stl: capital letters count"),
         ("package://arm/../../a.stl", "must be a package's name and a path inside it"),

@@ -92,7 +92,7 @@ def _missing_mesh(bodies: dict[str, list[tree.Element]], path: Path, root: Path)
         name = (piece.get("filename") or "").replace("\\", "/")
         scheme, _, rest = name.rpartition("://")
         if scheme:
-            is_there = "/".join(rest.lower().split("/")[-2:]) in _files_of(root)
+            is_there = "/".join(rest.lower().strip("/").split("/")[-2:]) in _files_of(root)
         else:
             is_there = any((folder / name).is_file() for folder in list(path.parents)[:3])
         if not is_there:
@@ -102,5 +102,5 @@ def _missing_mesh(bodies: dict[str, list[tree.Element]], path: Path, root: Path)
 
 @lru_cache(maxsize=2)
 def _files_of(root: Path) -> frozenset[str]:
-    """The last two names of all files of a package, in small letters."""
-    return frozenset("/".join(at.parts[-2:]).lower() for at in root.rglob("*"))
+    """The last name, and the last two, of all files of a package, in small letters."""
+    return frozenset("/".join(at.parts[-names:]).lower() for at in root.rglob("*") for names in (1, 2))

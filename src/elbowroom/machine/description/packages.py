@@ -84,7 +84,11 @@ class Packages:
         if scheme == "file":
             return self._of_url(rest)
         if scheme in ("package", "model"):
-            return self._in_package(PurePosixPath(rest.replace("\\", "/").lstrip("/")))
+            rest = rest.replace("\\", "/")
+            path = PurePosixPath(rest.lstrip("/"))
+            nameless = len(path.parts) == 1 or rest.startswith("/")
+            found = self._nameless(path) if nameless and ".." not in path.parts else None
+            return self._in_package(path) if found is None else found
         return Found(None, f"{scheme}:// is not read; allowed are package://, model://, file:// and paths")
 
     def folder(self, name: str) -> Path | None:
@@ -136,6 +140,13 @@ class Packages:
             if self._name_of(folder) is not None:
                 return
             yield above
+
+    def _nameless(self, path: PurePosixPath) -> Found | None:
+        """`package:///rest`, as onshape-to-robot writes where no package is named: beside the URDF, if it is there."""
+        for spelt in (str(path), unquote(str(path))):
+            if (self.urdf.parent / spelt).is_file():
+                return Found(self.urdf.parent / spelt, "names no package; such files are taken from beside the URDF")
+        return None
 
     def _in_package(self, path: PurePosixPath) -> Found:
         parts = path.parts
