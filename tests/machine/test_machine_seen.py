@@ -184,6 +184,14 @@ def test_a_picture_that_is_larger_than_what_is_swept_is_said(tmp_path):
     assert not told([((530, 60, 500), (535, 0, 0))])
 
 
+def test_a_body_that_is_missing_is_named_where_its_picture_is_there(tmp_path):
+    shape = link("c", *AROUND).replace("collision", "visual")
+    body = '<collision><geometry><mesh filename="nowhere.stl"/></geometry></collision>'
+    lost = shape.replace("<visual>", f"{body}<visual>", 1)
+    with pytest.raises(MachineError, match=r"link c: .*'nowhere.stl' is missing"):
+        machine(tmp_path, link("base", (0.1, 0.1, 0.1)), lost, joint("turn", "base", "c"))
+
+
 def test_a_visual_mesh_that_is_missing_is_an_error_only_by_word(tmp_path):
     def with_mesh(**more):
         shape = link("c", *AROUND).replace(

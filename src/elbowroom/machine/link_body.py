@@ -98,17 +98,14 @@ class Bodies:
         )
         self.packages.expect(shape.filename for shapes in read.values() for shape in shapes)
         bodies = {name: self._surface(by_name[name], read.get(name, [])) for name in order}
+        self._refuse_lost()
         # pictures after that, so that what they name changes nothing about where bodies are found
         seen = {name: self._seen(by_name[name], read[name], bodies[name]) for name in order if read.get(name)}
         links = tuple(
             Link(name, body.vertices, body.faces.astype(np.int32), seen.get(name))
             for name, body in bodies.items()
         )
-        if self._lost:
-            first, text = self._lost[0]
-            others = [name for name in dict.fromkeys(name for name, _ in self._lost) if name != first]
-            also = f"; links {', '.join(others)} lost theirs too" if others else ""
-            raise MachineError(f"{text}{also}; {WITHOUT_BODY}")
+        self._refuse_lost()
         if self._axes:
             shape, note = self._axes[0]
             more = f" and {len(self._axes) - 1} files more say so too" if len(self._axes) > 1 else ""
@@ -119,6 +116,19 @@ class Bodies:
             )
         _check_sizes(self.report, links, read, self.largest_link_m, machine)
         return links
+
+    def _refuse_lost(self) -> None:
+        """Names all links that lost a mesh, if any did.
+
+        Raises:
+            MachineError: one did.
+        """
+        if not self._lost:
+            return
+        first, text = self._lost[0]
+        others = [name for name in dict.fromkeys(name for name, _ in self._lost) if name != first]
+        also = f"; links {', '.join(others)} lost theirs too" if others else ""
+        raise MachineError(f"{text}{also}; {WITHOUT_BODY}")
 
     def _say_heavy(self, links: Iterable[RawLink]) -> None:
         """Links that move, have no geometry at all, and a mass: something is there."""

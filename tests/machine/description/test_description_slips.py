@@ -11,6 +11,7 @@ from elbowroom.machine import Machine
 BOX = "<geometry><box size='1 1 1'/></geometry>"
 TWO = "<geometry><box size='1 1 1'/><sphere radius='2'/></geometry>"
 BODY = f"<link name='a'><collision>{BOX}</collision></link>"
+ON_WORLD = "<joint name='j' type='fixed'><parent link='world'/><child link='a'/></joint>"
 WITH_B = BODY + f"<link name='b'><collision>{BOX}</collision></link>"
 JOINT = "<joint name='j' type='{type}'><parent link='a'/><child link='b'/>{more}</joint>"
 
@@ -52,12 +53,13 @@ def with_shape(shape):
         (robot_of(TWO), "2 shapes"),
         (with_shape("<box size='1, 1, 1'/>"), "commas after them are passed over"),
         (robot_of("<origin rpy='90 0 0'/>", BOX), "are these degrees"),
+        (f"<robot name='r'>{BODY}{ON_WORLD}</robot>", "hangs on link 'world', which the file does not have"),
     ],
 )  # fmt: skip
 def test_harmless_slips_pass_with_a_warning(tmp_path, text, said):
     with pytest.warns(MachineWarning, match=said):
         machine = machine_of(tmp_path, text)
-    assert machine.links[0].has_geometry
+    assert machine.links[-1].has_geometry
     assert any(said in finding.text for finding in machine.findings)
 
 

@@ -79,7 +79,7 @@ def _lacks(robot: tree.Element, bodies: dict[str, list[tree.Element]], with_geom
         return "has no link"
     joints = robot.findall("joint")
     ends = {end.get("link") for joint in joints for tag in ("parent", "child") for end in joint.findall(tag)}
-    if not ends <= set(bodies):
+    if not ends <= {*bodies, "world"}:
         return "names links that stand in another file"
     if not with_geometry:
         return "has no geometry"

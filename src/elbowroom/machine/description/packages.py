@@ -145,7 +145,9 @@ class Packages:
         """`package:///rest`, as onshape-to-robot writes where no package is named: beside the URDF, if it is there."""
         for spelt in (str(path), unquote(str(path))):
             if (self.urdf.parent / spelt).is_file():
-                return Found(self.urdf.parent / spelt, "names no package; such files are taken from beside the URDF")
+                return Found(
+                    self.urdf.parent / spelt, "names no package; such files are taken from beside the URDF"
+                )
         return None
 
     def _in_package(self, path: PurePosixPath) -> Found:

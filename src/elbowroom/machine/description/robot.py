@@ -41,6 +41,8 @@ LOST_IN = {
     "joint": ("pose", "rpy", "xyz", "lower", "upper"),
 }
 """What nobody reads where it stands directly in a link or joint: it belongs into another element, or is of SDF."""
+WORLD = "world"
+"""The link that stands still."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -142,6 +144,7 @@ def robot_of(document: Document) -> Robot:
     if not links:
         raise report.error(root, "the robot has no <link>; a machine needs a body")
     joints = [_joint(element, report) for element in children(root, "joint")]
+    links = [*_world(links, joints, report), *links]
     for what, found in (("link", links), ("joint", joints)):
         first: dict[str, etree._Element] = {}
         for one in found:
@@ -150,6 +153,23 @@ def robot_of(document: Document) -> Robot:
                 raise report.error(one.element, f"{what} {one.name!r} is there twice, also in line {line}")
             first[one.name] = one.element
     return Robot(name, report.path, links, joints, report)
+
+
+def _world(links: list[RawLink], joints: list[RawJoint], report: Report) -> list[RawLink]:
+    """The link `world`, where a joint hangs on it that the file does not declare: Drake's parser has it always."""
+    hangs = next((joint for joint in joints if joint.parent == WORLD), None)
+    if (
+        hangs is None
+        or any(link.name == WORLD for link in links)
+        or any(joint.child == WORLD for joint in joints)
+    ):
+        return []
+    report.warn(
+        "world",
+        hangs.element,
+        "hangs on link 'world', which the file does not have; it is taken for what stands still",
+    )
+    return [RawLink(WORLD, hangs.element, (), ())]
 
 
 def _nothing_is_lost(root: etree._Element, report: Report) -> None:
