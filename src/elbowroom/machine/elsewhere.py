@@ -81,8 +81,9 @@ def elsewhere(
         CameraError: a camera has distortion.
         MachineError: joints that are not possible.
     """
+    surface = _Surface(machine.as_seen)
     seen = [
-        _seen(machine.as_seen, camera, np.asarray(depth, dtype=np.float64), joints)
+        _seen(surface, camera, np.asarray(depth, dtype=np.float64), joints)
         for camera, depth, joints in zip(cameras, depths, joints_per_camera, strict=True)
     ]
     count = len(machine.links)
@@ -103,9 +104,36 @@ def elsewhere(
     )
 
 
-def _seen(machine: Machine, camera: DepthCamera, depth: NDArray[np.float64], joints: Joints) -> _Seen:
+class _Surface:
+    """The machine's surface as points, a tree of them for each position that it had."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self._trees: dict[bytes, KDTree] = {}
+
+    def links_at(self, places: NDArray[np.float64], joints: Joints) -> NDArray[np.int64]:
+        """The link on whose surface each place lies, shape (n,)."""
+        if not len(places):
+            return np.zeros(0, dtype=np.int64)
+        of_point = body_samples(self.machine, VOXEL_M, unchecked=True).point_link
+        return np.asarray(of_point[self._tree(joints).query(places)[1]], dtype=np.int64)
+
+    def _tree(self, joints: Joints) -> KDTree:
+        positions = self.machine.positions(joints)
+        key = np.asarray(positions, dtype=np.float64).tobytes()
+        if key not in self._trees:
+            samples = body_samples(self.machine, VOXEL_M, unchecked=True)
+            pose = self.machine.world_from_link_array(np.atleast_2d(positions))[0][samples.point_link]
+            placed = (
+                np.einsum("nij,nj->ni", pose[:, :3, :3], samples.points.astype(np.float64)) + pose[:, :3, 3]
+            )
+            self._trees[key] = KDTree(placed)
+        return self._trees[key]
+
+
+def _seen(surface: _Surface, camera: DepthCamera, depth: NDArray[np.float64], joints: Joints) -> _Seen:
     """What one image says of the machine."""
-    drawn = rasterise(machine, camera, joints).astype(np.float64)
+    drawn = rasterise(surface.machine, camera, joints).astype(np.float64)
     # what lies on an edge of the machine may be seen past it
     farthest, nearest = maximum_filter(drawn, 3), minimum_filter(drawn, 3)
     within = np.isfinite(farthest) & (depth >= max(camera.min_depth_m, 1e-6)) & (depth <= camera.max_depth_m)
@@ -117,14 +145,4 @@ def _seen(machine: Machine, camera: DepthCamera, depth: NDArray[np.float64], joi
     through = depth[at] > farthest[at] + slack
     says = through | (depth[at] > nearest[at] - slack)
     places = camera.points_in_world(np.where(at, drawn, 0.0))[at]
-    return _Seen(_links_at(machine, places, joints)[says], through[says])
-
-
-def _links_at(machine: Machine, places: NDArray[np.float64], joints: Joints) -> NDArray[np.int64]:
-    """The link on whose surface each place lies, shape (n,)."""
-    if not len(places):
-        return np.zeros(0, dtype=np.int64)
-    samples = body_samples(machine, VOXEL_M, unchecked=True)
-    pose = machine.world_from_link_array(np.atleast_2d(machine.positions(joints)))[0][samples.point_link]
-    placed = np.einsum("nij,nj->ni", pose[:, :3, :3], samples.points.astype(np.float64)) + pose[:, :3, 3]
-    return np.asarray(samples.point_link[KDTree(placed).query(places)[1]], dtype=np.int64)
+    return _Seen(surface.links_at(places, joints)[says], through[says])
