@@ -31,6 +31,22 @@ def invert_rigid(b_from_a: NDArray[np.float64]) -> NDArray[np.float64]:
     return a_from_b
 
 
+def turn_of_rpy(roll: float, pitch: float, yaw: float) -> NDArray[np.float64]:
+    """A rotation about the fixed axes x, y and z, one after the other, shape (3, 3), as in URDF (its *joint* page).
+
+    Args:
+        roll, pitch, yaw: about x, y and z [rad].
+    """
+    (si, sj, sk), (ci, cj, ck) = np.sin((roll, pitch, yaw)), np.cos((roll, pitch, yaw))
+    return np.array(
+        [
+            (cj * ck, sj * (si * ck) - ci * sk, sj * (ci * ck) + si * sk),
+            (cj * sk, sj * (si * sk) + ci * ck, sj * (ci * sk) - si * ck),
+            (-sj, cj * si, cj * ci),
+        ]
+    )
+
+
 def nearest_rigid(matrix: ArrayLike, what: str, error: type[InputError] = CameraError) -> NDArray[np.float64]:
     """The rigid transform nearest to a 4x4 matrix that claims to be one.
 

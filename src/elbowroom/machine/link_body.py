@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,9 +15,11 @@ from elbowroom.machine.description.report import Report, tag_of
 from elbowroom.machine.description.robot import RawLink, Robot
 from elbowroom.machine.description.shapes import Shape
 from elbowroom.machine.link import Link, Surface
-from elbowroom.machine.mesh_file import MeshFile, read_mesh
 from elbowroom.machine.meshes import triangles_of
 from elbowroom.machine.seen import are_the_same, fit_of, together
+
+if TYPE_CHECKING:
+    from elbowroom.machine.mesh_file import MeshFile
 
 LARGEST_LINK_M = 20.0
 """A longer link is refused, unless the site says otherwise [m]."""
@@ -195,7 +197,7 @@ class Bodies:
         is_seen = fit.is_seen if self.explain_with == "auto" else len(visual.faces) > 0
         return Link(link.name, visual.vertices, visual.faces.astype(np.int32)) if is_seen else None
 
-    def _mesh(self, link: RawLink, shape: Shape) -> MeshFile | None:
+    def _mesh(self, link: RawLink, shape: Shape) -> "MeshFile | None":
         """What a mesh file holds; None: it is lost, which is noted."""
         found = self.packages.find(shape.filename)
         if found.path is None:
@@ -205,6 +207,8 @@ class Bodies:
             return None
         try:
             if found.path not in self._files:
+                from elbowroom.machine.mesh_file import read_mesh  # slow to load, and solids need no files
+
                 self._files[found.path] = read_mesh(found.path)
                 self._say(shape, found.text, self._files[found.path])
         except MachineError as error:
@@ -212,7 +216,7 @@ class Bodies:
             return None
         return self._files[found.path]
 
-    def _say(self, shape: Shape, taken: str, read: MeshFile) -> None:
+    def _say(self, shape: Shape, taken: str, read: "MeshFile") -> None:
         """What a user should know of a mesh file: where it was found, and how it was read."""
         if taken and taken not in self._taken:
             self.report.warn("package", shape.element, taken)

@@ -6,12 +6,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from elbowroom.errors import MachineError
 from elbowroom.files.content import head_of, what_it_is
-from elbowroom.machine.collada import read_collada
+from elbowroom.geometry.solids import merged
 
 MESH_SUFFIXES = (".stl", ".obj", ".glb", ".gltf", ".ply", ".dae")
 """Mesh files that can be read."""
@@ -58,8 +57,14 @@ def read_mesh(path: Path) -> MeshFile:
     if found:
         raise MachineError(f"mesh {path} is {found}")
     if suffix == ".stl":
-        _require_whole_stl(path)
+        count = _whole_stl(path)
+        if count is not None:
+            return _binary_stl(path, count)
+    import trimesh  # slow to load, and binary STL does not need it
+
     if suffix == ".dae":
+        from elbowroom.machine.collada import read_collada
+
         scene = read_collada(path)
         mesh = trimesh.Trimesh(scene.vertices, scene.faces)
         note = f"{path.name} says {scene.up_axis}" if scene.up_axis != "Z_UP" else ""
@@ -71,48 +76,57 @@ def read_mesh(path: Path) -> MeshFile:
     except Exception as error:  # trimesh's readers raise whatever their formats' parsers raise
         raise MachineError(f"mesh {path} cannot be read: {error}") from error
     read = _checked(loaded, path)
-    _require_all(path, len(read.faces))
+    _require_all(path)
     return read
 
 
-def _require_whole_stl(path: Path) -> None:
-    """Refuses a binary STL that is shorter or longer than it says: its reader would find other triangles, or none."""
+def _whole_stl(path: Path) -> int | None:
+    """How many triangles a binary STL holds; None: it is written in letters.
+
+    Raises:
+        MachineError: it is shorter or longer than it says: its reader would find other triangles, or none.
+    """
     size, head = path.stat().st_size, head_of(path)
-    if b"\0" not in head:  # in letters
-        return
+    count = int.from_bytes(head[80:84], "little")
+    if b"\0" not in head:
+        return count if size == 84 + 50 * count else None
     if size < 84:
         raise MachineError(f"mesh {path} has {size} bytes, fewer than the head of an STL")
-    count = int.from_bytes(head[80:84], "little")
     if size != 84 + 50 * count:
         holds = (size - 84) / 50
         raise MachineError(
             f"mesh {path} says that it has {count:,} triangles, and its {size:,} bytes hold {holds:,.1f}: "
             f"{'it was cut off' if holds < count else 'more follows, or its count was never written'}; export it anew"
         )
+    return count
+
+
+def _binary_stl(path: Path, count: int) -> MeshFile:
+    """The triangles of a binary STL; corners at one place are one, in the order of the file, as trimesh takes them."""
+    triangle = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    corners = np.fromfile(path, triangle, count, offset=84)["corners"].astype(np.float64)
+    is_finite = np.isfinite(corners).all(axis=(1, 2))
+    if count and not is_finite.all():
+        lost = count - np.count_nonzero(is_finite)
+        raise MachineError(f"mesh {path} has {lost} triangles with a corner that is no finite number")
+    if not count:
+        raise MachineError(f"mesh {path} holds no triangles with finite corners")
+    vertices, faces = merged(corners.reshape(-1, 3))
+    return MeshFile(vertices, faces.reshape(-1, 3))
 
 
 def _checked(mesh: object, path: Path, note: str = "") -> MeshFile:
+    import trimesh
+
     if not (isinstance(mesh, trimesh.Trimesh) and len(mesh.faces) and np.isfinite(mesh.vertices).all()):
         raise MachineError(f"mesh {path} holds no triangles with finite corners")
     return MeshFile(np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces), note)
 
 
-def _require_all(path: Path, faces: int) -> None:
-    """Refuses a mesh of which corners are no numbers: its reader leaves out what hangs on them.
+def _require_all(path: Path) -> None:
+    """Refuses a mesh of which corners are no numbers: its reader leaves out what hangs on them."""
+    import trimesh
 
-    Args:
-        path: the file.
-        faces: how many triangles were read of it.
-    """
-    if path.suffix.lower() == ".stl":
-        with path.open("rb") as file:
-            head = file.read(84)
-        is_binary = len(head) == 84 and path.stat().st_size == 84 + 50 * int.from_bytes(head[80:], "little")
-        if is_binary:
-            if faces < int.from_bytes(head[80:], "little"):
-                lost = int.from_bytes(head[80:], "little") - faces
-                raise MachineError(f"mesh {path} has {lost} triangles with a corner that is no finite number")
-            return
     raw: object = trimesh.load(path, process=False)
     parts = raw.geometry.values() if isinstance(raw, trimesh.Scene) else [raw]
     if not all(np.isfinite(part.vertices).all() for part in parts if isinstance(part, trimesh.Trimesh)):

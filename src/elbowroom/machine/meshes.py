@@ -2,21 +2,24 @@
 
 import math
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import trimesh
-from numpy.typing import NDArray
 
+from elbowroom.geometry import solids
+from elbowroom.geometry.solids import Triangles
 from elbowroom.machine.description.shapes import Kind, Shape
-from elbowroom.machine.mesh_file import MeshFile
+
+if TYPE_CHECKING:
+    import trimesh
+
+    from elbowroom.machine.mesh_file import MeshFile
 
 CHORD_ERROR_M = 0.0005
 """How far the flat sides of a round solid may stand out of it [m]; they never lie inside."""
 
-Triangles = tuple[NDArray[np.float64], NDArray[np.int64]]
 
-
-def triangles_of(shape: Shape, mesh_file: MeshFile | None) -> Triangles:
+def triangles_of(shape: Shape, mesh_file: "MeshFile | None") -> Triangles:
     """Vertices, shape (n, 3) [m], and faces, shape (m, 3), of one geometry in its own frame.
 
     Args:
@@ -37,12 +40,11 @@ def solid_triangles(kind: Kind, sizes: Sequence[float]) -> Triangles:
         kind: any but a mesh.
         sizes: as of `Shape` [m], above 0.
     """
-    mesh = _SOLIDS[kind](*sizes)
-    return np.asarray(mesh.vertices), np.asarray(mesh.faces)
+    return _SOLIDS[kind](*sizes)
 
 
-def _box(*size: float) -> trimesh.Trimesh:
-    return trimesh.creation.box(extents=size)
+def _box(*size: float) -> Triangles:
+    return solids.box(size)
 
 
 def _outer_radius(radius: float) -> tuple[float, int]:
@@ -52,14 +54,20 @@ def _outer_radius(radius: float) -> tuple[float, int]:
     return radius / math.cos(math.pi / sides), sides
 
 
-def _cylinder(radius: float, length: float) -> trimesh.Trimesh:
+def _cylinder(radius: float, length: float) -> Triangles:
     """A prism that contains the cylinder and stands out of it by `CHORD_ERROR_M` at most."""
     outer, sides = _outer_radius(radius)
-    return trimesh.creation.cylinder(outer, height=length, sections=sides)
+    return solids.prism(outer, length, sides)
 
 
-def _sphere(radius: float) -> trimesh.Trimesh:
+def _sphere(radius: float) -> Triangles:
+    return _taken(_ball(radius))
+
+
+def _ball(radius: float) -> "trimesh.Trimesh":
     """A polyhedron that contains the sphere; stands out of it by `CHORD_ERROR_M`, or 0.2 % if large."""
+    import trimesh  # slow to load, and many machines have nothing round but cylinders
+
     for subdivisions in (2, 3, 4):
         mesh = trimesh.creation.icosphere(subdivisions=subdivisions, radius=1.0)
         inner = np.einsum("ij,ij->i", mesh.face_normals, mesh.triangles[:, 0]).min()
@@ -69,23 +77,29 @@ def _sphere(radius: float) -> trimesh.Trimesh:
     return mesh
 
 
-def _capsule(radius: float, length: float) -> trimesh.Trimesh:
+def _capsule(radius: float, length: float) -> Triangles:
     """The hull of two spheres' polyhedra, `length` apart along z: it contains the capsule."""
-    ball = _sphere(radius)
+    import trimesh
+
+    ball = _ball(radius)
     if length == 0:
-        return ball
+        return _taken(ball)
     half = np.array([0.0, 0.0, length / 2])
-    return trimesh.convex.convex_hull(np.vstack([ball.vertices + half, ball.vertices - half]))
+    return _taken(trimesh.convex.convex_hull(np.vstack([ball.vertices + half, ball.vertices - half])))
 
 
-def _ellipsoid(a: float, b: float, c: float) -> trimesh.Trimesh:
+def _ellipsoid(a: float, b: float, c: float) -> Triangles:
     """A sphere's polyhedron, stretched: it contains the ellipsoid."""
-    mesh = _sphere(1.0)
+    mesh = _ball(1.0)
     mesh.vertices = mesh.vertices * (a, b, c)
-    return mesh
+    return _taken(mesh)
 
 
-_SOLIDS: dict[str, Callable[..., trimesh.Trimesh]] = {
+def _taken(mesh: "trimesh.Trimesh") -> Triangles:
+    return np.asarray(mesh.vertices), np.asarray(mesh.faces)
+
+
+_SOLIDS: dict[str, Callable[..., Triangles]] = {
     "box": _box,
     "cylinder": _cylinder,
     "sphere": _sphere,

@@ -7,6 +7,7 @@ from elbowroom.errors import CameraError
 from elbowroom.geometry import DepthCamera
 from elbowroom.geometry.kept import kept
 from elbowroom.geometry.noise import NoiseModel
+from elbowroom.geometry.solids import is_closed
 from elbowroom.machine.buffers import zero_image
 from elbowroom.machine.joint_state import Joints
 from elbowroom.machine.kernels.draw import Canvas, Mesh, View, draw, to_kind
@@ -125,11 +126,4 @@ def _mesh(shape: Shape, bound_m: float) -> Mesh:
 
 def _is_closed(link: Link) -> bool:
     """Whether the link's surface is made of closed shells whose faces turn outwards."""
-    if not link.has_geometry:
-        return False
-    import trimesh  # slow to load, and there where the links were read
-
-    mesh = trimesh.Trimesh(link.vertices, link.faces, process=True)
-    if not (mesh.is_watertight and mesh.is_winding_consistent):
-        return False
-    return all(shell.volume > 0 for shell in mesh.split(only_watertight=False))
+    return link.has_geometry and is_closed(link.vertices, link.faces)

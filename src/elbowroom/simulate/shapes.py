@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-import trimesh
 from numpy.typing import ArrayLike, NDArray
 
+from elbowroom.geometry import solids
 from elbowroom.simulate.solid import Mesh
 
 Shape = tuple[NDArray[np.float64], NDArray[np.int64]]
@@ -15,8 +15,8 @@ Shape = tuple[NDArray[np.float64], NDArray[np.int64]]
 def box(lower_m: ArrayLike, upper_m: ArrayLike) -> Shape:
     """An axis-aligned box between two corners [m]."""
     lower, upper = np.asarray(lower_m, dtype=float), np.asarray(upper_m, dtype=float)
-    unit = trimesh.creation.box(extents=(1, 1, 1))
-    return np.where(unit.vertices > 0, upper, lower), np.array(unit.faces)
+    vertices, faces = solids.box((1, 1, 1))
+    return np.where(vertices > 0, upper, lower), faces
 
 
 def ellipsoid(centre_m: ArrayLike, radii_m: ArrayLike, rows: int = 6, columns: int = 10) -> Shape:
@@ -44,8 +44,7 @@ def capsule(
     length = float(np.linalg.norm(end - start))
     vertices, faces = _sphere_like(6, columns, np.zeros(3), np.full(3, radius_m))
     vertices[vertices[:, 2] > 1e-9, 2] += length  # the equator stays: six rows put a ring of vertices on it
-    along = trimesh.geometry.align_vectors((0, 0, 1), end - start)[:3, :3]
-    turned = vertices @ along.T
+    turned = vertices @ solids.turn_of_z(end - start).T
     turned[:, 0] *= squeeze
     return turned + start, faces
 
@@ -58,10 +57,10 @@ def cylinder(start_m: ArrayLike, end_m: ArrayLike, radius_m: float, sections: in
         radius_m: of the bar [m].
         sections: flat faces around.
     """
-    bar = trimesh.creation.cylinder(
-        radius=radius_m, segment=np.array([start_m, end_m], dtype=float), sections=sections
-    )
-    return np.array(bar.vertices), np.array(bar.faces)
+    start, end = np.asarray(start_m, dtype=float), np.asarray(end_m, dtype=float)
+    vertices, faces = solids.prism(radius_m, float(np.linalg.norm(end - start)), sections)
+    placed = np.column_stack([solids.turn_of_z(end - start), start + 0.5 * (end - start)])
+    return np.dot(placed, np.column_stack([vertices, np.ones(len(vertices))]).T).T, faces
 
 
 def join(parts: Sequence[Shape]) -> Mesh:

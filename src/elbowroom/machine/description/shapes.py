@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 from lxml import etree
 from numpy.typing import NDArray
-from trimesh import transformations
 
+from elbowroom.geometry.transforms import turn_of_rpy
 from elbowroom.machine.description.numbers import WORDS, numbers
 from elbowroom.machine.description.report import Report, tag_of
 
@@ -164,7 +164,8 @@ def origin_of(part: etree._Element, report: Report) -> NDArray[np.float64]:
     rpy = numbers(origin, "rpy", 3, report) if origin.get("rpy") is not None else (0.0, 0.0, 0.0)
     if max(map(abs, rpy)) > 4 * math.pi:
         report.warn("unit", origin, "rpy is in radians, and turns more than twice round; are these degrees?")
-    pose: NDArray[np.float64] = transformations.compose_matrix(translate=np.array(xyz), angles=np.array(rpy))
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = turn_of_rpy(*rpy), xyz
     return pose
 
 
@@ -174,6 +175,8 @@ def _from_quaternion(origin: etree._Element, xyz: tuple[float, ...], report: Rep
         raise report.error(origin, "both rpy and quat_xyzw; which holds is not known")
     if math.hypot(x, y, z, w) < 1e-6:
         raise report.error(origin, "quat_xyzw is no rotation: all four numbers are 0")
+    from trimesh import transformations  # slow to load, and hardly any description has one
+
     pose: NDArray[np.float64] = transformations.quaternion_matrix((w, x, y, z))
     pose[:3, 3] = xyz
     return pose
