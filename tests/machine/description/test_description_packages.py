@@ -128,6 +128,19 @@ def test_file_urls_are_read_with_percent_signs(tmp_path):
         assert Machine.from_urdf(robot(tmp_path, name)).checked_links == ("a",)
 
 
+@pytest.mark.parametrize(
+    ("above", "loads"), [("urdf_models", True), ("robot_description", True), ("tool_models", False)]
+)
+def test_a_folder_of_many_robots_is_no_other_robots_package(tmp_path, above, loads):
+    mesh(tmp_path / above / "arm/meshes/a.stl")
+    path = robot(tmp_path / above / "arm", "package://arm_support/meshes/a.stl")
+    if loads:
+        assert Machine.from_urdf(path).checked_links == ("a",)
+    else:
+        with pytest.raises(MachineError, match="lies in package 'tool_models'"):
+            Machine.from_urdf(path)
+
+
 @pytest.mark.parametrize("filename", ["package:///a.stl", "package://a.stl", "package:///meshes/b%20b.stl"])
 def test_a_package_without_a_name_is_the_folder_of_the_urdf_and_it_is_said(tmp_path, filename):
     mesh(tmp_path / "a.stl")

@@ -25,6 +25,26 @@ FOLDERS_OF_PACKAGES = (
 INSTALLED = ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "CMAKE_PREFIX_PATH")
 """Variables that list folders in which `share/` holds packages."""
 
+_OF_NO_ROBOT = frozenset(
+    [
+        "all",
+        "assets",
+        "common",
+        "data",
+        "example",
+        "examples",
+        "my",
+        "robot",
+        "robots",
+        "ros",
+        "sim",
+        "test",
+        "tests",
+        "urdf",
+        "xacro",
+    ]
+)
+"""Folders that are called `urdf_models` and the like hold robots of any name."""
 _NAME_OF_A_PACKAGE = re.compile(r"_(description|support|moveit_config|gazebo|bringup|models?)$")
 
 
@@ -255,6 +275,8 @@ def _folders_in(folder: Path) -> list[Path]:
 def _seems_another(folder: Path, name: str) -> bool:
     """Whether a folder without a manifest is called, or lies, as a package of another robot does."""
     if not _NAME_OF_A_PACKAGE.search(folder.name) and folder.parent.name != "share":
+        return False
+    if _stem(folder.name) in _OF_NO_ROBOT:
         return False
     mine, other = sorted((_stem(name), _stem(folder.name)), key=len)
     return not other.startswith(mine)
