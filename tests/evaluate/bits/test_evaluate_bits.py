@@ -109,7 +109,11 @@ def test_against_a_kept_file(only_tiny, tmp_path, capsys, rows):
     assert run(["evaluate", "bits", *here, "--against", str(kept)]) == 1
     text = capsys.readouterr().out
     assert "tiny, truth: differs\n" in text
-    assert f"{2 * len(rows) - 1} of {2 * len(rows)} the same" in text
+    assert f"{2 * len(rows) - 1} of {2 * len(rows)} the same" in text and "another processor" not in text
+    said = json.loads(kept.read_text())
+    kept.write_text(json.dumps({**said, "meta": {**said["meta"], "processor": "one of 1979"}}))
+    assert run(["evaluate", "bits", *here, "--against", str(kept)]) == 1
+    assert "of another processor (one of 1979" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("content", [None, "{}", "[1]", '{"rows": [{"case": "a"}]}'])

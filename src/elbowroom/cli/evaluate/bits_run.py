@@ -15,7 +15,7 @@ from elbowroom.errors import InputError
 from elbowroom.evaluate.bits.cases import absent, cases
 from elbowroom.evaluate.bits.sums import Case, Row, differences, sum_of
 from elbowroom.evaluate.examples import EXAMPLES
-from elbowroom.files.json_rows import json_rows
+from elbowroom.files.json_rows import json_rows, meta
 
 SHOWN = 10
 """So many differences are named one by one."""
@@ -88,6 +88,13 @@ def _compare(
     rest = f"; {not_asked} more of it belong to cases that were left out" if not_asked else ""
     _say(console, f"{asked - len(found)} of {asked} the same as in {against}{rest}.")
     if found:
+        here, there = meta()["processor"], json.loads(against.read_text(encoding="utf-8")).get("meta", {})
+        if there.get("processor") not in (None, here):
+            _say(
+                console,
+                f"That file is of another processor ({there['processor']}; here {here}): simulated images may "
+                "differ in their last bits, and all that is made of them. Compare with one that was written here.",
+            )
         raise typer.Exit(1)
 
 
