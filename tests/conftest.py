@@ -7,6 +7,7 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from elbowroom.geometry.parallel import default_threads
 from elbowroom.monitor.start.compiling import run_jobs
@@ -15,6 +16,10 @@ from elbowroom.monitor.start.kernel_jobs import JOBS
 if numba.config.DISABLE_JIT:
     # as in compiled code: whole numbers wrap, and floats divide by zero, without a word
     np.seterr(all="ignore")
+
+# how long an example takes is no law: computers are shared, and the first one may load kernels
+settings.register_profile("laws", deadline=None)
+settings.load_profile("laws")
 
 PROJECT = Path(__file__).resolve().parents[1]
 EXAMPLES = PROJECT / "examples"

@@ -26,7 +26,7 @@ def look_at(rows, values):
 
 
 @given(SEEDS)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_linear_problem_is_solved_as_by_normal_equations(seed):
     rows, values = line(seed)
     best = solved(look_at(rows, values), np.add, np.zeros(2), enough=1e-14)
@@ -36,7 +36,7 @@ def test_a_linear_problem_is_solved_as_by_normal_equations(seed):
 
 
 @given(SEEDS)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_sparse_rows_say_the_same(seed):
     rows, values = line(seed)
     weight = np.random.default_rng(seed).uniform(0, 1, len(values))
@@ -48,7 +48,7 @@ def test_sparse_rows_say_the_same(seed):
 
 
 @given(SEEDS)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_with_hubers_weights_it_is_the_least_of_hubers_loss(seed):
     rows, values = line(seed)
     values[::8] += 30.0
@@ -61,7 +61,7 @@ def test_with_hubers_weights_it_is_the_least_of_hubers_loss(seed):
 
 
 @given(SEEDS)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_pose_is_found_from_points(seed):
     random = np.random.default_rng(seed)
     points, truth = random.uniform(-1, 1, (8, 3)), exp(random.uniform(-0.8, 0.8, 6))

@@ -20,7 +20,7 @@ from elbowroom.evaluate.held_memory import (
 TIMES_S = np.arange(1800.0)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(5.0, 500.0), st.integers(0, 2**32 - 1))
 def test_a_leak_is_found_and_its_size_is_within_the_interval(mb_per_hour, seed):
     held = 500 + TIMES_S / 3600 * mb_per_hour + np.random.default_rng(seed).normal(size=1800) * 0.2
@@ -29,7 +29,7 @@ def test_a_leak_is_found_and_its_size_is_within_the_interval(mb_per_hour, seed):
     assert found.mb_per_hour == pytest.approx(mb_per_hour, rel=0.15)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(0.0, 300.0), st.sampled_from([3.7, 11.3, 29.1, 61.7]), st.integers(0, 2**32 - 1))
 def test_what_fills_at_first_or_goes_up_and_down_is_no_leak(fill_mb, period_s, seed):
     filling = fill_mb * np.minimum(TIMES_S / (SETTLES * TIMES_S[-1]), 1)

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
 
@@ -15,7 +15,6 @@ def grid_of(shape):
     return VoxelGrid((0, 0, 0), shape, 0.1)
 
 
-@settings(deadline=None)
 @given(shape=st.tuples(sides, sides, sides), seed=st.integers(0, 2**32 - 1))
 def test_packing_loses_nothing_and_adds_nothing(shape, seed):
     grid = grid_of(shape)
@@ -43,7 +42,6 @@ def _where(i, j, k, cubes_y, cubes_z):
     return word_of(i, j, k, cubes_y, cubes_z), bit_of(i, j, k)
 
 
-@settings(deadline=None)
 @given(shape=st.tuples(sides, sides, sides), data=st.data())
 def test_a_voxels_bit_is_where_kernels_look_for_it(shape, data):
     grid = grid_of(shape)

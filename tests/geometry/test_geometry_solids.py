@@ -65,7 +65,7 @@ SURFACES = {
 
 
 @pytest.mark.parametrize("name", SURFACES)
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(data=st.data())
 def test_a_surface_is_closed_where_trimesh_says_so(name, data):
     surface = SURFACES[name]
@@ -93,7 +93,7 @@ def test_nothing_is_not_closed():
     assert not solids.is_closed(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1.0, 1e-3, 1e-9]))
 def test_corners_of_a_binary_stl_are_one_as_trimesh_takes_them(tmp_path_factory, seed, scale):
     rng = np.random.default_rng(seed)

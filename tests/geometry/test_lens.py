@@ -31,7 +31,7 @@ def test_projection_goes_back_and_its_slopes_are_its_differences(lens):
 
 
 @given(st.floats(-1.0, 1.0), st.floats(0.0, 6.3))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_within_the_usable_radius_every_direction_comes_back(share, angle):
     radius = 0.98 * share * usable_radius(BARREL, 2.0)
     x, y = radius * np.cos(angle), radius * np.sin(angle)

@@ -38,7 +38,7 @@ def first_hits(corners, origins, directions):
 
 
 @given(seed=st.integers(0, 10_000), triangles=st.integers(1, 40))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_the_tree_finds_what_every_triangle_asked_one_by_one_finds(seed, triangles):
     corners = np.random.default_rng(seed).uniform(-1, 1, (triangles, 3, 3)).astype(np.float32)
     origins, directions = rays(seed, 40)

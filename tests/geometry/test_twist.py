@@ -11,21 +11,21 @@ TWISTS = st.lists(st.floats(-1.7, 1.7), min_size=6, max_size=6).map(np.array)
 
 
 @given(TWISTS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_log_undoes_exp(twist):
     np.testing.assert_allclose(log(exp(twist)), twist, atol=1e-8)
     np.testing.assert_allclose(exp(twist) @ exp(-twist), np.eye(4), atol=1e-9)
 
 
 @given(TWISTS, TWISTS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_between_is_what_moved(pose, twist):
     pose = exp(pose)
     np.testing.assert_allclose(between(pose, moved(pose, twist)), twist, atol=1e-8)
 
 
 @given(TWISTS, TWISTS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_adjoint_brings_a_motion_to_another_frame(pose, twist):
     to_from_frame = exp(pose)
     same = to_from_frame @ exp(twist) @ invert_rigid(to_from_frame)

@@ -43,7 +43,7 @@ def test_body_is_the_voxels_near_samples_one_by_one(arm, growth, upper):
     assert np.array_equal(covered(arm, AT_REST, grid, growth_m=growth * 0.11), expected)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(joints, st.floats(0.3, 1.2), st.floats(0.08, 0.16))
 def test_body_is_the_voxels_near_samples_for_any_growth_and_voxel(arm, where, growth, edge):
     grid = grid_about(edge, upper=(0.5, 0.3, 0.9))
@@ -55,7 +55,7 @@ def test_body_is_the_voxels_near_samples_for_any_growth_and_voxel(arm, where, gr
     assert not (found & ~naive.body(samples, placed, grid, growth * edge)).any()
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(joints, st.sampled_from([0.25, 0.5]))
 def test_a_voxel_that_the_mesh_touches_is_covered(arm, where, growth):
     grid = grid_about(0.1)
@@ -71,7 +71,7 @@ def test_a_voxel_that_the_mesh_touches_is_covered(arm, where, growth):
                 assert body[voxel]
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=4)
 @given(joints, st.sampled_from([0.25, 0.5, 0.9]))
 def test_a_voxel_farther_than_the_growth_from_the_body_is_never_covered(arm, where, growth):
     grid = grid_about(0.1)

@@ -33,7 +33,7 @@ def same(one, other):
     return all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(trees(), st.data())
 def test_a_link_that_is_added_and_taken_off_leaves_the_tree_as_it_was(tree, data):
     row = data.draw(st.integers(0, len(tree.parent) - 1))
@@ -45,7 +45,7 @@ def test_a_link_that_is_added_and_taken_off_leaves_the_tree_as_it_was(tree, data
     assert same(pruned(more, stays), tree)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(trees(), st.data())
 def test_whatever_hangs_on_a_link_goes_with_it_and_nothing_else(tree, data):
     row = data.draw(st.integers(0, len(tree.parent) - 1))
@@ -63,7 +63,7 @@ def test_whatever_hangs_on_a_link_goes_with_it_and_nothing_else(tree, data):
         ) == parent
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(trees(), st.data())
 def test_a_part_touches_what_is_fixed_to_its_link_and_what_hangs_on_that(tree, data):
     row = data.draw(st.integers(0, len(tree.parent) - 1))

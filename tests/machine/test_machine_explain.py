@@ -140,7 +140,7 @@ def hand_before(machine, where, camera, pixel, gap_m, size=(0.08, 0.08, 0.04)):
     return hand.triangles @ turned.T + middle
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(st.integers(0, 10**6), st.sampled_from([0.0, 0.01]), st.sampled_from(["planar", "radial"]))
 @example(691, 0.0, "planar")
 def test_a_hand_on_the_body_or_a_centimetre_off_is_never_explained_away(arm, draw, gap_m, kind):

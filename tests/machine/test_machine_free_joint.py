@@ -51,7 +51,7 @@ def pose_of(seed):
     return pose
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=seeds)
 def test_a_base_that_moves_moves_all(arm, seed):
     pose, home = pose_of(seed), pose_of(seed + 1)
@@ -64,7 +64,7 @@ def test_a_base_that_moves_moves_all(arm, seed):
         np.testing.assert_allclose(there[link], home @ pose @ arm.world_from_links(ARM_AT)[link], atol=1e-9)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(seed=seeds)
 def test_the_machine_at_a_place_is_the_one_that_was_read_there(arm, seed, tmp_path_factory):
     path = tmp_path_factory.mktemp("there") / "arm.urdf"

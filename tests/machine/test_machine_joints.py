@@ -58,7 +58,7 @@ def test_moved_links_are_those_downstream_with_those_of_followers(arm):
     assert arm.moved_links("grip") == ("left", "right")
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(-0.5, 0.5), st.floats(-2, 2), st.floats(0, 0.04))
 def test_links_are_where_the_matrix_exponential_puts_them(arm, slide, elbow, grip):
     joints = {"slide": slide, "elbow": elbow, "grip": grip}
@@ -116,7 +116,7 @@ def test_a_position_beyond_a_limit_by_little_is_taken_as_it_is(arm, way):
         strict.checked({**AT_REST, "elbow": way * (2 + over)})
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(-1, 1), st.floats(0.1, 1), st.sampled_from([-2.0, -1.0, 0.5, 1.0]), st.floats(-0.2, 0.2))
 def test_a_leader_ends_where_the_first_of_its_followers_ends(
     tmp_path_factory, lower, span, multiplier, offset

@@ -28,7 +28,7 @@ def on_triangle(corners, rng, count):
     return weights @ corners
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.lists(st.tuples(corner, corner, corner), min_size=1, max_size=3), st.floats(0.03, 0.2))
 def test_every_point_of_any_triangles_lies_within_cover_of_a_sample_on_them(triangles, cover_m):
     triangles = np.array(triangles)
@@ -96,7 +96,7 @@ def holds_a_sample(points, centre, rotation, edge):
     return (np.abs((points - centre) @ rotation) <= edge / 2).all(axis=1).any()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 2**32 - 1))
 def test_a_turned_voxel_inside_a_solid_holds_an_interior_sample(seed):
     rng = np.random.default_rng(seed)
@@ -131,7 +131,7 @@ def test_a_box_whose_sides_do_not_quite_meet_is_filled_and_one_without_a_lid_is_
     assert not holds_a_sample(points, np.zeros(3), np.eye(3), 0.1)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 2**32 - 1))
 def test_surface_cells_are_those_that_the_cut_triangle_reaches(seed):
     rng = np.random.default_rng(seed)
@@ -151,7 +151,7 @@ def test_sizes_that_no_voxel_has_are_refused(arm):
         interior_points(BALL, 1e-4)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 2**32 - 1), st.tuples(*[st.integers(1, 9)] * 3), st.floats(0, 0.6))
 def test_cells_are_outside_if_the_first_one_reaches_them(seed, shape, share):
     cells = (np.random.default_rng(seed).random(shape) < share).astype(np.uint8)

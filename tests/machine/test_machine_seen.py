@@ -108,7 +108,7 @@ def test_the_excess_of_a_model_is_said_by_link(images, explained):
     assert excess_of(explained["collision"], cameras, nothing, [JOINTS] * len(cameras)) == ()
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(lost=st.sets(st.integers(0, 11)), blind=st.integers(0, 3))
 def test_less_evidence_adds_no_free_space_in_the_excess_beyond_the_body(explained, shown, lost, blind):
     cameras, frames = shown

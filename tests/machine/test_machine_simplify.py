@@ -48,7 +48,7 @@ def spread_over(vertices, faces, rng, count):
     return np.einsum("nc,nck->nk", weights, vertices[faces])
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=4)
 @given(seeds)
 def test_fine_and_coarse_surfaces_lie_within_the_bound_of_each_other(seed):
     vertices, faces = rippled(seed)
@@ -63,7 +63,7 @@ def test_fine_and_coarse_surfaces_lie_within_the_bound_of_each_other(seed):
         assert apart(back, vertices, faces).max() <= bound
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=5)
 @given(seeds)
 def test_a_closed_surface_stays_closed_and_what_is_well_inside_stays_inside(seed):
     vertices, faces = rippled(seed)
@@ -79,7 +79,7 @@ def test_a_closed_surface_stays_closed_and_what_is_well_inside_stays_inside(seed
         )
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=5)
 @given(seeds)
 def test_a_soup_of_any_triangles_is_covered_too(seed):
     # open, crossing, doubled, turned over, without area, corners at one place and not joined
@@ -122,7 +122,7 @@ def test_a_link_of_few_triangles_or_none_stays_as_it_is():
         assert coarser(link) == (link,)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seeds, st.integers(3, 9))
 def test_how_far_a_fan_lies_off_is_the_greatest_difference_in_height(seed, corners):
     rng = np.random.default_rng(seed)

@@ -71,7 +71,7 @@ def test_one_machine_ends_the_travel_of_the_other_and_both_are_named(two):
 angle = st.floats(-2.5, 2.5)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.tuples(angle, angle, angle, angle), st.sampled_from(sorted(STILL)), st.sampled_from([1, -1]))
 def test_machines_meet_no_later_than_their_meshes(two, pose, which, way):
     joints = dict(zip(two.joint_names, pose, strict=True))

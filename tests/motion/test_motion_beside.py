@@ -40,7 +40,7 @@ def in_box(middle, half, count, seed=0):
     return np.asarray(middle) + shares * np.asarray(half)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(middles, halves)
 def test_no_point_moves_farther_in_a_box_than_is_said(arm, middle, half):
     skin, tree = skin_of(arm, 0.1), arm.tree
@@ -61,7 +61,7 @@ def test_no_point_moves_farther_in_a_box_than_is_said(arm, middle, half):
         assert (moved <= np.array(bounds)[skin.cluster_of] + 1e-6).all()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(middles, halves, st.lists(balls, min_size=1, max_size=2))
 def test_what_meets_a_block_anywhere_in_a_box_is_found(arm, middle, half, solids):
     blocked = nothing_in(GRID)
@@ -117,7 +117,7 @@ FOLDING = """<robot name="folding">
 </robot>"""
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(-2, 2), st.floats(0, 2.6), st.floats(0, 0.3), st.floats(0, 0.6))
 def test_links_that_meet_anywhere_in_a_box_are_found(folding, a, b, half_a, half_b):
     trimesh = pytest.importorskip("trimesh")

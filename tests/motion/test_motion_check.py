@@ -178,7 +178,7 @@ def volume_of(some):
     return blocked
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     st.lists(blobs, max_size=3),
     st.lists(blobs, min_size=1, max_size=3),

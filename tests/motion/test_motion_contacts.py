@@ -129,7 +129,7 @@ def _touched(lower, upper):
 subsets = st.lists(st.integers(0, len(CAMERAS) - 1), unique=True, max_size=3)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(subsets, st.booleans())
 def test_less_evidence_never_gives_a_link_more(cart, lost, with_hand):
     things = [solid("hand", (0.16, -0.08, 0.0), (0.32, 0.08, 0.03))] if with_hand else []
@@ -144,7 +144,7 @@ def test_less_evidence_never_gives_a_link_more(cart, lost, with_hand):
         )
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.tuples(st.floats(-0.4, 0.3), st.floats(-0.3, 0.2)), st.floats(0.03, 0.2), st.floats(0.04, 0.2))
 def test_nothing_that_is_measured_beyond_the_thing_becomes_free(cart, at, high, wide):
     lower, upper = (*at, 0.0), (at[0] + wide, at[1] + wide, high)

@@ -14,7 +14,7 @@ from reference.motion_machines import HOME, nothing_in, room, touched_by_box
 
 GRID = room(0.05)
 SPEEDS = {"slide": 0.4, "turn": 0.5, "nod": 0.5}
-FEW = settings(deadline=None, derandomize=True, max_examples=20)
+FEW = settings(derandomize=True, max_examples=20)
 AHEAD = ((0.751, -1.0, 0.4), (0.95, 1.0, 0.8))
 BEHIND = ((0.951, -1.0, 0.4), (1.2, 1.0, 0.8))
 """Boxes before the hand of an arm that slides along x: its front is at x = 0.69."""

@@ -53,7 +53,7 @@ def some(rng, count, grid=GRID):
     return mask
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(PLACES, st.integers(0, 9999))
 def test_distances_are_never_more_than_those_of_meshes_and_boxes_and_little_less(arm, place, seed):
     pytest.importorskip("coal", reason="coal is not installed; exact distance is left out")
@@ -83,7 +83,7 @@ def test_distances_are_never_more_than_those_of_meshes_and_boxes_and_little_less
     assert found.unseen.distance_m == min(link.unseen.distance_m for link in found.links)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(PLACES, st.integers(0, 9999), st.sampled_from((0, 3, 300)), st.booleans(), st.floats(0.05, 3.0))
 def test_the_kernel_finds_what_is_found_by_looking_at_every_pair(arm, place, seed, count, outside, reach):
     rng = np.random.default_rng(seed)
@@ -103,7 +103,7 @@ def test_the_kernel_finds_what_is_found_by_looking_at_every_pair(arm, place, see
         assert (kind == 0) == (truth == reach)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(PLACES, st.integers(0, 9999))
 def test_more_blocked_voxels_are_never_farther(arm, place, seed):
     rng = np.random.default_rng(seed)
@@ -117,7 +117,7 @@ def test_more_blocked_voxels_are_never_farther(arm, place, seed):
         assert other.blocked.distance_m <= one.blocked.distance_m
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(st.integers(0, 9999), st.sets(st.sampled_from(less.WAYS), min_size=1))
 def test_less_evidence_never_gives_a_greater_distance(arm, seed, ways):
     rng = np.random.default_rng(seed)
@@ -202,7 +202,7 @@ def test_a_distance_to_look_that_is_none_is_refused(arm, up_to):
         link_distances(space_of(*[np.zeros(GRID.shape, dtype=bool)] * 2), arm, HOME, up_to)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 9999))
 def test_no_point_moves_farther_than_the_greatest_stride(seed):
     arm, rng = C_ARM, np.random.default_rng(seed)

@@ -42,7 +42,7 @@ def space_of(machine, joints, *occupied):
     return FreeSpace.from_occupied(GRID, ~free)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.tuples(st.floats(-0.15, 0.15), st.floats(-0.05, 0.05), st.floats(0.35, 0.45)))
 def test_a_body_about_a_blocked_voxel_goes_nowhere(block, at):
     joints = {"slide": 0.0, "other": 0.0}
@@ -117,7 +117,7 @@ def test_a_stand_frees_nothing(arm):
     assert (space.free == before).all()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     st.lists(st.sampled_from(["cart", "arm", "hand", "base"]), min_size=1, max_size=3, unique=True),
     st.integers(0, 99),

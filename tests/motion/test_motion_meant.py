@@ -42,7 +42,7 @@ def sliding(begin_s: float, speed: float = 0.2, seconds: float = 2.4) -> Traject
     return Trajectory(("slide",), [begin_s, begin_s + seconds], [[0.0], [speed * seconds]])
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(0.0, 2.3), st.floats(0.0, LAG_S))
 def test_the_rest_begins_where_the_machine_is_though_it_lags(gone_s: float, lag_s: float) -> None:
     joints = {**HOME, "slide": 0.2 * max(gone_s - lag_s, 0.0)}

@@ -150,7 +150,7 @@ def test_unchecked_links_are_met_and_do_not_meet_each_other(tmp_path):
 angle = st.floats(-2.9, 2.9)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     turn=angle,
     bend=angle,

@@ -22,7 +22,7 @@ def triangles_of(shape):
     return mesh.vertices[mesh.faces].astype(np.float64)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.integers(0, 9999))
 def test_a_triangle_moves_outward_in_a_box_as_much_as_at_its_places_there(seed):
     rng = np.random.default_rng(seed)

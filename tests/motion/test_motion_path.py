@@ -150,7 +150,7 @@ balls = st.tuples(
 ends = st.tuples(st.floats(-0.4, 0.4), st.floats(-1.2, 1.2), st.floats(-0.8, 0.8))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.lists(balls, min_size=1, max_size=3), balls, st.lists(ends, min_size=1, max_size=2), st.booleans())
 def test_no_stop_of_what_may_be_followed_meets_a_block_and_less_evidence_allows_no_more(
     arm, seen, unseen, points, leaves

@@ -36,7 +36,7 @@ def placed(machine, joints):
     return machine.world_from_link_array(machine.positions(joints)[None])[0]
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(PLACES, st.integers(0, 999), st.floats(0.002, 0.01))
 def test_covered_cells_are_those_near_the_surface_or_within(arm, place, seed, reach):
     rng, at = np.random.default_rng(seed), placed(arm, joints_at(place))
@@ -53,7 +53,7 @@ def test_covered_cells_are_those_near_the_surface_or_within(arm, place, seed, re
     assert links[row]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 9999), st.floats(0, 0.004))
 def test_a_triangle_meets_the_cells_that_it_cuts(seed, grown):
     rng = np.random.default_rng(seed)
@@ -73,7 +73,7 @@ def block(tmp_path_factory):
     )
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.floats(0.0003, 0.04), st.floats(-0.02, 0.02), st.floats(0.01, 0.2))
 def test_what_leads_away_from_a_wall_goes_and_what_leads_into_it_does_not(block, gap, at, thick):
     joints = {"slide": at}
@@ -136,7 +136,7 @@ def beside(arm, trees, joints, gap, seed):
     return gap_at(high), touched, lambda less: solid(high, less)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(PLACES, st.floats(0.0003, 0.02), st.integers(0, 9999))
 def test_no_motion_meets_what_stands_beside_it_before_its_travel_ends(arm, place, gap, seed):
     pytest.importorskip("coal", reason="coal is not installed; exact mesh distance is left out")
@@ -153,7 +153,7 @@ def test_no_motion_meets_what_stands_beside_it_before_its_travel_ends(arm, place
             assert verdict.free_travel <= truth
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(PLACES, st.integers(0, 9999))
 def test_more_blocked_voxels_never_let_a_motion_go_farther(arm, place, seed):
     rng, joints = np.random.default_rng(seed), joints_at(place)

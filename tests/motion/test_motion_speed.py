@@ -70,7 +70,7 @@ balls = st.tuples(
 )
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.lists(balls, max_size=3), balls, st.floats(0, 0.3), st.floats(0, 0.2))
 def test_less_evidence_never_gives_more_speed(arm, seen, unseen, reaction, clearance):
     motions = [

@@ -29,7 +29,7 @@ def arm(tmp_path_factory):
     return machines.slider_and_arm(tmp_path_factory.mktemp("arm"))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(middles, halves, st.integers(0, 1000), st.floats(0.0, 0.05))
 def test_no_point_of_a_ball_goes_farther_along_a_direction_than_is_said(arm, middle, half, seed, size):
     rng, skin = np.random.default_rng(seed), skin_of(arm, 0.1)
@@ -50,7 +50,7 @@ def test_no_point_of_a_ball_goes_farther_along_a_direction_than_is_said(arm, mid
             assert (np.abs(moved @ direction) <= reach + 1e-9).all()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.tuples(points, points, points), points, st.lists(points, max_size=3), st.floats(0.0, 0.1))
 def test_a_triangle_that_is_carried_into_a_cube_may_meet_it(triangle, middle, ways, rest):
     triangle, ways = np.array(triangle), 0.3 * np.array(ways).reshape(-1, 3)
@@ -65,7 +65,7 @@ def test_a_triangle_that_is_carried_into_a_cube_may_meet_it(triangle, middle, wa
         assert may == met
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(points, points, st.integers(0, 1000))
 def test_a_box_is_asked_of_all_voxels_that_it_touches_and_of_no_others(middle, half, seed):
     rng = np.random.default_rng(seed)

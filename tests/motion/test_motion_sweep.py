@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import maximum_filter
 
@@ -73,7 +73,6 @@ def test_a_ball_that_is_nowhere_counts_as_leaving_the_grid():
 corner = st.tuples(*(st.floats(-2, 2, width=32),) * 3)
 
 
-@settings(deadline=None)
 @given(st.tuples(corner, corner, corner), corner, st.floats(0.01, 1.5))
 def test_triangles_meet_the_boxes_that_cut_them(triangle, centre, half):
     found = triangle_meets_box(np.array(triangle, dtype=float), *centre, half)

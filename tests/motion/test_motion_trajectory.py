@@ -37,7 +37,7 @@ def test_velocities_that_are_not_of_these_positions_are_refused():
         path.straightened()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.tuples(*[st.floats(-2, 2)] * 4), min_size=2, max_size=6), st.floats(0.05, 2))
 def test_straight_lines_stay_beside_the_cubic_curve_of_another_library(rows, step):
     rows, times = np.array(rows), step * np.arange(len(rows))

@@ -104,7 +104,7 @@ size = st.tuples(*[st.floats(0.02, 0.8)] * 3)
 boxes = st.lists(st.tuples(corner, size), min_size=1, max_size=3)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(boxes, st.sampled_from(["slide", "turn", "nod"]), st.sampled_from([1, -1]), st.integers(0, 99))
 def test_more_zones_kept_out_are_never_milder(arm, zones, joint, way, seed):
     lower = np.random.default_rng(seed).uniform(-1, 0.8, 3)
@@ -124,7 +124,7 @@ def test_more_zones_kept_out_are_never_milder(arm, zones, joint, way, seed):
         before = found
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(corner, size, st.sampled_from(["slide", "turn"]), st.integers(0, 99))
 def test_a_zone_not_watched_frees_what_is_neither_seen_nor_disputed(arm, at, by, joint, seed):
     """Free travel in it is never more than in a space in which all is free that lies in it and that nobody disputes."""
@@ -152,7 +152,7 @@ def naive(zone, grid, wholly):
     return (out <= 1e-6).all(axis=(-1, -2)) if wholly else (out.min(axis=-2) <= 1e-6).all(axis=-1)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(corner, size, st.booleans())
 def test_voxels_of_a_zone_are_those_whose_corners_say_so(at, by, turned):
     grid = room(0.15)

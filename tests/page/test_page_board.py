@@ -49,7 +49,7 @@ def test_what_a_writer_left_half_done_is_not_read():
     assert reader.get() == (3, b"third")
 
 
-@settings(deadline=None, max_examples=3)
+@settings(max_examples=3)
 @given(st.integers(1000, 100_000))
 def test_while_somebody_writes_as_fast_as_can_be_what_is_read_is_of_one_piece(size):
     writer, reader = section(size)

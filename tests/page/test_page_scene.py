@@ -39,7 +39,7 @@ def naive(grid, free, surface, blind, machine, near_m):
     return found
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(st.integers(0, 2**31), st.integers(3, 22), st.floats(0.05, 1.0))
 def test_what_is_near_is_what_the_naive_twin_finds(seed, width, near_m):
     chance = np.random.default_rng(seed)

@@ -55,7 +55,7 @@ def site(tmp_path):
 
 
 @given(st.lists(st.floats(0, 359.999), max_size=6), st.sampled_from([72.0, 100.0, 120.0, 180.0]))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_views_apart_are_what_trying_all_sets_gives(angles, least_deg):
     views = int(360 // least_deg)
     model = model_of(np.ones((len(angles), 1)), angles, views=views, angle=least_deg) if angles else None
@@ -65,7 +65,7 @@ def test_views_apart_are_what_trying_all_sets_gives(angles, least_deg):
 
 
 @given(st.integers(0, 10_000))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_gains_and_losses_are_what_adding_and_leaving_out_do(seed):
     rng = np.random.default_rng(seed)
     model = model_of(rng.random((8, 12)) < 0.7, rng.uniform(0, 360, 8))

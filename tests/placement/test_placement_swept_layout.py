@@ -12,7 +12,7 @@ from elbowroom.placement.rehearsal import Settings
 from elbowroom.placement.solver.scene_layout import SceneLayout, SceneModel
 from elbowroom.placement.solver.swept_layout import FEW, SweptModel
 
-FEW_EXAMPLES = settings(deadline=None, derandomize=True, max_examples=25)
+FEW_EXAMPLES = settings(derandomize=True, max_examples=25)
 
 
 def model_of(rng, candidates=5, motions=4):

@@ -32,7 +32,7 @@ def test_three_views_at_exactly_100_degrees_are_valid():
     st.lists(st.floats(0, 2 * math.pi, exclude_max=True), max_size=7),
     st.sampled_from([30.0, 72.0, 90.0, 100.0, 120.0, 180.0]),
 )
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_the_largest_set_is_what_trying_all_sets_gives(angles, least_deg):
     ordered = np.sort(np.array(angles))
     found = kernels.largest_apart(ordered, len(angles), math.radians(least_deg), TIE_RAD)

@@ -152,7 +152,7 @@ def room_with_arm(seed, arm, kind):
     return rng, grid, cameras, scene, frames
 
 
-@settings(deadline=None, derandomize=True, max_examples=12)
+@settings(derandomize=True, max_examples=12)
 @given(
     seed=st.integers(0, 10**6),
     ways=st.sets(st.sampled_from(WAYS), min_size=1),
@@ -176,7 +176,7 @@ def test_less_evidence_never_makes_a_verdict_milder(arm, seed, ways, detail, kin
         assert less.free_travel <= more.free_travel
 
 
-@settings(deadline=None, derandomize=True, max_examples=8)
+@settings(derandomize=True, max_examples=8)
 @given(
     seed=st.integers(0, 10**6),
     detail=st.sampled_from(["footprint", "pixel", "point"]),

@@ -57,7 +57,7 @@ def seen(machine_there, cameras, joints, said=None, before_m=None):
     return Snapshot.taken(frames, said or joints, None, None)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(st.floats(-0.95, 0.95), st.floats(-0.95, 0.95), st.floats(-3, 3))
 def test_a_machine_where_it_is_said_to_be_is_not_named(arm, cameras, turn, bend, about):
     base = np.eye(4)

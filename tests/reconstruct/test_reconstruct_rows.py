@@ -45,7 +45,7 @@ def marks_of(texels, places, clear_from, hidden_to):
     depth,
     depth,
 )
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_marks_of_eight_rows_of_eight_texels_are_those_of_each(
     texels, at, stride, last, clear_from, hidden_to
 ):

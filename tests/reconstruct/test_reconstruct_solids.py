@@ -38,7 +38,7 @@ def room_of_balls(seed):
 
 
 @pytest.mark.parametrize("rule", ["three", "majority", "veto", "any"])
-@settings(deadline=None, derandomize=True, max_examples=40)
+@settings(derandomize=True, max_examples=40)
 @given(seed=st.integers(0, 10**6))
 def test_no_voxel_touched_by_a_resolved_solid_is_free(rule, seed):
     grid, cameras, scene = room_of_balls(seed)
@@ -50,7 +50,7 @@ def test_no_voxel_touched_by_a_resolved_solid_is_free(rule, seed):
 
 
 @pytest.mark.parametrize("detail", ["footprint", "pixel"])
-@settings(deadline=None, derandomize=True, max_examples=40)
+@settings(derandomize=True, max_examples=40)
 @given(seed=st.integers(0, 10**6), lost=st.sampled_from([0.0, 0.02, 0.2]))
 def test_specks_that_are_passed_over_hide_no_resolved_solid(detail, seed, lost):
     grid, cameras, scene = room_of_balls(seed)
@@ -67,7 +67,7 @@ def test_specks_that_are_passed_over_hide_no_resolved_solid(detail, seed, lost):
     assert not (space.free & scenes.touched(grid, scene)).any()
 
 
-@settings(deadline=None, derandomize=True, max_examples=40)
+@settings(derandomize=True, max_examples=40)
 @given(seed=st.integers(0, 10**6))
 def test_without_a_margin_it_may_enter_a_voxel_by_a_tenth_of_a_pitch_and_no_more(seed):
     grid, cameras, scene = room_of_balls(seed)

@@ -18,7 +18,7 @@ from elbowroom.simulate import wall_cameras
 from reference import reconstruct_scenes as scenes
 from reference.reconstruct_weaken import AGE, NOW, WAYS, some_margin, weakened
 
-FEW = settings(deadline=None, derandomize=True, max_examples=8)
+FEW = settings(derandomize=True, max_examples=8)
 GRID = VoxelGrid((-1.0, -1.0, -1.0), (10, 10, 10), 0.2)
 rooms = st.integers(0, 10**6)
 ANGLE_DEG = 12.0

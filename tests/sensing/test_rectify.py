@@ -89,7 +89,7 @@ def test_most_of_the_image_survives_and_contributors_are_few(distortion):
     assert count[kept].max() <= 16
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     seed=st.integers(0, 2**32 - 1), lens=st.sampled_from(LENSES), kind=st.sampled_from(["planar", "radial"])
 )
@@ -118,7 +118,7 @@ def test_never_farther_than_what_was_measured_nearby(seed, lens, kind):
     assert (greatest[at][inside][valid] >= measured[valid]).all()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(seed=st.integers(0, 2**32 - 1), lens=st.sampled_from(LENSES))
 def test_a_pixel_made_invalid_only_takes_away(seed, lens):
     random = np.random.default_rng(seed)

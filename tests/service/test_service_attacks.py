@@ -302,7 +302,7 @@ def test_what_its_own_description_allows_breaks_nothing(running: Running, tmp_pa
     tried = []
     for operation in schema.get_all_operations():
 
-        @settings(max_examples=6, deadline=None, database=None, suppress_health_check=list(HealthCheck))
+        @settings(max_examples=6, database=None, suppress_health_check=list(HealthCheck))
         @given(case=operation.ok().as_strategy())
         def attack(case) -> None:
             time.sleep(0.01)

@@ -26,7 +26,7 @@ def test_a_camera_in_a_cabinet_is_an_error_that_names_both():
     assert len(render(hung_clear(cameras, ROOM.solids), ROOM.at(0.0))) == 21
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(some.integers(1, 30), some.floats(0.1, 2.4))
 def test_moved_cameras_keep_their_height_and_their_wall_and_others_stay(count, height_m):
     hung = wall_cameras(count, height_m, width=8, height=6)

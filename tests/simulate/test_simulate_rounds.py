@@ -18,7 +18,7 @@ def places(rounds, times):
     return np.array([(stance.x_m, stance.y_m) for stance in map(rounds.at, times)])
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.floats(0.3, 2.0), st.floats(0.05, 0.9), st.floats(0, 1), st.booleans())
 def test_a_round_is_closed_and_nobody_runs_or_jerks(speed, radius, start, turned):
     rounds = Rounds(SQUARE[::-1] if turned else SQUARE, speed, radius, start)

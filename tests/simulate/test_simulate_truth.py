@@ -37,7 +37,7 @@ triangles = st.lists(st.integers(-24, 24), min_size=9, max_size=9).map(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(triangles)
 def test_triangle_touches_the_boxes_that_clipping_leaves_it_in(triangle):
     found = np.zeros(SHAPE, dtype=bool)
@@ -45,7 +45,7 @@ def test_triangle_touches_the_boxes_that_clipping_leaves_it_in(triangle):
     assert (found == naive.touched(triangle, GRID.lower_m, EDGE, SHAPE)).all()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(triangles)
 def test_boxes_below_no_shrinking_are_grown_and_what_is_marked_keeps_its_mark(triangle):
     found = np.zeros(SHAPE, dtype=np.uint16)

@@ -308,7 +308,7 @@ STRANGE = [
 ]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(place=st.sampled_from(places(TEMPLATE)), value=st.sampled_from(STRANGE))
 def test_any_value_at_any_place_is_a_site_or_one_line(tmp_path_factory, place, value):
     path = tmp_path_factory.getbasetemp() / "strange.yaml"

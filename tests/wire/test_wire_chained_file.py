@@ -17,7 +17,7 @@ from elbowroom.wire.ros_messages import text_of
 from reference.chained_files import ATTACHED, messages_of, write_steps
 
 STEPS = 6
-SHARED = settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+SHARED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 @pytest.fixture(scope="module")

@@ -39,7 +39,6 @@ def frame_of(raw, units):
     return DepthFrame.from_raw("c", 0, raw, scale_m=units.scale_m, bias_m=units.bias_m).depth_m
 
 
-@settings(deadline=None)
 @given(st.one_of(RAW, SMOOTH), UNITS)
 def test_what_a_sensor_counted_comes_back_bit_for_bit_and_as_units(raw, units):
     raw = np.where(raw > 60000, 0, raw)
@@ -51,14 +50,12 @@ def test_what_a_sensor_counted_comes_back_bit_for_bit_and_as_units(raw, units):
         assert (unpack_units(packed, "it") == raw).all()
 
 
-@settings(deadline=None)
 @given(ANY_FLOATS, st.one_of(st.none(), UNITS))
 def test_any_floats_come_back_bit_for_bit(depth_m, units):
     packed = pack_depth(depth_m, units)
     assert unpack_depth(packed, "it").tobytes() == depth_m.tobytes()
 
 
-@settings(deadline=None)
 @given(st.one_of(RAW, SMOOTH))
 def test_content_is_that_of_the_plain_twin(raw):
     raw, units = np.where(raw > 60000, 0, raw), Units(0.001)
@@ -72,7 +69,6 @@ def test_content_is_that_of_the_plain_twin(raw):
         assert found == plain_content(depth_m, None if meant is None else raw, head.kind == HALVES)
 
 
-@settings(deadline=None)
 @given(st.lists(st.integers(0, 60000) | st.integers(0, 40), min_size=1, max_size=90))
 def test_rows_are_those_of_the_plain_twin(numbers):
     raw = np.array([numbers], np.uint16)
@@ -96,7 +92,6 @@ def test_rows_go_on_from_piece_to_piece(size):
     assert (unpack_units(packed, "it") == raw).all()
 
 
-@settings(deadline=None)  # the first one is compiled
 @given(st.lists(st.integers(0, 65535), min_size=8, max_size=8), st.integers(0, 15), st.integers(0, 65535))
 def test_a_row_of_vectors_is_the_row_of_numpy(row, filled, before):
     numbers = np.array([9] * 8 + row, np.uint16)
@@ -112,7 +107,6 @@ def compiled_row(numbers, row, words, at, filled):
     return row_kernels.put_row(numbers, row, words, at, filled)
 
 
-@settings(deadline=None)
 @given(st.one_of(RAW, SMOOTH), st.booleans())
 def test_what_earlier_versions_packed_is_read(raw, is_half):
     raw = np.where(raw > 60000, 0, raw)
@@ -152,7 +146,7 @@ def test_a_smooth_image_takes_a_small_part_of_its_sixteen_bits():
     assert len(packed) < 2 * ramp.size / 4
 
 
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(st.data())
 def test_a_damaged_image_is_an_error_or_an_image_and_makes_nothing_large(data):
     raw = np.random.default_rng(2).integers(900, 1100, (24, 32)).astype(np.uint16)

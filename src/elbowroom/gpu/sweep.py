@@ -4,14 +4,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.gpu.device import cuda, launch
-from elbowroom.gpu.kernels.sweep import Sweep, place_all
+from elbowroom.gpu.kernels.sweep import Sweep, met_in, place_all
 from elbowroom.gpu.kernels.threads import sweep_samples
 from elbowroom.machine import Machine
 from elbowroom.motion.block import Block
 from elbowroom.motion.course import Way
 from elbowroom.motion.kernels.mover import Mover, Skin
 from elbowroom.motion.kernels.sweep import MOST_MET
-from elbowroom.motion.kernels.touched import list_touched, touched_block
 from elbowroom.motion.kernels.volume import Volume
 from elbowroom.motion.sweep import halvings_of
 
@@ -56,9 +55,6 @@ def find_block_on_gpu(
 def _block(sweep: Sweep, start: int) -> Block:
     """What is met in the first interval that has a block."""
     at = int(sweep.first[0])
-    place, triangle = np.zeros(3), np.empty((3, 3))
-    there = sweep.placed[at], sweep, sweep.half, sweep.volume, sweep.samples
-    kind, by = touched_block(*there, place, triangle)
-    met = np.empty(MOST_MET, dtype=np.int64)
-    count = list_touched(*there, triangle, met)
+    place, triangle, met = np.zeros(3), np.empty((3, 3)), np.empty(MOST_MET, dtype=np.int64)
+    kind, by, count = met_in(sweep, at, place, triangle, met)
     return Block((start + at) * 2 * sweep.half, int(kind), int(by), place, met[:count])

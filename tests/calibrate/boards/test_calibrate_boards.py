@@ -80,7 +80,7 @@ def test_64_by_48_pixels_are_enough() -> None:
         assert np.abs(view.corners_px - true_corners(small, COARSE, pose)).max() < 0.5
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=6)
 @given(turn_deg=st.floats(-180, 180), tilt_deg=st.floats(-35, 35), z_m=st.floats(1.2, 2.4))
 def test_a_turned_board_keeps_its_corners(turn_deg: float, tilt_deg: float, z_m: float) -> None:
     """Each corner is the same one however the board is turned: half a turn is told apart."""

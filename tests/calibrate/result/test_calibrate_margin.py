@@ -58,7 +58,7 @@ def test_the_stated_share_of_errors_displaces_nothing_by_more_than_the_margin(se
 
 
 @given(st.integers(0, 1000), st.sampled_from([0.5, 0.9, 0.95, 0.99, 0.9999]))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_no_margin_exceeds_that_of_any_linear_function(seed, confidence):
     stated = covariance(seed)
     found = pose_margin(CAMERA, stated, confidence=confidence)

@@ -30,7 +30,7 @@ def a_drive(target=0.4):
     return Drive(moves, motions, {"larm": 0.2}, np.random.default_rng(0))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(LEVELS)
 def test_a_machine_is_never_faster_than_it_may_be_and_brakes_within_its_braking_distance(levels):
     drive, step = a_drive(), 0.02

@@ -18,7 +18,7 @@ from elbowroom.monitor.blackbox.recording import Recording
 from elbowroom.monitor.blackbox.replay import compared, replayed
 from reference.sample_run import PASSES, sample_run
 
-SHARED = settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+SHARED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 @pytest.fixture

@@ -210,14 +210,14 @@ class GateMachine(RuleBasedStateMachine):
         assert (self.state.phase is Phase.LATCHED) == bool(self.state.active)
 
 
-GateMachine.TestCase.settings = settings(max_examples=60, stateful_step_count=40, deadline=None)
+GateMachine.TestCase.settings = settings(max_examples=60, stateful_step_count=40)
 TestGateMachine = GateMachine.TestCase
 
 
 # laws of one step
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.lists(st.tuples(EVENTS, st.integers(0, 400)), max_size=8), PASSES, st.data())
 def test_more_caution_in_a_pass_never_gives_more_speed(
     events: list[tuple[Event, int]], judged: Judged, data: st.DataObject

@@ -36,7 +36,7 @@ def space_of(of: DepthCamera, frame: DepthFrame):
     return reconstruct(GRID, [of], [frame], looks=False)
 
 
-@settings(deadline=None, max_examples=15)
+@settings(max_examples=15)
 @given(
     st.sampled_from(["planar", "radial"]),
     st.floats(-0.4, 0.2),

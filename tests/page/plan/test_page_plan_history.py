@@ -11,7 +11,7 @@ def plain(value: float) -> Layout:
     return Layout(joints={"j": value})
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.sampled_from(["do", "undo", "redo", "drag", "let go"]), max_size=40))
 def test_undo_and_redo_are_as_two_stacks_of_values(deeds: list[str]) -> None:
     history, past, future, now, held = History(plain(0)), [], [], 0.0, False

@@ -50,7 +50,7 @@ def test_depths_in_a_unit_a_fifth_off_are_told_as_depths():
     assert "depths look 1.2" in found.text and "too small" in found.text and found.stops
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.sampled_from(sorted(RIGHT)), st.integers(0, 10_000), st.floats(0.97, 1.03))
 def test_what_a_calibration_leaves_open_is_not_told(noise, seed, factor):
     rng, site = np.random.default_rng(seed), RIGHT[noise]

@@ -25,7 +25,7 @@ def frames(noise, seed=0):
     ]
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(st.floats(0.003, 0.06), st.floats(0.0, 0.006), st.integers(0, 99))
 def test_the_scatter_of_a_room_is_measured_within_a_third(constant_m, quadratic, seed):
     noise = NoiseModel(constant_m, 0.0, quadratic)
@@ -34,7 +34,7 @@ def test_the_scatter_of_a_room_is_measured_within_a_third(constant_m, quadratic,
         assert sigma_m == pytest.approx(float(noise.sigma(at_m)), rel=0.34)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(st.floats(0.0, 0.05), st.floats(0.0, 0.006))
 def test_noise_that_is_declared_or_within_the_margin_is_passed_in_silence(constant_m, quadratic):
     noise = NoiseModel(constant_m, 0.0, quadratic)

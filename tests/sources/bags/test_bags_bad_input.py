@@ -266,7 +266,7 @@ def _sent():
     return [(kind, bytes(bags.STORE.serialize_cdr(message, kind))) for (kind, _), message in kinds.items()]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data())
 def test_malformed_messages_are_refused_by_name(data):
     kind, sent = data.draw(st.sampled_from(_sent()))

@@ -20,7 +20,7 @@ names = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"
 reals = st.floats(allow_nan=False)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(st.tuples(names, reals), max_size=6), st.integers(0, 2**31 - 1), st.integers(0, 10**9 - 1), names
 )
@@ -35,7 +35,7 @@ def test_joint_states_of_every_alignment(rows, seconds, rest, frame):
         assert list(found.names) == joints and found.positions.tolist() == positions
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(names, names, st.lists(reals, min_size=7, max_size=7))
 def test_transforms_and_camera_infos_of_every_alignment(parent, child, numbers):
     sent = bags.transform(parent, child, np.eye(4), 5)
@@ -100,7 +100,7 @@ def rvl(pixels):
     return struct.pack(f"<{len(words)}I", *words)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.integers(1, 9), st.integers(1, 9), st.randoms(use_true_random=False), st.sampled_from((2, 900, 65535))
 )
@@ -131,7 +131,7 @@ def test_lengths_are_checked_before_anything_is_made_of_them():
             read(Cdr(huge, "m"))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.data(), st.lists(names, min_size=1, max_size=4), st.booleans(), st.booleans())
 def test_trajectories_of_every_alignment_beside_rosbags(data, joints, with_velocities, shown):
     row = st.lists(reals, min_size=len(joints), max_size=len(joints)).map(np.array)

@@ -41,7 +41,7 @@ def heard(images, **more):
     return clock
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     offset=st.one_of(st.integers(-S, S), st.integers(-T0, T0)),
     ppm=st.floats(-180, 180),

@@ -11,7 +11,7 @@ metres = st.floats(-5, 5)
 points = st.tuples(metres, metres, metres)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(eye=points, target=points, point=points)
 def test_the_ray_of_a_points_pixel_goes_through_the_point(eye, target, point) -> None:
     if np.linalg.norm(np.subtract(eye, target)) < 0.1:

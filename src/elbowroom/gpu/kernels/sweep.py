@@ -7,7 +7,7 @@ from numba import njit
 
 from elbowroom.geometry.kernels.bits import uncounted
 from elbowroom.motion.kernels.mover import Skin, place_at
-from elbowroom.motion.kernels.touched import NOTHING, touched_block
+from elbowroom.motion.kernels.touched import NOTHING, list_touched, touched_block
 from elbowroom.motion.kernels.volume import Volume
 
 
@@ -43,6 +43,21 @@ def place_all(mover, half, placed):
     """
     for interval in range(placed.shape[0]):
         place_at(mover, (2 * interval + 1) * half, placed[interval : interval + 1])
+
+
+@uncounted(cache=True)
+def met_in(sweep, interval, place, triangle, met):
+    """What is met in an interval, as `touched_block` and `list_touched` say it: kind, place's sample, how many.
+
+    Args:
+        sweep: all of it.
+        interval: which.
+        place, triangle: (3,) and (3, 3); the first is where, the second room to work in.
+        met: the numbers of the voxels that are met.
+    """
+    placed = sweep.placed[interval]
+    kind, by = touched_block(placed, sweep, sweep.half, sweep.volume, sweep.samples, place, triangle)
+    return kind, by, list_touched(placed, sweep, sweep.half, sweep.volume, sweep.samples, triangle, met)
 
 
 @uncounted(cache=True)

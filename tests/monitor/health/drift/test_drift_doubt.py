@@ -48,7 +48,7 @@ def test_a_camera_that_comes_back_is_not_in_doubt_any_more() -> None:
     assert doubts[0] and not any(doubts[CLEARS_AFTER:]) and watch.stop is None
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 2**32 - 1))
 def test_whoever_walks_by_or_leans_on_a_wall_brings_no_doubt(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -96,7 +96,7 @@ def test_what_is_never_confirmed_is_taken_back_and_comes_again_only_anew() -> No
     assert doubt.text == "may be elsewhere"
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(0, 2**32 - 1))
 def test_shares_are_those_of_a_count_spot_by_spot(seed: int) -> None:
     rng, spots, gate = np.random.default_rng(seed), REFERENCES[1].spots(), Gate(0.1, 9.0, 0.2)

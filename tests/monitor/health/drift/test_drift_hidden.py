@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from elbowroom.monitor import Condition, Watch
@@ -104,7 +104,6 @@ def test_a_camera_that_comes_only_in_the_passes_that_pass_it_over_is_not_silent(
     assert health.reason is None
 
 
-@settings(deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 3), st.integers(1, 20)), max_size=60))
 def test_a_condition_lasts_as_long_as_every_frame_says_it(steps):
     """Beside a twin that looks back over all that was said."""

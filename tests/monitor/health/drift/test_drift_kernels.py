@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from elbowroom.machine.rasterise import canvas, mesh_of, rasterise, view_of
@@ -23,7 +23,6 @@ def spots_of(rng, n, pixels):
     )
 
 
-@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_frames_are_averaged_as_by_hand(seed):
     rng = np.random.default_rng(seed)
@@ -45,7 +44,6 @@ def test_frames_are_averaged_as_by_hand(seed):
         before = [(0.0, 0.0, 0) if mean is None else mean for mean in after]
 
 
-@settings(deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0, 1, 5, 200]))
 def test_the_fitted_motion_is_that_of_matrices(seed, n):
     rng = np.random.default_rng(seed)

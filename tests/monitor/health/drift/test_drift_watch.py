@@ -78,7 +78,7 @@ def test_what_was_found_stays_though_the_camera_comes_back_or_gives_nothing():
     assert run(Watch(CAMERAS, REFERENCES), CAMERAS, 200, 20).reason is None
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 2**32 - 1))
 def test_a_person_in_front_never_alarms(seed):
     """Upright bodies of any size walk through all images, or stand close to the walls."""
@@ -97,7 +97,7 @@ def test_a_person_in_front_never_alarms(seed):
     assert run(Watch(CAMERAS, REFERENCES), CAMERAS, moments=90, change=with_person).reason is None
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 2**32 - 1))
 def test_furniture_that_is_pushed_is_no_camera_that_moved(seed):
     """A quarter of the image is farther or nearer than it was by some centimetres."""
@@ -210,7 +210,6 @@ def test_a_frame_of_another_size_is_an_error_and_no_silence():
         )
 
 
-@settings(deadline=None)
 @given(st.lists(st.sampled_from([True, False, None]), max_size=80), st.integers(1, 20))
 def test_a_tally_never_falls_back_once_it_decided(says, limit):
     tally, score = Tally(limit), 0

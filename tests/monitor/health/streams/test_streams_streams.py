@@ -263,7 +263,7 @@ def test_a_machine_that_stands_still_and_is_not_commanded_is_well():
         assert not room.hear(joints={"slide": 0.0}, commanded={"slide": 0.0} if n > 20 else None)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.lists(st.sampled_from([None, *FAULTS[:8]]), min_size=1, max_size=25), st.integers(0, 2**16))
 def test_what_is_left_out_is_what_is_sick_and_nothing_else_whatever_comes(faults, seed):
     """Less evidence alone: what remains of a moment are frames of it, as they came, of cameras that are well."""
