@@ -54,22 +54,22 @@ def compare_sweeps(arm):
     grid, ended = machines.room(0.1), 0
     wall = machines.touched_by_box(grid, (0.951, -1.0, 0.4), (1.2, 1.0, 0.8))
     nearer = machines.touched_by_box(grid, (0.85, -1.0, 0.4), (1.2, 0.1, 0.8))
-    for blocked in (wall, nearer, machines.nothing_in(grid)):
+    ways = [(wall, "slide", 1, 0.3), (nearer, "slide", 1, 0.3), (machines.nothing_in(grid), "turn", -1, 0.2)]
+    for blocked, joint, direction, reach in ways:
         space = FreeSpace.from_occupied(grid, blocked).without(arm, machines.HOME)
         volume, skin, start = volume_of(space), skin_of(arm, grid.voxel_size_m), arm.positions(machines.HOME)
-        for joint, direction, reach in (("slide", 1, 0.3), ("turn", -1, 0.2)):
-            way = way_of(arm, start, Motion(joint, direction, 0.1, reach=reach))
-            speeds = cluster_speeds(arm, skin, arm.world_from_link_array(start[None])[0], way)
-            # one link: each thread is one of Python's
-            speeds[skin.link != skin.link.max()] = 0
-            here = find_block(arm, skin, speeds, way, volume)
-            there = find_block_on_gpu(arm, skin, speeds, way, volume)
-            assert (here is None) == (there is None)
-            if here is not None:
-                assert here[:3] == there[:3]
-                np.testing.assert_array_equal(here.place_in_world, there.place_in_world)
-                np.testing.assert_array_equal(np.sort(here.met), np.sort(there.met))
-                ended += 1
+        way = way_of(arm, start, Motion(joint, direction, 0.1, reach=reach))
+        speeds = cluster_speeds(arm, skin, arm.world_from_link_array(start[None])[0], way)
+        # one link: each thread is one of Python's
+        speeds[skin.link != skin.link.max()] = 0
+        here = find_block(arm, skin, speeds, way, volume)
+        there = find_block_on_gpu(arm, skin, speeds, way, volume)
+        assert (here is None) == (there is None)
+        if here is not None:
+            assert here[:3] == there[:3]
+            np.testing.assert_array_equal(here.place_in_world, there.place_in_world)
+            np.testing.assert_array_equal(np.sort(here.met), np.sort(there.met))
+            ended += 1
     return ended
 
 

@@ -1,6 +1,7 @@
 """Contradictions between cameras in words: who contradicts, how much, what it most likely is, what to do."""
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -102,13 +103,26 @@ def _of_poses(views: Views) -> tuple[Finding, ...]:
 
 
 def found_in(views: Views) -> tuple[Finding, ...]:
-    """As `contradictions`.
+    """As `contradictions`; beyond the limit it stops, whatever is found to be the reason.
 
     Args:
         views: of one moment.
     """
     if len(views.eyes) < 2:
         return ()
+    found = _reasons(views)
+    beyond = tuple(finding for finding in beyond_limit(views.eyes, views.pairs) if finding.stops)
+    if not beyond or any(finding.stops for finding in found):
+        return found
+    about, named = ({name for finding in these for name in finding.about} for these in (beyond, found))
+    has_twin = any(_twin(views.eyes, n) for n, eye in enumerate(views.eyes) if eye.name in named)
+    if named and named <= about and not has_twin:
+        return tuple(replace(finding, stops=True) for finding in found)
+    return (*beyond, *(finding for finding in found if not about.issuperset(finding.about)))
+
+
+def _reasons(views: Views) -> tuple[Finding, ...]:
+    """What is likely, and what has no reason that is known."""
     if not standing(views.pairs).suspects:
         return scale_findings(views)
     suspicions, left = explained(views)
