@@ -51,3 +51,13 @@ def test_rows_count_what_is_named_and_what_stops(monkeypatch, tmp_path):
     assert right["sites"] == 1 and right["stopped"] == 0 and right["warned_pct"] == 0.0
     for row in (*ways, everything, right):
         assert all(due.met(row) for due in rows.DUE[row["kind"]])
+
+
+@pytest.mark.parametrize(("name", "number", "said"), [("pose of another", 11, "it has the pose of")])
+def test_beyond_the_limit_it_stops_whatever_else_would_explain_it(name, number, said):
+    # its surfaces lie apart by a factor, too: that alone is a warning
+    site = random_site(number)
+    wrong = KINDS[name](np.random.default_rng([21, number]), site)
+    found = contradictions(wrong.cameras, site.snapshot.frames, MARGIN)
+    assert {about for finding in found for about in finding.about} == wrong.named
+    assert any(finding.stops and said in finding.text for finding in found)
