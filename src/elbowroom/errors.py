@@ -15,9 +15,10 @@
     ├── EvidenceError        evidence that cannot be merged or resolved
     └── PackageError         an optional package is not installed
 
-Two are warnings, not errors. `PoseWarning`: a pose was a little off a rotation and was brought to the nearest one.
+Four are warnings, not errors. `PoseWarning`: a pose was a little off a rotation and was brought to the nearest one.
 `ValueWarning`: something that was given reads as valid, but is most likely not meant so.
 `MachineWarning`: a URDF has a slip that passes; the message says how it is taken.
+`UnfinishedWarning`: Ctrl-C ended what wrote a file; the message says where is kept what there was.
 """
 
 
@@ -83,6 +84,10 @@ class MachineWarning(UserWarning):
 
 class PoseWarning(UserWarning):
     """A pose was off a rigid transform by less than 1e-3 and was brought to the nearest rotation."""
+
+
+class UnfinishedWarning(UserWarning):
+    """Ctrl-C ended a run that wrote a file; what it had until then is kept aside."""
 
 
 class ValueWarning(UserWarning):

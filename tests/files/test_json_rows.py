@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from elbowroom.errors import InputError
+from elbowroom.errors import InputError, UnfinishedWarning
 from elbowroom.files.json_rows import json_rows, meta, write_json
 
 
@@ -44,12 +44,26 @@ def test_no_rows_are_a_whole_file_too(tmp_path):
     assert json.loads((tmp_path / "out.json").read_text())["rows"] == []
 
 
+@pytest.mark.filterwarnings("ignore::elbowroom.errors.UnfinishedWarning")
 @pytest.mark.parametrize("interruption", [ValueError, KeyboardInterrupt])
-def test_an_interrupted_command_leaves_no_file(tmp_path, interruption):
+def test_an_interrupted_command_leaves_no_file_that_looks_whole(tmp_path, interruption):
     with pytest.raises(interruption), json_rows(tmp_path / "out.json") as add:
         add({"x": 1})
         raise interruption
-    assert list(tmp_path.iterdir()) == []
+    assert not (tmp_path / "out.json").exists()
+
+
+def test_what_was_found_until_ctrl_c_is_kept_aside_and_said(tmp_path):
+    path = tmp_path / "run.json"
+    said = pytest.warns(UnfinishedWarning, match=r"the 2 rows until then are in .*run\.part\.json")
+    with said, pytest.raises(KeyboardInterrupt), json_rows(path) as add:
+        add({"a": "äöü"})
+        add({"b": 2})
+        raise KeyboardInterrupt
+    part = tmp_path / "run.part.json"
+    assert [path.name for path in tmp_path.iterdir()] == ["run.part.json"]
+    kept = json.loads(part.read_text(encoding="utf-8"))
+    assert kept["rows"] == [{"a": "äöü"}, {"b": 2}] and kept["meta"]["unfinished"] is True
 
 
 def test_a_missing_folder_is_said_before_the_work(tmp_path):

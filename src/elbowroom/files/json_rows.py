@@ -5,28 +5,37 @@ import math
 import os
 import platform
 import shlex
+import shutil
 import subprocess
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from elbowroom.errors import UnfinishedWarning
+
 AddRow = Callable[[Mapping[str, Any]], None]
+END = "\n]}\n"
 
 
 @contextmanager
 def json_rows(path: Path | None) -> Iterator[AddRow]:
     """Gives a function that adds a row to the file; the file is there, whole, once the block has ended well.
 
-    Rows go to disk as they come, so a long run needs no more memory than a short one.
+    Rows go to disk as they come, so a long run needs no more memory than a short one. What Ctrl-C ends keeps its rows
+    aside, `run.part.json` for `run.json`, with the word `unfinished` in its meta, and a warning says so.
 
     Args:
         path: of the file; None: rows are dropped.
 
     Raises:
         InputError: its folder does not exist or cannot be written to; said at once, not after the work.
+
+    Warns:
+        UnfinishedWarning: Ctrl-C ended it; names the file with the rows until then.
     """
     if path is None:
         yield lambda row: None
@@ -34,16 +43,45 @@ def json_rows(path: Path | None) -> Iterator[AddRow]:
     from elbowroom.files.atomic import whole_file
 
     with whole_file(path) as unfinished, unfinished.open("w", encoding="utf-8") as file:
-        file.write('{"meta": ' + json.dumps(meta()) + ',\n"rows": [')
-        separator = "\n"
+        head, rows = meta(), 0
+        file.write(_beginning(head))
 
         def add(row: Mapping[str, Any]) -> None:
-            nonlocal separator
-            file.write(separator + json.dumps(_plain(row), allow_nan=False, separators=(",", ":")))
-            separator = ",\n"
+            nonlocal rows
+            comma = "," if rows else ""
+            file.write(f"{comma}\n{json.dumps(_plain(row), allow_nan=False, separators=(',', ':'))}")
+            rows += 1
 
-        yield add
-        file.write("\n]}\n")
+        try:
+            yield add
+        except KeyboardInterrupt:
+            if rows:
+                file.write(END)
+                file.flush()
+                kept = _keep_part(path, unfinished, head)
+                warnings.warn(f"interrupted; the {rows} rows until then are in {kept}", UnfinishedWarning, 3)
+            raise
+        file.write(END)
+
+
+def _beginning(head: Mapping[str, Any]) -> str:
+    return '{"meta": ' + json.dumps(head) + ',\n"rows": ['
+
+
+def _keep_part(path: Path, unfinished: Path, head: Mapping[str, Any]) -> Path:
+    """Puts the rows of an interrupted run beside the place of the file; gives where."""
+    from elbowroom.files.atomic import whole_file
+
+    kept = path.with_suffix(f".part{path.suffix}")
+    with (
+        whole_file(kept) as part,
+        part.open("w", encoding="utf-8") as file,
+        unfinished.open(encoding="utf-8") as rows,
+    ):
+        rows.seek(len(_beginning(head)))
+        file.write(_beginning({**head, "unfinished": True}))
+        shutil.copyfileobj(rows, file)
+    return kept
 
 
 def write_json(path: Path | None, rows: list[dict[str, Any]]) -> None:
