@@ -135,7 +135,8 @@ def test_the_same_seed_gives_the_same_rows(tmp_path):
     assert runs[0] == runs[1]
 
 
-def test_ctrl_c_shows_what_there_is_and_leaves_no_file(tmp_path, monkeypatch, capsys):
+@pytest.mark.filterwarnings("default::elbowroom.errors.UnfinishedWarning")
+def test_ctrl_c_shows_what_there_is_and_keeps_it_aside(tmp_path, monkeypatch, capsys):
     from elbowroom.evaluate.rooms import alone
 
     rows = alone.alone_rows
@@ -147,9 +148,11 @@ def test_ctrl_c_shows_what_there_is_and_leaves_no_file(tmp_path, monkeypatch, ca
     monkeypatch.setattr(alone, "alone_rows", interrupted)
     out = tmp_path / "out.json"
     assert run(["evaluate", "alone", "--poses", "3", *SMALL, "--json", str(out)]) == 130
-    text = capsys.readouterr().out
-    assert "all clear" in text and "Interrupted after 1 of 24" in text
-    assert list(tmp_path.iterdir()) == []
+    told = capsys.readouterr()
+    assert "all clear" in told.out and "Interrupted after 1 of 24" in told.out
+    (part,) = tmp_path.iterdir()
+    assert part.name == "out.part.json" and "until then are in" in told.err
+    assert len(json.loads(part.read_text())["rows"]) == 1
 
 
 @pytest.mark.parametrize("command", ["poses", "travel"])
