@@ -89,6 +89,12 @@ def test_a_surface_is_closed_where_trimesh_says_so(name, data):
         assert said == (change in ("none", "apart"))
 
 
+@pytest.mark.parametrize("far", [1e11, 1e30, -1e300])
+def test_corners_that_are_out_of_this_world_are_kept_as_they_are(far):
+    places, number = solids.merged(np.array([[far, 0, 0], [0, 0, 1.0], [far, 0, 0]]))
+    assert places.tolist() == [[far, 0, 0], [0, 0, 1]] and number.tolist() == [0, 1, 0]
+
+
 def test_nothing_is_not_closed():
     assert not solids.is_closed(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
 

@@ -12,6 +12,8 @@ Triangles = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 SAME_M = 1e-8
 """Vertices that lie so close together are one [m]."""
+FAR_M = 1e10
+"""Farther out they are not told apart: 64 bits do not count such steps; whoever has them is refused [m]."""
 _CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=np.float64)
 _SIDES = np.array(
     [
@@ -81,7 +83,7 @@ def merged(places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
     Returns:
         Those, shape (m, 3); and which of them each place is, shape (n,).
     """
-    rounded = np.round(places / SAME_M).astype(np.int64)
+    rounded = np.round(np.clip(places, -FAR_M, FAR_M) / SAME_M).astype(np.int64)
     sorted_by = np.lexsort(rounded.T)
     is_new = np.append(True, (np.diff(rounded[sorted_by], axis=0) != 0).any(axis=1))[: len(places)]
     first = sorted_by[is_new]

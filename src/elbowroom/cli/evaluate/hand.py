@@ -30,7 +30,6 @@ def hand(
     A ball of 5 cm within 1 cm of the arm; motions that meet it within the braking distance must not be clear. Explained
     by visual geometry, and by the collision geometry that is swept; with the noise of a time-of-flight camera.
     Four arms are of boxes; four are published ones, swept by the convex hulls of what is seen of their links.
-    Four arms are of boxes; four are published ones, swept by the convex hulls of what is seen of their links.
     """
     from elbowroom.cli.evaluate.measured import measured
     from elbowroom.cli.evaluate.shown import as_table

@@ -33,7 +33,8 @@ def measured(
 ) -> None:
     """Writes rows and their summary, then shows the summary, or else the rows.
 
-    Where there is a summary, rows leave out what it says. After Ctrl-C: shows what there is, no file.
+    Where there is a summary, rows leave out what it says. After Ctrl-C: shows what there is; the rows until then are kept
+    aside.
 
     Args:
         what: the rows are.
@@ -58,7 +59,7 @@ def measured(
         if rows:
             show(summary(rows) if summary else rows)
             of = "" if total is None else f" of {total}"
-            print_(f"Interrupted after {len(rows)}{of} {what}; no file was written.")
+            print_(f"Interrupted after {len(rows)}{of} {what}.")
         raise
     show(shown)
 
