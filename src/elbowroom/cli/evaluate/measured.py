@@ -33,8 +33,7 @@ def measured(
 ) -> None:
     """Writes rows and their summary, then shows the summary, or else the rows.
 
-    Where there is a summary, rows leave out what it says. After Ctrl-C: shows what there is; the rows until then are kept
-    aside.
+    Where there is a summary, rows leave out what it says. After Ctrl-C: shows what there is; its rows are kept aside.
 
     Args:
         what: the rows are.
