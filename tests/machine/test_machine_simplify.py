@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from elbowroom.machine import Link
@@ -124,6 +124,7 @@ def test_a_link_of_few_triangles_or_none_stays_as_it_is():
 
 @settings(max_examples=15)
 @given(seeds, st.integers(3, 9))
+@example(5640, 9)  # a peak between all of 80 places
 def test_how_far_a_fan_lies_off_is_the_greatest_difference_in_height(seed, corners):
     rng = np.random.default_rng(seed)
     angles = (np.arange(corners) + rng.uniform(0.3, 0.7, corners)) * 2 * np.pi / corners
@@ -132,9 +133,13 @@ def test_how_far_a_fan_lies_off_is_the_greatest_difference_in_height(seed, corne
     places = [p for p in range(corners) if kernels._quality(ring, corners, p) >= kernels.LEAST_QUALITY]
     for place in places:
         found = kernels._moved(ring, corners, place, np.inf)
-        looked = naive.fan_rise(ring, place, rng, 80)
-        assert found >= looked - 1e-9
-        assert found <= looked + 0.1
+        # a peak may be narrow: where few places miss it, many are looked at
+        for count in (80, 8000):
+            looked = naive.fan_rise(ring, place, rng, count)
+            assert found >= looked - 1e-9
+            if found <= looked + 0.02:
+                break
+        assert found <= looked + 0.02
 
 
 def test_a_fold_is_no_fan():

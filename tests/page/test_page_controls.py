@@ -2,6 +2,7 @@
 
 import re
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -55,11 +56,17 @@ def hold(page, run) -> None:
     run.until(lambda: run.creeps)
 
 
-def lasts_s(run, since_s: float) -> float:
-    """How long after a moment something crept last, once nothing creeps for half a second [s]."""
+def ends_in_time(run, since_s: float) -> bool:
+    """Whether nothing creeps any more once the last signal before a moment has ceased to count.
+
+    A signal may be on its way at that moment, for no longer than a pass takes: on a loaded computer that is more.
+    """
     run.until(lambda: not run.creeps)
     time.sleep(0.5)
-    return max((at_s for at_s, is_held in run.held if is_held), default=since_s) - since_s
+    crept = [at_s for at_s, is_held in run.held if is_held and at_s > since_s]
+    times = [at_s for at_s, _ in run.held if at_s > since_s - COUNTS_S]
+    longest_s = max((later - at_s for at_s, later in pairwise(times)), default=0.0)
+    return max(crept, default=since_s) - since_s <= COUNTS_S + max(PASS_S, longest_s)
 
 
 def test_a_reset_is_asked_refused_and_done_in_words(page, run):
@@ -99,13 +106,13 @@ def test_it_creeps_while_the_button_is_pressed_and_no_longer(page, run):
     time.sleep(0.6)  # longer than a signal counts
     assert run.creeps
     page.mouse.up()
-    assert lasts_s(run, time.monotonic()) <= COUNTS_S + PASS_S
+    assert ends_in_time(run, time.monotonic())
     said(page, "Let go")
     page.focus("#hold")
     page.keyboard.down("Space")
     run.until(lambda: run.creeps)
     page.keyboard.up("Space")
-    assert lasts_s(run, time.monotonic()) <= COUNTS_S + PASS_S
+    assert ends_in_time(run, time.monotonic())
 
 
 def test_the_page_may_ask_by_each_of_its_names(page, run):
@@ -120,14 +127,14 @@ def test_it_ends_when_the_tab_closes(page, run, browser):
     give(page, run.token)
     hold(page, run)
     page.close()
-    assert lasts_s(run, time.monotonic()) <= COUNTS_S + PASS_S
+    assert ends_in_time(run, time.monotonic())
 
 
 def test_it_ends_when_the_connection_is_lost_and_when_what_is_shown_is_old(page, run):
     give(page, run.token)
     hold(page, run)
     page.context.set_offline(True)
-    assert lasts_s(run, time.monotonic()) <= COUNTS_S + PASS_S
+    assert ends_in_time(run, time.monotonic())
     page.mouse.up()
     said(page, "does not answer")
     page.context.set_offline(False)
@@ -181,7 +188,7 @@ def test_without_a_service_there_are_no_controls(page, run):
     give(page, run.token)
     hold(page, run)
     run.serving._process.kill()
-    assert lasts_s(run, time.monotonic()) <= COUNTS_S + PASS_S
+    assert ends_in_time(run, time.monotonic())
     page.wait_for_selector("#controls[hidden]", state="attached")
     page.mouse.up()
     with run.standing():

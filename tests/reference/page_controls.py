@@ -116,8 +116,9 @@ def _judge(run: Controlled, snapshot, result, over: threading.Event) -> None:
             judged = replace(
                 result, sequence=sequence, verdicts=tuple(clear), fault=fault, stage_ms={"carve": 5.0}
             )
+            at_s = time.monotonic()
             decision = run.gate.decide(judged)
-            run.held.append((time.monotonic(), any(may.held and may.speed > 0 for may in decision.motions)))
+            run.held.append((at_s, any(may.held and may.speed > 0 for may in decision.motions)))
             if decision.answer is not None:
                 run.resets.append(decision.answer)
             done = Pass(snapshot, judged, 0.0, decision)
