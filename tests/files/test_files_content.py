@@ -30,7 +30,7 @@ def array(save):
         (picture("PNG"), "a PNG image"),
         (array(np.save), "an array of NumPy"),
         (array(np.savez), "a ZIP archive"),
-        (gzip.compress(b"<robot/>"), "compressed by gzip"),
+        (gzip.compress(b"<robot/>", mtime=0), "compressed by gzip"),
         (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\n", "a pointer of Git LFS"),
         (b"\n<!DOCTYPE html><html>404</html>", "a web page"),
     ],
