@@ -196,7 +196,9 @@ Second table: what it costs where everything stands still, exact images, 2 cm, r
         """
 Random poses, from which one joint was driven on until 0.3 to 20 mm were left to an object: the C-arm in the six setups,
 and the arm of `examples/arm_on_a_table` among things in six places. Space is the truth in voxels of 2 cm: blocked is
-each voxel that an object touches, within the machine as well. *lead away*: within S no link comes nearer to anything
+each voxel that an object touches, within the machine as well. *voxels*: nothing more is known, as of a volume that
+comes from elsewhere. *in parts*: what the check asks again is known in quarters of a voxel's edge, as from cameras that
+resolve them ([parts](safety.md#looked-at-again-in-parts)). *lead away*: within S no link comes nearer to anything
 that is less than a voxel's diagonal away, and at S nothing is that near any more that was at the start
 ([how](safety.md#close-beside-something)).
 """,

@@ -61,11 +61,11 @@ def hand_tables(rows: Sequence[Row]) -> list[str]:
 
 
 def escape_tables(rows: Sequence[Row]) -> list[str]:
-    """Motions beside an object: refused, or let go too far, by machine."""
+    """Motions beside an object: refused, or let go too far, by space and machine."""
     return table(
         _summaries(rows),
         {
-            **same("machine", "poses", "motions"),
+            **same("space", "machine", "poses", "motions"),
             "least gap [mm]": of("least_gap_mm", 2),
             "lead away": of("leads_away"),
             "of these stop": of("refused"),

@@ -1,12 +1,17 @@
 """Poses close beside an object: how they are made, what leads away, and how rows sum up."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from elbowroom.evaluate.escape.escape import DUE, escape_summary, leads_away
+from elbowroom.evaluate.escape.in_parts import TrueParts
 from elbowroom.evaluate.escape.poses import GAPS_M, NEAR, Scene, pose_beside
+from elbowroom.geometry import VoxelGrid
 from elbowroom.motion import Motion
-from elbowroom.simulate import Solid
+from elbowroom.reconstruct import FreeSpace
+from elbowroom.simulate import Moment, Solid, true_occupancy
 from elbowroom.simulate.shapes import box, join
 from reference import motion_machines as machines
 from reference.motion_machines import HOME, room
@@ -51,14 +56,32 @@ def test_gaps_are_those_of_links_that_move(scene):
     assert scene.truth.gaps(HOME, "nod", 0.001) == {}
 
 
-def test_rows_sum_up_by_machine():
-    def row(scene, level, leads, beyond=False):
-        said = {"scene": scene, "pose": 1, "gap_mm": 2.0, "level": level, "leads_away": leads}
+def test_parts_are_free_that_nothing_touches(scene):
+    whole = FreeSpace.from_occupied(scene.grid, scene.occupied)
+    space = replace(whole, source=TrueParts(scene.solids))
+    finer = VoxelGrid(
+        scene.grid.origin_m, tuple(4 * n for n in scene.grid.shape), scene.grid.voxel_size_m / 4
+    )
+    occupied = true_occupancy(finer, Moment(0.0, scene.solids, {})).occupied
+    some = np.argwhere(scene.occupied)
+    assert len(some) > 20
+    for i, j, k in some[:: len(some) // 20].tolist():
+        word = int(space.free_parts((i, j, k)))
+        said = np.array([word >> n & 1 for n in range(64)], dtype=bool).reshape(4, 4, 4)
+        assert (said == ~occupied[4 * i : 4 * i + 4, 4 * j : 4 * j + 4, 4 * k : 4 * k + 4]).all()
+        assert whole.free_parts((i, j, k)) == 0
+
+
+def test_rows_sum_up_by_space_and_machine():
+    def row(scene, level, leads, beyond=False, space="voxels"):
+        said = {"scene": scene, "pose": 1, "space": space, "gap_mm": 2.0, "level": level, "leads_away": leads}
         return {**said, "escapes": leads, "beyond": beyond, "touching": False}
 
     rows = [row("one, a", "stop", True), row("one, b", "clear", True), row("two, a", "stop", False, True)]
-    every, one, two = escape_summary(rows)
+    rows += [row("one, a", "clear", True, space="in parts")]
+    every, one, two, *fine = escape_summary(rows)
     assert [each["machine"] for each in (every, one, two)] == ["all", "one", "two"]
     assert (every["motions"], every["leads_away"], every["refused"], every["beyond"]) == (3, 2, 1, 1)
     assert (one["refused_pct"], two["refused_pct"], two["beyond"]) == (50.0, 0.0, 1)
+    assert (fine[0]["space"], fine[0]["motions"], fine[0]["refused"]) == ("in parts", 1, 0)
     assert {due.key for due in DUE} <= set(every)

@@ -20,8 +20,9 @@ def escape(
 ) -> None:
     """Check all motions of poses 0.3 to 20 mm beside an object against exact mesh distance (coal).
 
-    The C-arm in six rooms, and the arm of examples/arm_on_a_table among things. Space is the truth in voxels. Motions
-    that lead away must go; none may be announced, or go, into what stands there.
+    The C-arm in six rooms, and the arm of examples/arm_on_a_table among things. Space is the truth
+    in voxels, and again in parts of those that are asked again, as images are. Motions that lead away must go; none may
+    be announced, or go, into what stands there.
     """
     from elbowroom.cli.evaluate.measured import measured
     from elbowroom.cli.evaluate.shown import as_table
@@ -30,7 +31,7 @@ def escape(
 
     counts = ("poses", "motions", "leads_away", "refused", "escapes", "beyond", "touching")
     show = as_table(
-        {"machine": "{machine}", **{name.replace("_", " "): f"{{{name}}}" for name in counts}},
+        {"space": "{space}", "machine": "{machine}", **{name.replace("_", " "): f"{{{name}}}" for name in counts}},
         sentence(DUE),
     )
     count = QUICK if quick else poses

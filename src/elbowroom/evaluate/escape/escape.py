@@ -1,16 +1,20 @@
 """Poses a few millimetres beside an object: which motions are refused although they lead away, which go too far?
 
 Space is the truth in voxels: blocked is each voxel that an object touches, within the machine as well. So this asks the
-swept check alone, without cameras. *Leads away*: within S no link comes nearer to anything that is less than a voxel's
-diagonal away than it stands, and at S nothing is so near any more that was at the start.
+swept check alone, without cameras: once as of a volume that comes from elsewhere, in *voxels*; and once *in parts*,
+where of a voxel that the check asks of again those parts are free that nothing touches, as if cameras were asked.
+*Leads away*: within S no link comes nearer to anything that is less than a voxel's diagonal away than it stands, and at
+S nothing is so near any more that was at the start.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from elbowroom.evaluate.due import Due
+from elbowroom.evaluate.escape.in_parts import TrueParts
 from elbowroom.evaluate.escape.poses import Scene, pose_beside, scenes
 from elbowroom.evaluate.rooms.scene import SAME
 from elbowroom.motion import Level, Motion, Verdict, check_motions
@@ -36,7 +40,7 @@ def escape_rows(poses: int = 300, *, voxel_size_m: float = 0.02, seed: int = 5) 
         seed: of places and poses.
 
     Yields:
-        A row of kind "verdict" for each pose and motion.
+        A row of kind "verdict" for each pose, motion and space.
 
     Raises:
         PackageError: coal is not installed.
@@ -44,18 +48,34 @@ def escape_rows(poses: int = 300, *, voxel_size_m: float = 0.02, seed: int = 5) 
     """
     every = list(scenes(voxel_size_m, seed))
     for n, scene in enumerate(every):
-        space = FreeSpace.from_occupied(scene.grid, scene.occupied)
+        volume = FreeSpace.from_occupied(scene.grid, scene.occupied)
+        spaces = {"voxels": volume, "in parts": replace(volume, source=TrueParts(scene.solids))}
         rng = np.random.default_rng([seed, n])
         for pose in range(n, poses, len(every)):
             joints, gap = pose_beside(scene, rng)
-            verdicts = check_motions(space, scene.machine, joints, scene.motions)
-            for motion, verdict in zip(scene.motions, verdicts, strict=True):
-                said = {"kind": "verdict", "scene": scene.name, "pose": pose, "gap_mm": 1e3 * gap}
-                yield {**said, **_judged(scene, joints, motion, verdict)}
+            truths = [_true(scene, joints, motion) for motion in scene.motions]
+            for words, space in spaces.items():
+                said = {
+                    "kind": "verdict",
+                    "scene": scene.name,
+                    "pose": pose,
+                    "space": words,
+                    "gap_mm": 1e3 * gap,
+                }
+                verdicts = check_motions(space, scene.machine, joints, scene.motions)
+                for motion, verdict, truth in zip(scene.motions, verdicts, truths, strict=True):
+                    yield {**said, **_judged(scene, joints, motion, verdict, truth)}
 
 
-def _judged(scene: Scene, joints: Mapping[str, float], motion: Motion, verdict: Verdict) -> dict[str, Any]:
+def _true(scene: Scene, joints: Mapping[str, float], motion: Motion) -> dict[str, Any]:
     contact = scene.truth.until_contact(joints, motion)
+    away = not contact.touches and leads_away(scene, joints, motion)
+    return {"true_travel": contact.travel, "leads_away": away}
+
+
+def _judged(
+    scene: Scene, joints: Mapping[str, float], motion: Motion, verdict: Verdict, truth: Mapping[str, Any]
+) -> dict[str, Any]:
     announced = np.linspace(0.0, verdict.free_travel, STEPS + 2)[1:-1]
     return {
         "joint": motion.joint,
@@ -64,10 +84,9 @@ def _judged(scene: Scene, joints: Mapping[str, float], motion: Motion, verdict: 
         "cause": verdict.cause.name.lower(),
         "escapes": verdict.escapes,
         "free_travel": verdict.free_travel,
-        "true_travel": contact.travel,
-        "beyond": verdict.free_travel > contact.travel + SAME,
+        **truth,
+        "beyond": verdict.free_travel > truth["true_travel"] + SAME,
         "touching": any(_touches(scene, _moved(joints, motion, travel), motion) for travel in announced),
-        "leads_away": not contact.touches and leads_away(scene, joints, motion),
     }
 
 
@@ -102,12 +121,15 @@ def _moved(joints: Mapping[str, float], motion: Motion, travel: float) -> dict[s
 
 
 def escape_summary(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """A row of kind "summary" for each machine and for all, of rows of `escape_rows`."""
-    machines = dict.fromkeys(row["scene"].split(",")[0] for row in rows)
-    return [
-        _summed(machine, [row for row in rows if machine in ("all", row["scene"].split(",")[0])])
-        for machine in ("all", *machines)
-    ]
+    """A row of kind "summary" for each space, of it for all and for each machine, of rows of `escape_rows`."""
+    sums = []
+    for space in dict.fromkeys(row["space"] for row in rows):
+        own = [row for row in rows if row["space"] == space]
+        machines = dict.fromkeys(row["scene"].split(",")[0] for row in own)
+        for machine in ("all", *machines):
+            some = [row for row in own if machine in ("all", row["scene"].split(",")[0])]
+            sums.append({"kind": "summary", "space": space, **_summed(machine, some)})
+    return sums
 
 
 def _summed(machine: str, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -115,7 +137,6 @@ def _summed(machine: str, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     stop = Level.STOP.name.lower()
     refused = sum(row["level"] == stop for row in away)
     return {
-        "kind": "summary",
         "machine": machine,
         "poses": len({(row["scene"], row["pose"]) for row in rows}),
         "motions": len(rows),
