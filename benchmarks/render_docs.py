@@ -414,6 +414,17 @@ the cameras' exposures are spread over a frame period, so the oldest frame is up
         tables.decision_tables,
     ),
     Section(
+        "laws.json",
+        "What ages and own links cost a pass",
+        """
+The cycle of the simulated room, 21 cameras of 640x480 with the noise of time-of-flight cameras, with ages evenly spread
+from 0 to 67 ms and people taken for 2.0 m/s, with every two links compared that may meet, with both, and with neither:
+all images of one moment, and no links compared; by turns in one process. Escape is on in all of them.
+""",
+        "elbowroom bench laws",
+        tables.law_tables,
+    ),
+    Section(
         "latch.json",
         "The latch",
         """

@@ -5,7 +5,7 @@ from result_tables.calibration import calibration_tables
 from result_tables.cells import Row, any_tables
 from result_tables.drift import drift_tables
 from result_tables.faults import fault_tables
-from result_tables.lag import decision_tables, lag_tables
+from result_tables.lag import decision_tables, lag_tables, law_tables
 from result_tables.latch import latch_tables
 from result_tables.long import malformed_tables, soak_tables
 from result_tables.looks import contradiction_tables, looks_tables
@@ -46,6 +46,7 @@ __all__ = [
     "hand_tables",
     "lag_tables",
     "latch_tables",
+    "law_tables",
     "looks_tables",
     "machine_tables",
     "malformed_tables",

@@ -1,9 +1,9 @@
-"""The closed loop beside exact geometry, and exposure to decision."""
+"""The closed loop beside exact geometry, exposure to decision, and what laws cost."""
 
 from collections.abc import Sequence
 
 from elbowroom.evaluate.lag import lag
-from elbowroom.evaluate.speed import decision
+from elbowroom.evaluate.speed import decision, laws
 from result_tables.cells import Cell, Row, centimetres, of, table
 
 LAG: dict[str, Cell] = {
@@ -39,6 +39,17 @@ DECISION: dict[str, Cell] = {
 }
 
 
+LAWS: dict[str, Cell] = {
+    "pass with": of("case"),
+    "voxel": centimetres,
+    "detail": of("detail"),
+    "rounds": of("rounds"),
+    "median ms": of("median_ms", 1),
+    "99 % ms": of("p99_ms", 1),
+    "of that with neither": of("share", 2, due=laws.DUE),
+}
+
+
 def lag_tables(rows: Sequence[Row]) -> list[str]:
     """A row for each skew, of all motions and of the machine's own."""
     return table([row for row in rows if row.get("kind") == "lag"], LAG)
@@ -47,3 +58,8 @@ def lag_tables(rows: Sequence[Row]) -> list[str]:
 def decision_tables(rows: Sequence[Row]) -> list[str]:
     """A row for each case."""
     return table(rows, DECISION)
+
+
+def law_tables(rows: Sequence[Row]) -> list[str]:
+    """A row for each case."""
+    return table(rows, LAWS)

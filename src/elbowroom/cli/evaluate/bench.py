@@ -46,11 +46,12 @@ Part = Annotated[
 
 def bench(
     what: Annotated[
-        Literal["cycle", "decision", "start", "parts", "machine", "record", "calibration"],
+        Literal["cycle", "decision", "start", "parts", "laws", "machine", "record", "calibration"],
         typer.Argument(
             help="cycle: carve and whole cycles; decision: exposure to decision in the running monitor; "
             "start: a new process to its first answer; parts: the machine in images and space, motions, a path; "
-            "machine: what triangles cost; record: whether recording keeps up; calibration: how well cameras are found."
+            "laws: what ages and own links cost a pass; machine: what triangles cost; record: whether recording "
+            "keeps up; calibration: how well cameras are found."
         ),
     ] = "cycle",
     quick: Annotated[bool, typer.Option(help="Few rounds: a first impression in under a minute.")] = False,
@@ -85,6 +86,10 @@ def bench(
         from elbowroom.cli.evaluate.bench_run import run_bench_parts
 
         run_bench_parts(quick, threads, against, json)
+    elif what == "laws":
+        from elbowroom.cli.evaluate.bench_run import run_bench_laws
+
+        run_bench_laws(quick, cameras, size, threads, json)
     elif what == "record":
         from elbowroom.cli.evaluate.bench_run import run_bench_record
 

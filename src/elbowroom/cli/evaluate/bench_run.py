@@ -136,6 +136,37 @@ def run_bench_parts(quick: bool, threads: int | None, against: Path | None, json
     measured("cases", rows, None, json, show)
 
 
+def run_bench_laws(quick: bool, cameras: int, size: str, threads: int | None, json: Path | None) -> None:
+    """What ages and own links cost a pass.
+
+    Args:
+        quick: few rounds.
+        cameras, size, threads: of the simulated cameras, and over how many threads work is spread.
+        json: file for the rows.
+    """
+    from elbowroom.evaluate.speed.laws import CASES, law_rows
+    from elbowroom.evaluate.speed.laws import DUE as LAWS_DUE
+    from elbowroom.evaluate.speed.questions import HEADLINE, Asked
+    from elbowroom.geometry.parallel import default_threads
+    from elbowroom.simulate.cameras import SIZES
+
+    show = as_table(
+        {
+            "case": "{case}",
+            "voxel": voxel,
+            "rounds": "{rounds}",
+            "median": "{median_ms:.1f} ms",
+            "99 %": "{p99_ms:.1f} ms",
+            "of that without": "{share:.2f}",
+        },
+        sentence(LAWS_DUE),
+    )
+    width, height = SIZES[size][:2]
+    asked = Asked(HEADLINE, cameras=cameras, width=width, height=height, threads=threads or default_threads())
+    rows = law_rows(asked, QUICK_ROUNDS) if quick else law_rows(asked)
+    measured("cases", rows, len(CASES), json, show)
+
+
 def run_bench_machine(quick: bool, cameras: int, json: Path | None) -> None:
     """What a machine of many triangles costs, beside the same one of few.
 

@@ -31,7 +31,11 @@ def escape(
 
     counts = ("poses", "motions", "leads_away", "refused", "escapes", "beyond", "touching")
     show = as_table(
-        {"space": "{space}", "machine": "{machine}", **{name.replace("_", " "): f"{{{name}}}" for name in counts}},
+        {
+            "space": "{space}",
+            "machine": "{machine}",
+            **{name.replace("_", " "): f"{{{name}}}" for name in counts},
+        },
         sentence(DUE),
     )
     count = QUICK if quick else poses
