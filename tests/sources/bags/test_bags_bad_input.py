@@ -218,6 +218,41 @@ def test_a_database_that_was_cut_off_is_read_or_refused_by_name(tmp_path):
             assert str(error).startswith(str(cut)) and "\n" not in str(error)
 
 
+def row_of_4_gib(data, page_size, page, cell):
+    """A row of a table says that it is 2**32 - 1 bytes long, and its header longer than a page."""
+    changed, at = bytearray(data), page * page_size
+    start = at + struct.unpack_from(">H", data, at + (100 if page == 0 else 0) + 8 + 2 * cell)[0]
+    said = b"\x8f\xff\xff\xff\x7f" + b"\x01" + b"\xa7\x08"
+    changed[start : start + len(said)] = said
+    return bytes(changed)
+
+
+def test_a_row_that_says_that_it_is_4_gib_long_is_damage_and_no_lack_of_memory(tmp_path):
+    # SQLite answers "no memory" to some of them, without asking for any
+    whole = file_of(tmp_path, "sqlite3")
+    data, bad = whole.read_bytes(), tmp_path / "bad.db3"
+    (page_size,) = struct.unpack_from(">H", data, 16)
+    leaves = [
+        (at // page_size, *struct.unpack_from(">H", data, head + 3))
+        for at in range(0, len(data), page_size)
+        if data[head := at + (100 if at == 0 else 0)] == 13
+    ]
+    with Bag(whole) as bag:
+        messages = sum(map(bag.count, bag.topics))
+    said = []
+    for page, cells in leaves:
+        for cell in range(cells):
+            bad.write_bytes(row_of_4_gib(data, page_size, page, cell))
+            try:
+                with Bag(bad) as bag:
+                    assert sum(map(bag.count, bag.topics)) <= messages
+                    said += bag.notes
+            except BagError as error:
+                assert "sqlite3 FILE .recover" in str(error)
+                said.append(str(error))
+    assert any("no memory for the length that a row says" in one for one in said)
+
+
 @pytest.mark.parametrize("how", ("NONE", "LZ4", "ZSTD", "sqlite3"))
 def test_damage_anywhere_is_no_crash_and_takes_no_memory(how, tmp_path):
     data, chance, bad = file_of(tmp_path, how).read_bytes(), random.Random(3), tmp_path / "bad.bag"

@@ -18,8 +18,9 @@ COLUMNS = {
     "messages": {"id", "topic_id", "timestamp", "data"},
 }
 MOST_TOPICS = 10_000
-FAULTS = sqlite3.Error, UnicodeDecodeError
-"""Of a damaged file; the second where the fault's own text quotes what is no UTF-8."""
+FAULTS = sqlite3.Error, UnicodeDecodeError, MemoryError
+"""Of a damaged file; the second where the fault's own text quotes what is no UTF-8; the third where a row says that it
+is almost 4 GiB long: SQLite's own sum of its pages wraps to none, and it says that there is no memory."""
 
 
 class SqliteFile:
@@ -45,7 +46,7 @@ class SqliteFile:
             self._look_through()
         except FAULTS as error:
             self.close()
-            raise BagError(f"{path}: a database that cannot be read ({error}){_hint(error)}") from None
+            raise BagError(f"{path}: a database that cannot be read ({_said(error)}){_hint(error)}") from None
         except BaseException:
             self.close()
             raise
@@ -66,7 +67,7 @@ class SqliteFile:
             with self._lock, closing(self._blob(stored.place)) as blob:
                 data = blob.read()
         except FAULTS as error:
-            raise BagError(f"{what}: cannot be read ({error})") from None
+            raise BagError(f"{what}: cannot be read ({_said(error)})") from None
         return unpacked(data, "zstd", LARGEST_MESSAGE, what) if is_zstd(data) else data
 
     def close(self) -> None:
@@ -102,7 +103,7 @@ class SqliteFile:
                     stamp = self._stamp(number, size)
                     self._stored[topic.name].append(Stored(received, stamp, size, self.part, number, 0))
         except FAULTS as error:
-            self.notes.append(f"{self.path}: cut off or damaged ({error}); it is read up to there")
+            self.notes.append(f"{self.path}: cut off or damaged ({_said(error)}); it is read up to there")
 
     def _rows(self) -> Iterator[tuple[int, int, int, int]]:
         asked = "select id, topic_id, timestamp, length(data) from messages not indexed where typeof(data) = 'blob'"
@@ -131,12 +132,16 @@ def _opened(path: Path) -> sqlite3.Connection:
         base.execute("pragma cell_size_check = on")
         base.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_MESSAGE)
     except FAULTS as error:
-        raise BagError(f"{path}: cannot be opened ({error}){_hint(error)}") from None
+        raise BagError(f"{path}: cannot be opened ({_said(error)}){_hint(error)}") from None
     return base
+
+
+def _said(error: Exception) -> str:
+    return "no memory for the length that a row says" if isinstance(error, MemoryError) else str(error)
 
 
 def _hint(error: Exception) -> str:
     text = str(error)
-    if "malformed" in text or "not a database" in text:
+    if isinstance(error, MemoryError) or "malformed" in text or "not a database" in text:
         return "; it is cut off or damaged: `sqlite3 FILE .recover` saves what is whole"
     return ""
