@@ -18,7 +18,7 @@
 Four are warnings, not errors. `PoseWarning`: a pose was a little off a rotation and was brought to the nearest one.
 `ValueWarning`: something that was given reads as valid, but is most likely not meant so.
 `MachineWarning`: a URDF has a slip that passes; the message says how it is taken.
-`UnfinishedWarning`: Ctrl-C ended what wrote a file; the message says where is kept what there was.
+`UnfinishedWarning`: Ctrl-C or an error ended what wrote a file; the message says where is kept what there was.
 """
 
 
@@ -87,7 +87,7 @@ class PoseWarning(UserWarning):
 
 
 class UnfinishedWarning(UserWarning):
-    """Ctrl-C ended a run that wrote a file; what it had until then is kept aside."""
+    """Ctrl-C or an error ended a run that wrote a file; what it had until then is kept aside."""
 
 
 class ValueWarning(UserWarning):

@@ -155,6 +155,24 @@ def test_ctrl_c_shows_what_there_is_and_keeps_it_aside(tmp_path, monkeypatch, ca
     assert len(json.loads(part.read_text())["rows"]) == 1
 
 
+@pytest.mark.filterwarnings("default::elbowroom.errors.UnfinishedWarning")
+def test_an_error_loses_no_row_that_was_measured(tmp_path, monkeypatch, capsys):
+    from elbowroom.evaluate.rooms import alone
+
+    rows = alone.alone_rows
+
+    def ended(*args, **options):
+        yield next(rows(*args, **options))
+        raise InputError("the room is gone")
+
+    monkeypatch.setattr(alone, "alone_rows", ended)
+    out = tmp_path / "out.json"
+    assert run(["evaluate", "alone", "--poses", "3", *SMALL, "--json", str(out)]) == 2
+    told = capsys.readouterr()
+    assert "Ended by an error after 1 of 24" in told.out and "the room is gone" in told.err
+    assert [path.name for path in tmp_path.iterdir()] == ["out.part.json"]
+
+
 @pytest.mark.parametrize("command", ["poses", "travel"])
 def test_without_coal_one_line_names_the_extra(monkeypatch, capsys, command):
     monkeypatch.setitem(sys.modules, "coal", None)

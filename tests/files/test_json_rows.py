@@ -53,17 +53,36 @@ def test_an_interrupted_command_leaves_no_file_that_looks_whole(tmp_path, interr
     assert not (tmp_path / "out.json").exists()
 
 
-def test_what_was_found_until_ctrl_c_is_kept_aside_and_said(tmp_path):
+@pytest.mark.parametrize(
+    ("end", "how"),
+    [
+        (KeyboardInterrupt, "interrupted"),
+        (InputError, "ended by an error"),
+        (MemoryError, "ended by an error"),
+    ],
+)
+def test_what_was_found_until_ctrl_c_or_an_error_is_kept_aside_and_said(end, how, tmp_path):
     path = tmp_path / "run.json"
-    said = pytest.warns(UnfinishedWarning, match=r"the 2 rows until then are in .*run\.part\.json")
-    with said, pytest.raises(KeyboardInterrupt), json_rows(path) as add:
+    said = pytest.warns(UnfinishedWarning, match=rf"{how}; the 2 rows until then are in .*run\.part\.json")
+    with said, pytest.raises(end), json_rows(path) as add:
         add({"a": "äöü"})
         add({"b": 2})
-        raise KeyboardInterrupt
+        raise end
     part = tmp_path / "run.part.json"
     assert [path.name for path in tmp_path.iterdir()] == ["run.part.json"]
     kept = json.loads(part.read_text(encoding="utf-8"))
     assert kept["rows"] == [{"a": "äöü"}, {"b": 2}] and kept["meta"]["unfinished"] is True
+
+
+def test_where_what_there_was_cannot_be_kept_the_error_itself_is_said(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("elbowroom.files.json_rows._keep_part", full)
+    with pytest.raises(ValueError, match="what ended it"), json_rows(tmp_path / "run.json") as add:
+        add({"a": 1})
+        raise ValueError("what ended it")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_missing_folder_is_said_before_the_work(tmp_path):

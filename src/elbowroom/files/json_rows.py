@@ -15,7 +15,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from elbowroom.errors import UnfinishedWarning
+from elbowroom.errors import InputError, UnfinishedWarning
 
 AddRow = Callable[[Mapping[str, Any]], None]
 END = "\n]}\n"
@@ -25,8 +25,8 @@ END = "\n]}\n"
 def json_rows(path: Path | None) -> Iterator[AddRow]:
     """Gives a function that adds a row to the file; the file is there, whole, once the block has ended well.
 
-    Rows go to disk as they come, so a long run needs no more memory than a short one. What Ctrl-C ends keeps its rows
-    aside, `run.part.json` for `run.json`, with the word `unfinished` in its meta, and a warning says so.
+    Rows go to disk as they come, so a long run needs no more memory than a short one. What Ctrl-C or an error ends
+    keeps its rows aside, `run.part.json` for `run.json`, with the word `unfinished` in its meta, and a warning says so.
 
     Args:
         path: of the file; None: rows are dropped.
@@ -35,7 +35,7 @@ def json_rows(path: Path | None) -> Iterator[AddRow]:
         InputError: its folder does not exist or cannot be written to; said at once, not after the work.
 
     Warns:
-        UnfinishedWarning: Ctrl-C ended it; names the file with the rows until then.
+        UnfinishedWarning: Ctrl-C or an error ended it; names the file with the rows until then.
     """
     if path is None:
         yield lambda row: None
@@ -54,12 +54,18 @@ def json_rows(path: Path | None) -> Iterator[AddRow]:
 
         try:
             yield add
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, Exception) as ended:
+            kept = None
             if rows:
-                file.write(END)
-                file.flush()
-                kept = _keep_part(path, unfinished, head)
-                warnings.warn(f"interrupted; the {rows} rows until then are in {kept}", UnfinishedWarning, 3)
+                with suppress(
+                    OSError, InputError
+                ):  # a disk that is full: what ended it is to be said, not this
+                    file.write(END)
+                    file.flush()
+                    kept = _keep_part(path, unfinished, head)
+            if kept is not None:
+                how = "interrupted" if isinstance(ended, KeyboardInterrupt) else "ended by an error"
+                warnings.warn(f"{how}; the {rows} rows until then are in {kept}", UnfinishedWarning, 3)
             raise
         file.write(END)
 

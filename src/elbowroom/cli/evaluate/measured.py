@@ -16,6 +16,7 @@ from rich.progress import (
 )
 
 from elbowroom.cli.evaluate.shown import Show, print_
+from elbowroom.errors import ElbowroomError
 from elbowroom.files.json_rows import json_rows
 
 Row = Mapping[str, Any]
@@ -33,7 +34,8 @@ def measured(
 ) -> None:
     """Writes rows and their summary, then shows the summary, or else the rows.
 
-    Where there is a summary, rows leave out what it says. After Ctrl-C: shows what there is; its rows are kept aside.
+    Where there is a summary, rows leave out what it says. After Ctrl-C or an error: shows what there is; its rows are
+    kept aside.
 
     Args:
         what: the rows are.
@@ -54,11 +56,12 @@ def measured(
             shown = summary(rows) if summary else rows
             for row in shown if summary else ():
                 add(row)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, ElbowroomError, OSError) as ended:
         if rows:
             show(summary(rows) if summary else rows)
             of = "" if total is None else f" of {total}"
-            print_(f"Interrupted after {len(rows)}{of} {what}.")
+            how = "Interrupted" if isinstance(ended, KeyboardInterrupt) else "Ended by an error"
+            print_(f"{how} after {len(rows)}{of} {what}.")
         raise
     show(shown)
 
