@@ -100,9 +100,10 @@ interval of 95 %. *the worst*: when it was, and its longest parts in ms.
 Every reader of input from outside, led by coverage (atheris, libFuzzer), from inputs as this package writes them:
 MCAP and sqlite3 as bags with all that is read of them, what rosbag2 writes beside its files, recordings of a run, depth
 images, masks, site files, joints as CSV and as messages, and the port of the Modbus server, which has to answer a right
-request as before after each. *crashes*: anything but an error of this package; *hangs*: more than 2 s of processor time
-for one input; *allocations*: the reader gets twice the memory that its code names as its limit, 64 MB at least, and
-asks for more.
+request as before after each. *crashes*: anything but an error of this package, and an experiment that ended before its
+time, whatever ended it (it has no processor time then); *hangs*: more than 2 s of processor time for one input, twice;
+*allocations*: for each input the reader gets twice the memory that its code names as its limit, 64 MB at least, beside
+what there was before, and asks for more.
 """,
         "elbowroom evaluate malformed",
         tables.malformed_tables,

@@ -1,20 +1,23 @@
 """Readers of input from outside: what is meant is read, what is malformed is an error of this package, quickly."""
 
 import random
+import sys
 import time
 import tracemalloc
 
+import numpy as np
 import pytest
 
-from elbowroom.errors import BagError
-from elbowroom.evaluate.malformed import targets as all_targets
+from elbowroom.errors import BagError, InputError
+from elbowroom.evaluate.malformed import campaign
 from elbowroom.evaluate.malformed.campaign import DUE
 from elbowroom.evaluate.malformed.fuzzing import left_alone
-from elbowroom.evaluate.malformed.targets import Target, quietly, target_of, targets
-from elbowroom.evaluate.malformed.trial import Trial
+from elbowroom.evaluate.malformed.targets import LEAST_LIMIT, Target, quietly, target_of, targets
+from elbowroom.evaluate.malformed.trial import Trial, memory_held
 from elbowroom.sources.bags import depth
 
 MUTANTS = {"modbus": 60, "recording": 60, "site": 60}
+LINUX = pytest.mark.skipif(sys.platform != "linux", reason="memory is held on Linux alone")
 NAMES = [target.name for target in targets()]
 
 
@@ -96,6 +99,85 @@ def test_a_crash_a_hang_and_an_allocation_are_kept_once_each(tmp_path, monkeypat
         assert kept.read_bytes() == b"one"
 
 
+def test_a_reader_that_loads_a_module_first_does_not_hang(tmp_path, monkeypatch):
+    monkeypatch.setattr("elbowroom.evaluate.malformed.trial.SLOW_S", 0.05)
+    first = iter([0.08])
+    trial = Trial(wrong(lambda: busy(next(first, 0.0))), tmp_path, tmp_path)
+    trial.one(b"")
+    assert not trial.found and trial.runs == 1
+
+
+@LINUX
+def test_what_a_reader_may_take_is_beside_what_was_taken_before_it(tmp_path):
+    taken = []
+    trial = Trial(
+        wrong(lambda: taken.append(np.empty(LEAST_LIMIT, np.uint8))), tmp_path, tmp_path, holds=True
+    )
+    for _ in range(5):
+        trial.one(b"")
+    assert not trial.found and len(taken) == 5
+
+
+@LINUX
+def test_more_than_twice_the_limit_is_refused_and_only_within(tmp_path):
+    def take():
+        return np.empty(16 * LEAST_LIMIT, np.uint8)
+
+    with pytest.raises(MemoryError), memory_held(wrong(take)):
+        take()
+    assert take().size
+    trial = Trial(wrong(take), tmp_path, tmp_path, holds=True)
+    trial.one(b"")
+    assert [key.split()[0] for key in trial.found] == ["allocation"]
+
+
+class Dies:
+    """A process that ends at once, having said something."""
+
+    def __init__(self, code, words, stdout, **_):
+        stdout.write(words)
+        self.returncode = code
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def poll(self):
+        return self.returncode
+
+    def kill(self):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("code", "log"),
+    [(1, b"#8192 pulse cov: 31 ft: 9\nMemoryError: std::bad_alloc"), (-9, b""), (1, b"no atheris")],
+)
+def test_a_process_that_dies_is_a_row_and_the_next_reader_begins(code, log, tmp_path, monkeypatch):
+    monkeypatch.setattr(campaign, "package", lambda name: None)
+    monkeypatch.setattr(campaign.subprocess, "Popen", lambda words, stdout, stderr: Dies(code, log, stdout))
+    rows = list(campaign.malformed_rows(0.1, ("mask", "joints"), tmp_path / "kept" / "here"))
+    assert [row["target"] for row in rows] == ["mask", "joints"]
+    for row in rows:
+        (found,) = row["found"]
+        tried = 8192 if b"#8192" in log else 0
+        assert (
+            f"the experiment ended after {tried} inputs" in found["error"] and f"by {code}" in found["error"]
+        )
+        assert log[-10:].decode() in found["error"]
+        assert row["crashes"] == 1 and row["cpu_s"] is None
+        assert [due.met(row) for due in DUE] == [False, True, True]
+
+
+def test_where_inputs_cannot_be_kept_is_said_before_the_work(tmp_path, monkeypatch):
+    monkeypatch.setattr(campaign, "package", lambda name: None)
+    (tmp_path / "kept").write_bytes(b"")
+    with pytest.raises(InputError, match="is no folder"):
+        next(campaign.malformed_rows(0.1, ("mask",), tmp_path / "kept"))
+
+
 def busy(seconds):
     until = time.process_time() + seconds
     while time.process_time() < until:
@@ -127,4 +209,4 @@ def test_a_small_input_takes_little_memory(tmp_path):
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 40_000_000
-    assert all_targets.LEAST_LIMIT == 1 << 26
+    assert LEAST_LIMIT == 1 << 26

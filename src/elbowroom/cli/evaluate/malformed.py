@@ -26,8 +26,9 @@ def malformed(
     MCAP, databases of rosbag2 and their metadata, recordings of a run, depth images,
     site files, joints, and the port of the Modbus server. Inputs begin as this
     package writes them. Anything but an error of this package is a crash; 2 s of
-    processor time for one input is a hang; more than twice the memory that the code
-    says is refused to it. Needs atheris, on Linux.
+    processor time for one input, twice, is a hang; more than twice the memory that
+    the code says is refused to it. A reader whose experiment dies is said in its row,
+    and the next one begins. Needs atheris, on Linux.
     """
     from elbowroom.cli.evaluate.measured import measured, told
     from elbowroom.cli.evaluate.shown import as_table, text

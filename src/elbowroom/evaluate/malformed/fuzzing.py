@@ -7,6 +7,7 @@ import json
 import os
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 from elbowroom.extras import package
@@ -37,18 +38,18 @@ def main() -> None:
     name, folder, seconds = sys.argv[1], Path(sys.argv[2]), float(sys.argv[3])
     atheris = package("atheris")
     with atheris.instrument_imports(include=list(PACKAGES), exclude=left_alone()):
-        from elbowroom.evaluate.malformed.targets import dictionary, target_of
-        from elbowroom.evaluate.malformed.trial import Trial, hold_memory
+        from elbowroom.evaluate.malformed.targets import dictionary, quietly, target_of
+        from elbowroom.evaluate.malformed.trial import Trial
 
         target = target_of(name)
         corpus, scratch = folder / "corpus", folder / "scratch"
         for each in (corpus, scratch):
             each.mkdir()
-        trial = Trial(target, folder, scratch)
+        trial = Trial(target, folder, scratch, holds=True)
         for number, seed in enumerate(target.seeds()):
             (corpus / f"seed-{number}").write_bytes(seed)
-            trial.one(seed)  # imports what it needs, while that is followed
-    hold_memory(target)
+            with suppress(Exception):  # libFuzzer tries it again, and what is found of it is kept then
+                quietly(target, seed, scratch)  # imports what it needs, while that is followed
     (folder / "words").write_bytes(dictionary(target))
     begun_s = time.process_time()
 
