@@ -88,6 +88,7 @@ def test_many_configurations_are_each_as_alone(arm):
         ({**AT_REST, "elbow": -3}, r"elbow: -3 rad is out of its limits, -2 to 2 rad"),
         ({**AT_REST, "elbow": [0.0, 2.5]}, r"elbow: 2.5 rad is out"),
         ({**AT_REST, "elbow": "left"}, "elbow: 'left' is not a number"),
+        ({**AT_REST, "elbow": 10**400}, "elbow: 10*0 is not a number"),
         ({**AT_REST, "elbow": [0.0, 1.0], "slide": [0.0, 0.1, 0.2]}, "unlike lengths"),
     ],
 )

@@ -24,6 +24,7 @@ TWO = ("slide", "turn")
         ((TWO, [0, 1], [[0, 0], [0, np.inf]]), "positions of point 1"),
         ((TWO, [0, 1], np.zeros((2, 2)), np.zeros((1, 2))), "velocities"),
         ((TWO, [0, 1], [["x", 0], [0, 0]]), "no table of numbers"),
+        ((TWO, [0, 1], [[10**400, 0], [0, 0]]), "no table of numbers"),
     ],
 )
 def test_what_is_no_path_is_refused_and_said(arguments, said):

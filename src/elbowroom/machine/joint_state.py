@@ -140,7 +140,7 @@ def _finite(joint: Joint, given: ArrayLike) -> NDArray[np.float64]:
     """A joint's positions as numbers [m or rad]."""
     try:
         values = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise MachineError(f"joint {joint.name}: {given!r} is not a number [{joint.unit}]") from None
     if not np.isfinite(values).all():
         raise MachineError(f"joint {joint.name}: position is not finite, got {given!r} [{joint.unit}]")

@@ -190,7 +190,7 @@ def _finite(given: ArrayLike, what: str, shape: tuple[int | None, ...]) -> Value
     """As a read-only array of a shape, of which None is any."""
     try:
         values = np.array(given, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise JointsError(f"path: {what} are no table of numbers") from None
     if values.ndim != len(shape) or any(n not in (m, None) for m, n in zip(values.shape, shape, strict=True)):
         raise JointsError(f"path: {what} have shape {values.shape}, must have {shape}")

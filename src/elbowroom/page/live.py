@@ -98,7 +98,7 @@ class Live:
                 continue
             try:
                 self._answer_one(viewer, asked)
-            except (KeyError, TypeError, ValueError, IndexError):
+            except (KeyError, TypeError, ValueError, IndexError, OverflowError):
                 continue  # no question that this page asks
 
     def _get_ready(self) -> None:

@@ -1,6 +1,7 @@
 """A recording judged again: identical, or the first difference is shown; cut off or damaged, it is said."""
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -170,6 +171,41 @@ def test_a_configuration_that_is_malformed_is_an_error(file, change):
     change(said)
     with pytest.raises(BagError, match=r"it: configuration\.json"):
         Configuration.read(json.dumps(said).encode(), b"", "it")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda said: said.update(sequence=10**400, lost=math.inf),
+        lambda said: said.update(wall_ns=math.inf),
+        lambda said: said["given"].update(joints={"long": 10**400}),
+        lambda said: said["given"].update(commanded={"long": -(10**400)}),
+        lambda said: said["given"]["velocities"].update(long=10**400),
+        lambda said: said["given"]["joints_of"].update(cam00={"long": 10**400}),
+        lambda said: said["given"].update(joints={"long": nested(900)}),
+        lambda said: said["given"].update(path={"long": 1}),
+    ],
+)
+def test_a_pass_whose_numbers_are_none_is_an_error(file, monkeypatch, change):
+    with Recording(file) as recording:
+        said, messages = recording._told(0)
+        change(said)
+        monkeypatch.setattr(Recording, "_told", lambda self, number: (said, messages))
+        with pytest.raises(BagError, match="pass 0: malformed"):
+            recording.at(0)
+
+
+def nested(deep):
+    return [] if deep == 0 else [nested(deep - 1)]
+
+
+def test_margins_whose_numbers_are_none_are_an_error(file):
+    with Recording(file) as recording:
+        configuration = recording.configuration()
+    assert configuration.figures() is not None
+    configuration.told["separation"]["look_m"] = 10**400
+    with pytest.raises(BagError, match="malformed: separation"):
+        configuration.figures()
 
 
 @SHARED

@@ -106,6 +106,7 @@ def test_a_kept_plan_is_the_same_plan(ground, planned, tmp_path) -> None:
         lambda text: "\x00" * 100,
         lambda text: text.replace('"faces": [', '"faces": [99999, 1, 2, '),
         lambda text: "[" * 100_000,
+        lambda text: text.replace('"joints": {}', '"joints": {"long": 1' + "0" * 400 + "}"),
     ],
 )
 def test_a_file_that_is_no_plan_is_refused_and_stays(ground, planned, tmp_path, spoil) -> None:

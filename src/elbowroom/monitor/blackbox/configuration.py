@@ -96,7 +96,7 @@ class Configuration:
             if not isinstance(separation, Separation):
                 raise TypeError("separation")
             return Figures(separation, float(said["look_m"]), entry, float(said["capability_m"]))
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise BagError(f"{CONFIGURATION}: malformed: separation ({type(error).__name__})") from None
 
     def cycle(self, keeps_images: bool = False) -> Cycle | SpaceCycle:

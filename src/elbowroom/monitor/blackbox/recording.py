@@ -174,7 +174,7 @@ class Recording:
             )
             numbers = int(told["sequence"]), int(told["wall_ns"]), int(told["lost"])
             return RecordedPass(number, *numbers, snapshot, told["judged"], told["gate"], told.get("margins"))
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
+        except (KeyError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
             if isinstance(error, ElbowroomError):
                 raise BagError(f"{what}: {error}") from None
             raise BagError(f"{what}: malformed ({type(error).__name__}: {error})") from None

@@ -172,7 +172,7 @@ def kept(path: Path, ground: Ground) -> Layout | None:
             ground.machine.positions(layout.joints)
         elif layout.joints:
             raise ValueError("joints, and the site has no machine")
-    except (ValueError, KeyError, TypeError, IndexError, AttributeError, RecursionError) as error:
+    except (LookupError, ValueError, TypeError, AttributeError, RecursionError, OverflowError) as error:
         said = " ".join(str(error).split())[:200]
         raise InputError(f"{path}: no plan of this site ({said}); name another --out, or delete it") from None
     return layout
