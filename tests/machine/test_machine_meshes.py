@@ -105,11 +105,11 @@ def test_scenes_of_glb_files_are_read_where_their_nodes_put_them(tmp_path):
 def test_packed_and_bent_gltf_is_refused_by_name(tmp_path):
     for said, document in (
         (
-            "KHR_draco_mesh_compression, which is not read",
-            '{"extensionsRequired": ["KHR_draco_mesh_compression"]}',
+            "packed .KHR_draco_mesh_compression.; export it without",
+            '{"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_draco_mesh_compression"]}',
         ),
-        ("bends by a skin", '{"skins": [{"joints": [0]}]}'),
-        ("no glTF", "{"),
+        ("bends by a skin", '{"asset": {"version": "2.0"}, "skins": [{"joints": [0]}]}'),
+        ("damaged glTF", "{"),
     ):
         (tmp_path / "a.gltf").write_text(document)
         with pytest.raises(MachineError, match=said):

@@ -217,12 +217,14 @@ class Bodies:
         return self._files[found.path]
 
     def _say(self, shape: Shape, taken: str, read: "MeshFile") -> None:
-        """What a user should know of a mesh file: where it was found, and how it was read."""
+        """What a user should know of a mesh file: where it was found, how it was read, and what was left out."""
         if taken and taken not in self._taken:
             self.report.warn("package", shape.element, taken)
             self._taken.add(taken)
         if read.note:
             self._axes.append((shape, read.note))
+        for note in read.notes:
+            self.report.warn("mesh", shape.element, note)
 
 
 def _mass_kg(link: RawLink) -> float:

@@ -8,8 +8,9 @@ import numpy as np
 from elbowroom.errors import InputError
 from elbowroom.files.mesh.collada import read_collada
 from elbowroom.files.mesh.gltf_scene import read_gltf
-from elbowroom.files.mesh.objects import MeshFile, MeshObject, named_apart
+from elbowroom.files.mesh.objects import MeshFile, MeshObject
 from elbowroom.files.mesh.ply import read_ply
+from elbowroom.files.mesh.stl import read_stl
 from elbowroom.files.mesh.wavefront import read_wavefront
 
 
@@ -30,8 +31,8 @@ def read_mesh(path: str | Path) -> MeshFile:
     return reader(path)
 
 
-def read_stl(path: Path) -> MeshFile:
-    """The solids of an .stl file, or the one object of an .off file, in its own unit.
+def read_off(path: Path) -> MeshFile:
+    """The one object of an .off file, in its own unit.
 
     Raises:
         InputError: damaged.
@@ -40,12 +41,11 @@ def read_stl(path: Path) -> MeshFile:
 
     try:
         scene = trimesh.load_scene(path, process=False)
-        shapes = list(scene.geometry.items())
-        if len(shapes) == 1:
-            shapes = [(path.stem, shapes[0][1])]
         objects = [
-            MeshObject(own, np.array(shape.vertices, dtype=np.float64), np.array(shape.faces, dtype=np.int64))
-            for own, (_, shape) in zip(named_apart([name for name, _ in shapes]), shapes, strict=True)
+            MeshObject(
+                path.stem, np.array(shape.vertices, dtype=np.float64), np.array(shape.faces, dtype=np.int64)
+            )
+            for shape in scene.geometry.values()
             if len(shape.faces)
         ]
     except Exception as error:  # whatever a damaged file makes the reader stumble over
@@ -53,7 +53,7 @@ def read_stl(path: Path) -> MeshFile:
         raise InputError(
             f"{path}: cannot be read ({type(error).__name__}: {said}); export it again"
         ) from error
-    return MeshFile(tuple(sorted(objects, key=lambda one: one.name)), None, None)
+    return MeshFile(tuple(objects), None, None)
 
 
 READERS: Mapping[str, Callable[[Path], MeshFile]] = {
@@ -63,6 +63,6 @@ READERS: Mapping[str, Callable[[Path], MeshFile]] = {
     ".obj": read_wavefront,
     ".ply": read_ply,
     ".stl": read_stl,
-    ".off": read_stl,
+    ".off": read_off,
 }
 """By ending of the file's name."""

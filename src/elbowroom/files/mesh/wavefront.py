@@ -22,6 +22,7 @@ def read_wavefront(path: Path) -> MeshFile:
     by_object: dict[str, list[list[int]]] = {}
     by_group: dict[str, list[list[int]]] = {}
     thing, group, polygon = "", "", [0]
+    latest = (0, 0, "")
     text = path.read_text(encoding="utf-8", errors="replace").replace("\\\n", " ").replace("\\\r\n", " ")
     for number, line in enumerate(text.splitlines(), 1):
         words = line.split()
@@ -32,6 +33,7 @@ def read_wavefront(path: Path) -> MeshFile:
                 vertices.append((float(words[1]), float(words[2]), float(words[3])))
             elif words[0] in ("f", "fo"):
                 polygon = [_index(word, len(vertices)) for word in words[1:]]
+                latest = max(latest, (max(polygon, default=0), number, line.strip()))
                 by_object.setdefault(thing, []).append(polygon)
                 by_group.setdefault(group, []).append(polygon)
         except (ValueError, IndexError) as error:
@@ -44,6 +46,10 @@ def read_wavefront(path: Path) -> MeshFile:
             group = " ".join(words[1:])
         elif words[0] in CURVED:
             raise InputError(f"{path}: line {number}: curved surfaces ({words[0]}); export it as triangles")
+    if latest[0] >= len(vertices) and latest[1]:
+        raise InputError(
+            f"{path}: line {latest[1]}: {latest[2][:60]!r} cannot be read (vertex {latest[0] + 1} of {len(vertices)})"
+        )
     parts = by_object if set(by_object) != {""} else by_group
     places = np.array(vertices, dtype=np.float64).reshape(-1, 3)
     objects = []
@@ -56,9 +62,9 @@ def read_wavefront(path: Path) -> MeshFile:
 
 
 def _index(word: str, count: int) -> int:
-    """Of a vertex, from 0; in the file from 1, or from the end below 0."""
+    """Of a vertex, from 0; in the file from 1, it may come later, or below 0 from the last one before."""
     given = int(word.split("/", 1)[0])
     index = given - 1 if given > 0 else count + given
-    if given == 0 or not 0 <= index < count:
+    if given == 0 or index < 0:
         raise ValueError(f"vertex {given} of {count}")
     return index
