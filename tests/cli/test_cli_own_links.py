@@ -7,6 +7,7 @@ import pytest
 import yaml
 
 from elbowroom.cli import run
+from elbowroom.errors import MachineError
 from elbowroom.machine.own_links import OwnLinks
 from elbowroom.simulate import wall_cameras
 from elbowroom.site import Site
@@ -90,6 +91,14 @@ def test_an_srdf_is_read_and_said_in_every_summary(tmp_path, capsys):
     assert run(["site", "check", str(path)]) == 0
     assert "by arm.srdf: 2 (1 adjacent, 1 never)" in capsys.readouterr().out
     assert any("arm.srdf" in line for line in Site.load(path).machine().allowances)
+
+
+def test_an_entity_in_an_srdf_is_refused_and_not_passed_over(tmp_path):
+    pair = "<disable_collisions link1='a' link2='b'/>"
+    text = f'<!DOCTYPE robot [<!ENTITY more "{pair}">]>\n<robot name="r">{pair}\n&more;</robot>'
+    (tmp_path / "arm.srdf").write_text(text)
+    with pytest.raises(MachineError, match=r"arm.srdf: line 3: &more; stands for other text .an XML entity"):
+        OwnLinks.from_srdf(tmp_path / "arm.srdf")
 
 
 @pytest.fixture(scope="module")

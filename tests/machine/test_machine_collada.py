@@ -107,6 +107,11 @@ def test_nodes_of_a_library_are_put_where_they_are_called(tmp_path):
     ("text", "message"),
     [
         ("no xml", "not XML"),
+        (
+            "<!DOCTYPE C [<!ENTITY more '0 0 4'>]>\n"
+            + collada(corners="0 &more; 0").partition("?>")[2].lstrip(),
+            "line 5: &more; stands for",
+        ),
         ("<svg/>", "outermost element is not <COLLADA>"),
         (collada(unit="0"), "a unit of 0 m"),
         (collada(unit="x"), "line 3: <unit>: could not convert"),

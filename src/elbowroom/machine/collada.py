@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from trimesh import transformations
 
 from elbowroom.errors import MachineError
+from elbowroom.machine.description.report import first_entity
 
 DEEPEST = 64
 """Nodes within nodes; a file that goes deeper leads in a ring."""
@@ -50,6 +51,12 @@ def read_collada(path: Path) -> Scene:
         raise MachineError(f"mesh {path}: not XML: {error}") from error
     if etree.QName(root).localname != "COLLADA":
         raise MachineError(f"mesh {path}: the outermost element is not <COLLADA>")
+    entity = first_entity(root)
+    if entity is not None:
+        raise MachineError(
+            f"mesh {path}: line {entity.sourceline}: {entity.text} stands for other text (an XML entity), which is not "
+            "read: put its content there"
+        )
     return _Reader(path, root).scene()
 
 

@@ -10,6 +10,7 @@ from lxml import etree
 
 from elbowroom.errors import MachineError
 from elbowroom.files.yaml_file import read_yaml
+from elbowroom.machine.description.report import first_entity
 
 REASONS = {
     "adjacent": "a joint joins them",
@@ -170,6 +171,13 @@ def _xml(path: Path) -> etree._Element:
             f"{path}: {len(content) / 1e6:.1f} MB; an SRDF has at most {MOST_SRDF_BYTES / 1e6:g}"
         )
     try:
-        return etree.fromstring(content, etree.XMLParser(resolve_entities=False, no_network=True))
+        root = etree.fromstring(content, etree.XMLParser(resolve_entities=False, no_network=True))
     except etree.XMLSyntaxError as error:
         raise MachineError(f"{path}: line {error.lineno}: not XML: {error.msg}") from None
+    entity = first_entity(root)
+    if entity is not None:
+        raise MachineError(
+            f"{path}: line {entity.sourceline}: {entity.text} stands for other text (an XML entity), which is not "
+            "read: put its content there"
+        )
+    return root

@@ -235,3 +235,50 @@ def test_a_slip_is_said_once_and_a_ring_and_an_include_are_named(tmp_path):
     path.write_text(f'<robot name="r">{include}{bodies}</robot>')
     with pytest.raises(MachineError, match="XInclude"):
         Machine.from_urdf(path)
+
+
+NAMESPACE = "xmlns='http://www.ros.org'"
+
+
+@pytest.mark.parametrize(
+    ("link", "message"),
+    [
+        (f"<colision>{BOX}</colision>", "is collision meant"),
+        (f"<origin xyz='0 0 9'/><collision>{BOX}</collision>", "<origin.*nothing reads it"),
+        (f"<pose>0 0 1 0 0 0</pose><collision>{BOX}</collision>", "<pose>: stands in <link>"),
+        (f"<collision><orgin xyz='1 0 0'/>{BOX}</collision>", "is origin meant"),
+    ],
+)
+def test_a_namespace_of_the_whole_robot_hides_no_slip(tmp_path, link, message):
+    for given in ("", NAMESPACE):
+        with pytest.raises(MachineError, match=message):
+            machine_of(tmp_path, f"<robot name='r' {given}><link name='a'>{link}</link></robot>")
+
+
+def test_elements_of_another_namespace_than_the_robots_are_of_other_programs(tmp_path):
+    other = "<p:colision xmlns:p='http://other.org'/><p:origin xmlns:p='http://other.org' xyz='1 0 0'/>"
+    for given in ("", NAMESPACE):
+        link = f"<link name='a'>{other}<collision>{BOX}</collision></link>"
+        assert machine_of(tmp_path, f"<robot name='r' {given}>{link}</robot>").checked_links == ("a",)
+
+
+@pytest.mark.parametrize(
+    ("kind", "value"),
+    [("SYSTEM", "'part.xml'"), ("", f"'<collision>{BOX.replace(chr(39), chr(34))}</collision>'")],
+)
+def test_an_entity_is_refused_and_not_passed_over(tmp_path, kind, value):
+    """A link without its body, or a robot without a link, would say nothing of it."""
+    (tmp_path / "part.xml").write_text(f"<link name='b'>{BOX}</link>")
+    head = f"<!DOCTYPE robot [<!ENTITY part {kind} {value}>]>"
+    for text in (
+        f"<robot name='r'>{BODY}&part;</robot>",
+        f"<robot name='r'><link name='a'>&part;</link>{BODY}</robot>",
+    ):
+        with pytest.raises(MachineError, match=r"line 1: .*&part; stands for other text .an XML entity"):
+            machine_of(tmp_path, head + text)
+
+
+def test_an_entity_of_an_attribute_is_read(tmp_path):
+    head = "<!DOCTYPE robot [<!ENTITY half '0.5'>]>"
+    machine = machine_of(tmp_path, head + with_shape("<box size='&half; 1 2'/>"))
+    assert np.ptp(machine.links[0].vertices, axis=0) == pytest.approx([0.5, 1, 2])

@@ -145,3 +145,29 @@ def test_a_file_that_only_defines_macros_is_named_as_such(tmp_path):
         Machine.from_urdf(written(tmp_path, macro))
     called = Machine.from_urdf(written(tmp_path, macro + "<xacro:arm prefix='l_'/>"))
     assert called.checked_links == ("l_a",)
+
+
+TOOL = (
+    f"<xacro:macro name='{{}}' params='parent'><link name='t'>{BOX}</link><joint name='j' type='fixed'>"
+    "<parent link='${{parent}}'/><child link='t'/></joint></xacro:macro>"
+)
+
+
+@pytest.mark.parametrize("included", [False, True])
+def test_a_macro_that_is_called_without_the_prefix_is_named_and_not_left_off(tmp_path, included):
+    """As xacro called them once; what is not called is left standing, and no reader of URDFs knows it."""
+    pytest.importorskip("xacro")
+    written(tmp_path, TOOL.format("tool"), "tool.xacro")
+    begin = "<xacro:include filename='tool.xacro'/>" if included else TOOL.format("tool")
+    body = f"{begin}<link name='a'>{BOX}</link>"
+    called = written(tmp_path, body + "<xacro:tool parent='a'/>")
+    assert Machine.from_urdf(called).checked_links == ("a", "t")
+    with pytest.raises(MachineError, match=r'<tool parent="a">: bears the name of a macro .*<xacro:tool>'):
+        Machine.from_urdf(written(tmp_path, body + "<tool parent='a'/>"))
+
+
+@pytest.mark.parametrize("name", ["box", "inertia", "link"])
+def test_a_macro_may_have_the_name_of_an_element_of_a_urdf(tmp_path, name):
+    pytest.importorskip("xacro")
+    machine = Machine.from_urdf(written(tmp_path, f"{TOOL.format(name)}<link name='a'>{BOX}</link>"))
+    assert machine.checked_links == ("a",)

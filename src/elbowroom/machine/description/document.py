@@ -1,7 +1,7 @@
 """A description's file as a tree of elements: small slips of XML pass and are said, xacro is expanded or named."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,7 +11,8 @@ from elbowroom.errors import MachineError
 from elbowroom.files.content import HEAD, what_it_is
 from elbowroom.machine.description import xacro
 from elbowroom.machine.description.packages import Packages
-from elbowroom.machine.description.report import Report, tag_of
+from elbowroom.machine.description.report import Report, first_entity, tag_of
+from elbowroom.machine.description.shapes import SIZES, walk
 
 MAX_URDF_BYTES = 16_000_000
 """A larger file is refused."""
@@ -22,6 +23,12 @@ OTHER_LANGUAGES = {
     "package": "this is a package's manifest; give a URDF of that package",
 }
 """What the outermost element says of a file that is no URDF."""
+WORDS_OF_A_URDF = {
+    *("link", "joint", "material", "color", "texture", "inertial", "mass", "inertia", "visual", "collision"),
+    *("origin", "geometry", "mesh", *SIZES, "parent", "child", "axis", "limit", "mimic", "dynamics"),
+    *("calibration", "safety_controller", "sensor", "contact", "verbose"),
+}
+"""Elements that a URDF may hold itself, whatever macros are called."""
 _HARMLESS = {
     etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE: "a prefix is not declared",
     etree.ErrorTypes.ERR_HYPHEN_IN_COMMENT: "a comment holds two hyphens",
@@ -62,15 +69,21 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
         raise report.error(
             element, "stands for another file (XInclude), which is not read: put its content there"
         )
-    written, sign = root, xacro.first_sign(root)
+    entity = first_entity(root)
+    if entity is not None:
+        raise report.error(
+            entity.getparent(),
+            f"{entity.text} stands for other text (an XML entity), which is not read: put its content there",
+        )
+    sign = xacro.first_sign(root)
     if sign is not None:
-        text = xacro.expanded(path, report.said(sign.element, sign.text), packages, xacro_arguments)
+        made = xacro.expanded(path, report.said(sign.element, sign.text), packages, xacro_arguments)
         report.expanded, report.lines_before = True, 0
-        root = _parsed(text, report)
+        root = _parsed(made.content, report)
         left = xacro.first_sign(root)
         if left is not None:
             raise report.error(left.element, f"{left.text}, also after xacro expanded the file")
-        _require_a_call(written, root, report)
+        _require_calls(made.macros, root, report)
     elif xacro_arguments:
         raise MachineError(f"{path}: arguments of xacro are given, and nothing in the file is xacro")
     if tag_of(root) != "robot":
@@ -82,20 +95,26 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
     return Document(root, report)
 
 
-def _require_a_call(written: etree._Element, root: etree._Element, report: Report) -> None:
-    """Refuses a file that defines macros and calls none: the robot is in another file.
+def _require_calls(macros: Collection[str], root: etree._Element, report: Report) -> None:
+    """Refuses a file that defines macros and calls none, or calls one as xacro did before it had a prefix.
 
     Args:
-        written: the file's outermost element, before it was expanded.
-        root: and after that.
+        macros: names of those that are defined.
+        root: the outermost element, expanded.
         report: names the file.
     """
-    macros = [element.get("name") for element in written.iter(etree.Element) if tag_of(element) == "macro"]
     if macros and not any(tag_of(child) == "link" for child in root.iterchildren(etree.Element)):
         raise MachineError(
-            f"{report.path}: only defines macros ({', '.join(map(str, macros))}) and calls none: the robot has no "
+            f"{report.path}: only defines macros ({', '.join(sorted(macros))}) and calls none: the robot has no "
             "<link>. Give the file that includes this one and calls them"
         )
+    for element in walk(root):
+        name = tag_of(element)
+        if name in macros and name not in WORDS_OF_A_URDF:
+            raise report.error(
+                element,
+                f"bears the name of a macro and does not call it; write <xacro:{name}> where it stands",
+            )
 
 
 def _parsed(content: bytes, report: Report) -> etree._Element:

@@ -65,6 +65,25 @@ def tag_of(element: etree._Element) -> str:
     return tag.rpartition("}")[2].rpartition(":")[2] if isinstance(tag, str) else ""
 
 
+def is_own(element: etree._Element) -> bool:
+    """Whether an element is of the description itself, not of another program's namespace.
+
+    Its own namespace is that of the outermost element, if that has one, or none.
+    """
+    namespace, _, name = str(element.tag).rpartition("}")
+    of_root = str(element.getroottree().getroot().tag).rpartition("}")[0]
+    return ":" not in name and namespace in ("", of_root)
+
+
+def first_entity(root: etree._Element) -> etree._Element | None:
+    """The first place at which text stands for other text (`&name;`): a parser keeps the place and reads nothing there.
+
+    Args:
+        root: of a tree that was parsed without resolving entities.
+    """
+    return next(iter(root.iter(etree.Entity)), None)
+
+
 def owner_of(element: etree._Element) -> etree._Element | None:
     """The link or joint that an element belongs to, or is."""
     found = None

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from elbowroom.machine.description.document import Document
 from elbowroom.machine.description.numbers import number, numbers
-from elbowroom.machine.description.report import Report, quoted, tag_of
+from elbowroom.machine.description.report import Report, is_own, quoted, tag_of
 from elbowroom.machine.description.shapes import (
     SIZES,
     Shape,
@@ -190,8 +190,9 @@ def _require_read(element: etree._Element, report: Report) -> None:
     if tag_of(element) == "link" and not (children(element, "collision") or children(element, "visual")):
         return
     for child in element.iterchildren(etree.Element):
-        is_nothing = child.tag == "origin" and np.allclose(origin_of(element, report), np.eye(4))
-        if child.tag in LOST_IN[tag_of(element)] and not is_nothing:
+        tag = tag_of(child) if is_own(child) else ""
+        is_nothing = tag == "origin" and np.allclose(origin_of(element, report), np.eye(4))
+        if tag in LOST_IN[tag_of(element)] and not is_nothing:
             where = (
                 "a body's pose and shape stand in <collision> or <visual>"
                 if tag_of(element) == "link"

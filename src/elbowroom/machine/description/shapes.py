@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from elbowroom.geometry.transforms import turn_of_rpy
 from elbowroom.machine.description.numbers import WORDS, numbers
-from elbowroom.machine.description.report import Report, tag_of
+from elbowroom.machine.description.report import Report, is_own, tag_of
 
 Kind = Literal["mesh", "box", "cylinder", "sphere", "capsule", "ellipsoid"]
 SIZES: dict[str, tuple[str, ...]] = {
@@ -200,7 +200,7 @@ def require_known(element: etree._Element, words: tuple[str, ...], report: Repor
     """
     for child in element.iterchildren(etree.Element):
         tag = tag_of(child)
-        if tag in words or child.tag != tag:
+        if tag in words or not is_own(child):
             continue
         near = difflib.get_close_matches(tag.lower(), words, n=1, cutoff=0.8)
         if near:

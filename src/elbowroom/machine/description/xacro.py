@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 from xml.parsers.expat import ExpatError
@@ -26,6 +26,18 @@ class Sign(NamedTuple):
 
     element: etree._Element
     text: str
+
+
+class Expanded(NamedTuple):
+    """What xacro makes of a file.
+
+    Args:
+        content: as UTF-8.
+        macros: names of the macros that the file and those that it includes define.
+    """
+
+    content: bytes
+    macros: frozenset[str]
 
 
 def first_sign(root: etree._Element) -> Sign | None:
@@ -53,8 +65,8 @@ def _of_the_robot(element: etree._Element) -> bool:
     return tag_of(chain[-2] if len(chain) > 1 else chain[0]) in OF_THE_ROBOT
 
 
-def expanded(path: Path, sign: str, packages: Packages, arguments: Mapping[str, str]) -> bytes:
-    """What xacro makes of a file, as UTF-8.
+def expanded(path: Path, sign: str, packages: Packages, arguments: Mapping[str, str]) -> Expanded:
+    """What xacro makes of a file.
 
     Args:
         path: the file.
@@ -73,6 +85,7 @@ def expanded(path: Path, sign: str, packages: Packages, arguments: Mapping[str, 
             f"{install_command('xacro')}"
         ) from None
     missing_packages: list[MachineError] = []
+    before = len(xacro.all_includes)
     given = _Arguments({name: str(value) for name, value in arguments.items()})
     try:
         with _finding(packages, missing_packages):
@@ -93,7 +106,19 @@ def expanded(path: Path, sign: str, packages: Packages, arguments: Mapping[str, 
             raise MachineError(
                 f"{path}: xacro_arguments: the file has no argument {name}; arguments are {known}"
             )
-    return bytes(document.toprettyxml(indent="  ", encoding="utf-8"))
+    files = dict.fromkeys([str(path), *map(str, xacro.all_includes[before:])])
+    macros = frozenset(name for file in files for name in _macros(Path(file)))
+    return Expanded(bytes(document.toprettyxml(indent="  ", encoding="utf-8")), macros)
+
+
+def _macros(path: Path) -> Iterator[str]:
+    """Names of the macros that a file defines; none where it is no XML, as a file of values is."""
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, recover=True)
+    with suppress(OSError, etree.XMLSyntaxError):
+        root = etree.fromstring(path.read_bytes(), parser)
+        for element in () if root is None else root.iter(etree.Element):
+            if tag_of(element) == "macro":
+                yield (element.get("name") or "").removeprefix("xacro:")
 
 
 class _Arguments(dict[str, str]):
