@@ -7,6 +7,7 @@ import trimesh
 
 from elbowroom.errors import MachineError
 from elbowroom.site import Site
+from elbowroom.site.machine_entry import MachineEntry, _as_xacro
 from elbowroom.site.notes import notes_of
 
 BOX = '<link name="{0}"><collision><geometry><box size=".2 .2 .2"/></geometry></collision></link>'
@@ -84,3 +85,18 @@ def test_arguments_of_xacro_are_the_sites(site_of):
     body = BOX.format("base").replace(".2 .2 .2", "$(arg long) .2 .2")
     machine = site_of(body, xacro_arguments={"long": 2}).machine()
     assert machine.links[0].vertices[:, 0].max() == 1.0
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (2, "2"),
+        (1234567, "1234567"),
+        (-999999999.0, "-999999999"),
+        (0.1234567891, "0.1234567891"),
+        (True, "true"),
+    ],
+)
+def test_a_number_reaches_xacro_with_all_its_digits(value, text):
+    entry = MachineEntry(urdf="r.urdf", xacro_arguments={"n": value})
+    assert _as_xacro(entry.xacro_arguments["n"]) == text

@@ -158,7 +158,7 @@ def _as_xacro(value: str | float | bool) -> str:
     """A value as xacro writes it: true and false in small letters, whole numbers without a point."""
     if isinstance(value, bool):
         return str(value).lower()
-    return f"{value:g}" if isinstance(value, float) and value == round(value) else str(value)
+    return str(int(value)) if isinstance(value, float) and value.is_integer() else str(value)
 
 
 class JointEntry(Entry):
