@@ -1,5 +1,7 @@
 """Meshes and solids of a URDF: files, units, scales, packages, pictures without a body."""
 
+import warnings
+
 import numpy as np
 import pytest
 import trimesh
@@ -77,6 +79,30 @@ def test_a_scale_that_differs_much_between_axes_is_said(tmp_path):
 def test_a_mesh_scaled_twice_is_said(tmp_path):
     with pytest.warns(MachineWarning, match="0.3 mm long; is its mesh scaled twice"):
         Machine.from_urdf(urdf(tmp_path, stl_link(tmp_path, (0.3, 0.1, 0.1), ' scale="0.001 0.001 0.001"')))
+
+
+@pytest.mark.parametrize(
+    ("edge", "scale", "said"),
+    [
+        (1.0, 0.0012, True),
+        (0.4, 0.01, True),
+        (8.0, 0.001, False),
+        (1000.0, 0.001, False),
+        (0.005, 1.0, False),
+    ],
+)
+@pytest.mark.parametrize("beside", ["", "<collision><geometry><box size='.3 .3 .3'/></geometry></collision>"])
+def test_a_moving_mesh_that_fits_the_machine_before_its_scale_and_not_after_it_is_said(
+    tmp_path, edge, scale, said, beside
+):
+    """A beam of a metre became 1.2 mm; a screw of 8 mm, drawn in millimetres, is what it says."""
+    small = stl_link(tmp_path, (edge, 0.1 * edge, 0.1 * edge), f' scale="{scale} {scale} {scale}"', name="b")
+    small = small.replace("</link>", f"{beside}</link>")
+    body = BOX.replace("1 1 1", "0.6 0.3 0.3") + small + joint(more='<origin xyz="0 0 1.1"/>')
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = Machine.from_urdf(urdf(tmp_path, body)).findings
+    assert any("link b: <mesh" in each.text and "scaled twice" in each.text for each in found) is said
 
 
 @pytest.mark.parametrize("scale", ["-1 1 1", "1 -2 1", "-1 -1 -1", "-1 -1 1", "2"])

@@ -1,6 +1,6 @@
 """The triangles of each link: read, put where they belong, and refused where they cannot be meant."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -27,6 +27,10 @@ SUSPECT_LINK_M = 2.0
 """From this length on, a mesh is compared with the rest of the machine [m]."""
 SMALLEST_MESH_M = 0.001
 """A smaller mesh is said: it may have been scaled twice [m]."""
+TINY_M = 0.01
+"""A moving mesh that is smaller after its scale, and before it no longer than the machine, is said [m]."""
+TO_METRES = 0.01
+"""A scale up to this one is from another unit: centimetres, millimetres or less."""
 MOST_NAMED = 3
 """So many links are named in one line."""
 HEAVY_KG = 0.1
@@ -117,6 +121,7 @@ class Bodies:
                 f"{note}{more}; axes are taken as they stand, as RViz and Gazebo take them",
             )
         _check_sizes(self.report, links, read, self.largest_link_m, machine)
+        self._say_twice(links, read, machine)
         return links
 
     def _refuse_lost(self) -> None:
@@ -145,6 +150,33 @@ class Bodies:
             None,
             f"links that move with a mass and without any geometry: {shown}{more}; what they would hit is not noticed",
         )
+
+    def _say_twice(
+        self, links: Sequence[Link], shapes: Mapping[str, list[Shape]], machine: Proportions
+    ) -> None:
+        """Meshes that move and were in metres, it seems, before a scale from another unit made them tiny."""
+        lengths = {
+            link.name: float(np.ptp(link.vertices, axis=0).max()) for link in links if link.has_geometry
+        }
+        for link in self.robot.links:
+            if link.name not in machine.moving or lengths.get(link.name, 0.0) < SMALLEST_MESH_M:
+                continue
+            largest_m = max(
+                [machine.reach_m, *(length for name, length in lengths.items() if name != link.name)]
+            )
+            for shape in shapes.get(link.name, []):
+                if shape.kind != "mesh" or max(map(abs, shape.scale)) > TO_METRES:
+                    continue
+                mesh_file = self._mesh(link, shape)
+                edges = np.zeros(3) if mesh_file is None else np.ptp(mesh_file.vertices, axis=0)
+                length = float((edges * np.abs(shape.scale)).max())
+                if length < TINY_M and edges.max() <= largest_m:
+                    self.report.warn(
+                        "unit",
+                        shape.element,
+                        f"the mesh is {1e3 * length:.2g} mm long by its scale and {edges.max():.2g} m in its file, as "
+                        "the machine may be; is it in metres, and scaled twice?",
+                    )
 
     def _surface(self, link: RawLink, shapes: Sequence[Shape]) -> Surface:
         """All of some shapes of a link in its frame; those that are lost are left out, which is noted."""
