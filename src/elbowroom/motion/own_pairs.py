@@ -7,7 +7,9 @@ import numpy as np
 
 from elbowroom.machine import Machine
 from elbowroom.machine.kernels.apart import apart_now
+from elbowroom.machine.kernels.body import TURNS
 from elbowroom.machine.overlap import ALWAYS, TOUCH_M, bodies_of
+from elbowroom.machine.poses import is_bounded
 from elbowroom.motion.contacts import can_move_apart, next_body
 
 NEVER_M = 0.02
@@ -21,7 +23,8 @@ def found_pairs(
 
     Links that a joint joins (*adjacent*), that touch in nearly all poses (*always*), at zero (*default*), or come no
     nearer than 2 cm in any (*never*); poses are drawn from the joints' limits. MoveIt calls *never* what touches in no
-    pose: here it has room to spare, as poses between those that were tried are not looked at.
+    pose: here it has room to spare, as poses between those that were tried are not looked at. Links between which one
+    slides without end are never called so: no draw says how they come to each other.
 
     Args:
         machine: whose links.
@@ -60,9 +63,36 @@ def found_pairs(
             else "default"
             if apart[n] <= TOUCH_M
             else "never"
-            if nearest[n] > NEVER_M
+            if nearest[n] > NEVER_M and not _endless_between(machine, a, b)
             else None
         )
         if reason is not None:
             found[reason].append((names[a], names[b]))
     return found
+
+
+def _endless_between(machine: Machine, a: int, b: int) -> bool:
+    """Whether a joint lies between two links of whose way draws show a part alone; a turn shows all turns.
+
+    Args:
+        machine: whose links.
+        a, b: their rows.
+    """
+    tree = machine.tree
+    one, other = _way_up(machine, a), _way_up(machine, b)
+    joints = [machine.joint(name) for name in machine.joint_names]
+    return any(
+        tree.column[row] >= 0
+        and not is_bounded(joints[tree.column[row]])
+        and not (tree.kind[row] == TURNS and abs(tree.multiplier[row]) == 1)
+        for row in one ^ other
+    )
+
+
+def _way_up(machine: Machine, row: int) -> set[int]:
+    """The rows of a link and of all those that it hangs on."""
+    way = set()
+    while row >= 0:
+        way.add(row)
+        row = int(machine.tree.parent[row])
+    return way

@@ -6,6 +6,7 @@ import numpy as np
 
 from elbowroom.geometry.kept import kept
 from elbowroom.machine import Machine
+from elbowroom.machine.poses import REACH, drawn_between
 from elbowroom.machine.shape import Shape
 from elbowroom.simulate.solid import Mesh, Solid
 
@@ -38,7 +39,7 @@ def link_solids(machine: Machine, joints: Mapping[str, float]) -> tuple[Solid, .
 def course(machine: Machine, time_s: float) -> dict[str, float]:
     """Joint positions at a time: slow swings within the limits, each joint with its own period.
 
-    Joints that `COURSE` does not name swing over a tenth of their range.
+    Joints that `COURSE` does not name swing over a tenth of their range, of a turn or 2 pi m at most.
     """
     return {name: _swing(machine, name, time_s) for name in machine.joint_names}
 
@@ -47,22 +48,17 @@ def random_joints(machine: Machine, rng: np.random.Generator) -> dict[str, float
     """Positions drawn evenly from each joint's limits; a joint without limits takes a whole turn."""
     drawn = {}
     for name in machine.joint_names:
-        low, high = _limits(machine, name)
+        low, high = drawn_between(machine.joint(name))
         drawn[name] = float(rng.uniform(low, high))
     return drawn
 
 
 def _swing(machine: Machine, name: str, time_s: float) -> float:
-    low, high = _limits(machine, name)
+    low, high = drawn_between(machine.joint(name))
     middle = min(max(0.0, low), high)
-    amplitude, period_s = COURSE.get(name, (0.05 * (high - low), 20.0))
+    amplitude, period_s = COURSE.get(name, (0.05 * min(high - low, 2 * REACH), 20.0))
     value = middle + amplitude * np.sin(2 * np.pi * time_s / period_s)
     return float(min(max(value, low), high))
-
-
-def _limits(machine: Machine, name: str) -> tuple[float, float]:
-    joint = machine.joint(name)
-    return max(joint.lower, -np.pi), min(joint.upper, np.pi)
 
 
 @kept

@@ -14,6 +14,7 @@ from elbowroom.evaluate.own_links.exact import ExactLinks, Pair
 from elbowroom.evaluate.robots.published import Published, published
 from elbowroom.machine import Machine
 from elbowroom.machine.own_links import OwnLinks
+from elbowroom.machine.poses import drawn_between
 from elbowroom.motion import Level, Motion
 from elbowroom.motion.contacts import pairs_of
 from elbowroom.motion.course import way_of
@@ -125,9 +126,7 @@ def _drawn(
 ) -> dict[str, float] | None:
     """A random pose in which no links touch, as those of a machine that stands there; None: none was found."""
     rest = np.array([machine.nearest_to_zero()[name] for name in machine.joint_names])
-    joints = [machine.joint(name) for name in machine.joint_names]
-    lower = np.array([max(joint.lower, -np.pi) for joint in joints])
-    upper = np.array([min(joint.upper, np.pi) for joint in joints])
+    lower, upper = np.array([drawn_between(machine.joint(name)) for name in machine.joint_names]).T
     for draw in range(DRAWS):
         there = rest + (1 - draw / DRAWS) * (random.uniform(lower, upper) - rest)
         pose = dict(zip(machine.joint_names, there.tolist(), strict=True))

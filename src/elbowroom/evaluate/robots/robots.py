@@ -13,6 +13,7 @@ from elbowroom.evaluate.due import Due, Row
 from elbowroom.evaluate.robots.plain_reader import Plain, plain
 from elbowroom.evaluate.robots.published import Published, published
 from elbowroom.machine import Machine
+from elbowroom.machine.poses import drawn_between
 
 OF_A_PART = ("has no <link>", "names link", "Undefined substitution argument")
 """What is said of xacro files that are parts of others: macros, or links that hang on links of another file."""
@@ -96,9 +97,9 @@ def _row(file: Published) -> dict[str, Any]:
 def _pose(machine: Machine) -> None:
     """Poses a machine; an error of it is an outcome."""
     random = np.random.default_rng(1)
-    ends = [(machine.joint(name).lower, machine.joint(name).upper) for name in machine.joint_names]
+    ends = [drawn_between(machine.joint(name)) for name in machine.joint_names]
     for _ in range(POSES):
-        at = [random.uniform(max(lower, -np.pi), min(upper, np.pi)) for lower, upper in ends]
+        at = [random.uniform(lower, upper) for lower, upper in ends]
         machine.world_from_links(dict(zip(machine.joint_names, at, strict=True)))
 
 
