@@ -23,14 +23,17 @@ class JointTolerance(NamedTuple):
     Args:
         rad: for joints that turn [rad].
         m: for joints that slide [m].
+        own: of joints that have another one: name and tolerance [rad or m].
     """
 
     rad: float = float(np.radians(1.0))
     m: float = 0.005
+    own: tuple[tuple[str, float], ...] = ()
 
-    def of(self, unit: str) -> float:
-        """For joints of a unit, "rad" or "m"; never less than rounding."""
-        return max(self.m if unit == "m" else self.rad, ROUNDING)
+    def of(self, joint: Joint) -> float:
+        """Of a joint [rad or m]; never less than rounding."""
+        shared = self.m if joint.unit == "m" else self.rad
+        return max(dict(self.own).get(joint.name, shared) if self.own else shared, ROUNDING)
 
 
 class Follower(NamedTuple):
@@ -88,7 +91,7 @@ def possible_positions(
                 f"machine {machine}: joint {joint.name!r} has no position; all joints need one"
             )
         values = _finite(joint, joints[joint.name])
-        over = tolerance.of(joint.unit)
+        over = tolerance.of(joint)
         beyond = (values < joint.lower - over) | (values > joint.upper + over)
         if beyond.any():
             raise MachineError(
@@ -128,7 +131,7 @@ def require_followers(
                 f"{joint.name} {values.size}"
             )
         values, expected = np.broadcast_arrays(values, expected)
-        off = np.abs(values - expected) > tolerance.of(joint.unit)
+        off = np.abs(values - expected) > tolerance.of(joint)
         if off.any():
             raise MachineError(
                 f"joint {joint.name}: {values[off].flat[0]:g} {joint.unit}, but it follows {leader}, which "

@@ -76,10 +76,7 @@ def together(members: Sequence[Member]) -> Machine:
         contacts=_contacts(members),
         parts=_all(members, lambda m: m.parts),
         bodiless_links=_all(members, lambda m: m.bodiless_links),
-        tolerance=JointTolerance(
-            min(machine.tolerance.rad for machine in machines),
-            min(machine.tolerance.m for machine in machines),
-        ),
+        tolerance=_tolerance(members),
         findings=tuple(finding for machine in machines for finding in machine.findings),
     )
 
@@ -171,6 +168,18 @@ def _own_links(members: Sequence[Member]) -> OwnLinks | None:
         ", ".join(dict.fromkeys(own.source for own in known)),
         tuple(pair for own in known for pair in own.pairs),
     )
+
+
+def _tolerance(members: Sequence[Member]) -> JointTolerance:
+    """Of all: the least of each, and where they differ that of its own machine for each joint."""
+    given = [member.machine.tolerance for member in members]
+    own = [
+        (member.joint_prefix + joint.name, member.machine.tolerance.of(joint))
+        for member in members
+        for joint in member.machine.joints
+    ]
+    least = JointTolerance(min(each.rad for each in given), min(each.m for each in given))
+    return least if len(set(given)) == 1 else least._replace(own=tuple(own))
 
 
 def _contacts(members: Sequence[Member]) -> tuple[Contact, ...]:

@@ -183,9 +183,9 @@ def _require_speeds(
 def _require_begin(machine: Machine, first: NDArray[np.float64], start: NDArray[np.float64]) -> None:
     """Refuses a path that begins elsewhere than where the machine is."""
     for name, said, here in zip(machine.joint_names, first, start, strict=True):
-        unit = machine.joint(name).unit
-        if abs(said - here) > machine.tolerance.of(unit):
+        joint = machine.joint(name)
+        if abs(said - here) > machine.tolerance.of(joint):
             raise JointsError(
-                f"path: it begins with joint {name} at {said:g} {unit}, and the machine is at {here:g} {unit}: it is "
-                "the path of another moment, or the machine is elsewhere"
+                f"path: it begins with joint {name} at {said:g} {joint.unit}, and the machine is at {here:g} "
+                f"{joint.unit}: it is the path of another moment, or the machine is elsewhere"
             )

@@ -29,6 +29,17 @@ def notes_of_machine(machine: Machine, site: Site) -> tuple[str, ...]:
     notes += [finding.text for finding in machine.findings[:MOST_NOTES]]
     if len(machine.findings) > MOST_NOTES:
         notes.append(f"and {len(machine.findings) - MOST_NOTES} slips more in the description of the machine")
+    least = site.explain_tolerance_m
+    more = [
+        f"{entry.name} {entry.explain_tolerance_m:g}"
+        for entry in site.entry.machines
+        if entry.explain_tolerance_m is not None and entry.explain_tolerance_m > least
+    ]
+    if more:
+        notes.append(
+            f"explain_tolerance_m: {', '.join(more)} m have no effect: the least of all machines counts for all, which "
+            f"is {least:g} m (the usual one where a machine says nothing)"
+        )
     standing = _wheels_on_the_floor(machine, site)
     if standing:
         notes.append(

@@ -110,11 +110,16 @@ class Site:
 
     @property
     def explain_tolerance_m(self) -> float:
-        """How far from the machine's model a measured point may lie and still be the machine [m]."""
+        """How far from the machine's model a measured point may lie and still be the machine [m].
+
+        Of several machines the least: one that says nothing has the usual one.
+        """
         alone = () if self.entry.machine is None else (self.entry.machine,)
         said = [machine.explain_tolerance_m for machine in (*alone, *self.entry.machines)]
-        given = min((value for value in said if value is not None), default=None)
-        return DEFAULT_EXPLAIN_TOLERANCE_M if given is None else given
+        return min(
+            (DEFAULT_EXPLAIN_TOLERANCE_M if value is None else value for value in said),
+            default=DEFAULT_EXPLAIN_TOLERANCE_M,
+        )
 
     def terms(self, rule: Rule | None = None, detail: Detail | None = None) -> Terms:
         """How strictly space is judged here.

@@ -141,7 +141,7 @@ class JointStream:
 
     def _beyond(self, positions: Mapping[str, float]) -> str | None:
         for joint in self._commanded():
-            value, over = positions[joint.name], self.machine.tolerance.of(joint.unit)
+            value, over = positions[joint.name], self.machine.tolerance.of(joint)
             if not joint.lower - over <= value <= joint.upper + over:
                 limits = f"{joint.lower:g} to {joint.upper:g} {joint.unit}"
                 return f"{joint.name} is at {value:g} {joint.unit}, its limits are {limits}"
@@ -167,7 +167,7 @@ class JointStream:
         for joint in self._commanded():
             most = self.greatest.get(joint.name)
             went = abs(_way(joint, last.positions[joint.name], heard.positions[joint.name]))
-            if most is not None and went > most * took_s + self.machine.tolerance.of(joint.unit):
+            if most is not None and went > most * took_s + self.machine.tolerance.of(joint):
                 return (
                     f"{joint.name} went {went:.3g} {joint.unit} in {1e3 * took_s:.0f} ms, at most "
                     f"{most:.3g} {joint.unit}/s are possible"
