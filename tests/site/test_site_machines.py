@@ -58,6 +58,6 @@ def test_each_joint_has_the_tolerance_of_its_machine(tmp_path):
     machine = site(tmp_path, {"limit_tolerance_deg": 10}, {}).machine()
     beyond = 3 + math.radians(5)
     assert machine.checked({"left_turn": beyond, "right_turn": 0.0})["left_turn"] == beyond
-    with pytest.raises(MachineError, match="right_turn: .* out of its limits"):
+    with pytest.raises(MachineError, match=r"right_turn: .* out of its limits"):
         machine.checked({"left_turn": 0.0, "right_turn": beyond})
     assert not site(tmp_path, {}, {}).machine().tolerance.own

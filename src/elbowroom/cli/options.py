@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -49,11 +49,17 @@ JointsText = Annotated[
     ),
 ]
 
-IN_BASE_UNITS = {"": 1.0, "m": 1.0, "rad": 1.0, "mm": 1e-3, "deg": math.pi / 180}
+IN_BASE_UNITS: dict[str, tuple[float, Literal["m", "rad"]]] = {
+    "m": (1.0, "m"),
+    "mm": (1e-3, "m"),
+    "rad": (1.0, "rad"),
+    "deg": (math.pi / 180, "rad"),
+}
+"""Units of joint positions that may be typed."""
 
 
 def parse_joints(text: str | None) -> dict[str, float] | None:
-    """Joint positions [m or rad] by name from "long=0.1,larm=12deg".
+    """Joint positions [m or rad] by name from "long=0.1,larm=12deg"; those with a unit know it (`WrittenPosition`).
 
     Raises:
         InputError: something between two commas is not name=number, perhaps with m, mm, rad or deg behind it.
@@ -65,14 +71,24 @@ def parse_joints(text: str | None) -> dict[str, float] | None:
         name, _, value = (word.strip() for word in part.partition("="))
         match = re.fullmatch(r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(m|mm|rad|deg)?", value)
         try:
-            joints[name] = float(match[1]) * IN_BASE_UNITS[match[2] or ""] if match and name else float("nan")
+            joints[name] = _position(match[1], match[2]) if match and name else math.nan
         except ValueError:
-            joints[name] = float("nan")
+            joints[name] = math.nan
         if not math.isfinite(joints[name]):
             raise InputError(
                 f"--joints: {part.strip()!r} is no joint position; write name=value, as long=0.1,larm=12deg"
             )
     return joints
+
+
+def _position(number: str, unit: str | None) -> float:
+    """A position [m or rad] of a number and perhaps a unit."""
+    if unit is None:
+        return float(number)
+    from elbowroom.machine.joint_state import WrittenPosition  # slow to load, and no list of options needs it
+
+    factor, base = IN_BASE_UNITS[unit]
+    return WrittenPosition(float(number) * factor, base, f"{number}{unit}")
 
 
 def parse_resolution(text: str) -> tuple[int, int]:

@@ -130,7 +130,7 @@ def _there(site: Site, asked: Asked, how: Mapping[str, Any]) -> There:
     )
     if not has_images:
         if machine is not None:
-            joints = machine.nearest_to_zero() if joints is None else {n: float(v) for n, v in joints.items()}
+            joints = machine.nearest_to_zero() if joints is None else dict(joints)
             machine.positions(joints)
         cameras = site.cameras() if site.lists_cameras else ()
         return _with_rendered(There(site, cameras, machine, fixed, joints or {}))

@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 JointKind = Literal["prismatic", "revolute", "continuous"]
+Unit = Literal["m", "rad"]
+"""Of positions: of joints that slide, and of those that turn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +59,6 @@ class Joint:
             object.__setattr__(self, name, array)
 
     @property
-    def unit(self) -> str:
+    def unit(self) -> Unit:
         """ "m" for a joint that slides, "rad" for one that turns."""
         return "m" if self.kind == "prismatic" else "rad"

@@ -1,13 +1,13 @@
 """Positions of a machine's joints as somebody says them: possible or not."""
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.errors import MachineError
-from elbowroom.machine.joint import Joint
+from elbowroom.machine.joint import Joint, Unit
 from elbowroom.machine.kernels.body import Tree
 
 ROUNDING = 1e-6
@@ -15,6 +15,29 @@ ROUNDING = 1e-6
 
 Joints = Mapping[str, ArrayLike]
 """Joint positions by name [m or rad]: numbers, or arrays of one length n for n configurations."""
+
+
+class WrittenPosition(float):
+    """A joint's position that somebody wrote with a unit: a number that the other kind of joint refuses.
+
+    Args:
+        value: the position [m or rad].
+        unit: "m" or "rad", whichever it is then in.
+        written: as it was written, such as "900mm".
+    """
+
+    def __new__(cls, value: float, unit: Unit, written: str) -> Self:
+        """As the class says."""
+        made = super().__new__(cls, value)
+        made.unit, made.written = unit, written
+        return made
+
+    unit: Unit
+    written: str
+
+    def __getnewargs__(self) -> tuple[float, Unit, str]:  # type: ignore[override]
+        """What a copy is made of."""
+        return float(self), self.unit, self.written
 
 
 class JointTolerance(NamedTuple):
@@ -141,6 +164,11 @@ def require_followers(
 
 def _finite(joint: Joint, given: ArrayLike) -> NDArray[np.float64]:
     """A joint's positions as numbers [m or rad]."""
+    if isinstance(given, WrittenPosition) and given.unit != joint.unit:
+        does, units = ("slides", "m or mm") if joint.unit == "m" else ("turns", "rad or deg")
+        raise MachineError(
+            f"joint {joint.name}: {given.written} cannot be its position: it {does}; write {units}"
+        )
     try:
         values = np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
