@@ -65,14 +65,14 @@ def test_whatever_hangs_on_a_link_goes_with_it_and_nothing_else(tree, data):
 
 @settings(max_examples=60)
 @given(trees(), st.data())
-def test_a_part_touches_what_is_fixed_to_its_link_and_what_hangs_on_that(tree, data):
+def test_what_holds_a_part_is_what_is_fixed_to_its_link_and_about_it_what_hangs_on_that(tree, data):
     row = data.draw(st.integers(0, len(tree.parent) - 1))
     held = held_with(tree, row)
-    assert row in held
+    assert row in held.fixed and not set(held.fixed) & set(held.hanging)
     fixed = {(int(p), n) for n, p in enumerate(tree.parent) if p >= 0 and tree.kind[n] == FIXED}
     body, grew = {row}, True
     while grew:
         more = {n for pair in fixed if body & set(pair) for n in pair}
         grew, body = not more <= body, body | more
     hangs = {n for n, p in enumerate(tree.parent) if p >= 0 and int(p) in body}
-    assert set(held) == body | hangs
+    assert set(held.fixed) == body and set(held.hanging) == hangs - body

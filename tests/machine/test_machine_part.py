@@ -9,7 +9,7 @@ from elbowroom.geometry import bits
 from elbowroom.machine import Part, body_words
 from elbowroom.motion import Cause, Level, Motion, check_motion
 from elbowroom.reconstruct.free_space import FreeSpace
-from reference.contact_machines import BASE, joint, link, machine
+from reference.contact_machines import BASE, SWING, joint, link, machine
 from reference.motion_machines import nothing_in, room, touched_by_box
 
 GRID = room(0.025, (-0.2, -0.9, -0.2), (1.3, 0.9, 0.4))
@@ -58,13 +58,47 @@ def test_a_part_reaches_farther_than_the_hand_that_holds_it(gripper):
 
 
 def test_a_part_may_touch_what_holds_it_and_nothing_else(gripper):
-    holding = gripper.with_part("arm", Part.box("part", (0.1, 0.15, 0.1)), POSE)
+    holding = gripper.with_part("arm", Part.box("part", (0.1, 0.14, 0.1)), POSE)
     space = FreeSpace.from_occupied(GRID, nothing_in(GRID)).without(holding, JOINTS)
-    for way in (1, -1):
-        for name in ("turn", "close"):
-            assert check_motion(space, holding, JOINTS, Motion(name, way, 0.02)).level is Level.CLEAR
-    assert ("part", "base") not in holding.allowed_contacts
-    assert not holding.allowances
+    asked = [Motion(name, way, 0.02) for name in ("turn", "close") for way in (1, -1)]
+    found = {
+        (motion.joint, motion.direction): check_motion(space, holding, JOINTS, motion) for motion in asked
+    }
+    # a finger that closes on stops at what it holds, and nothing else does
+    assert {key for key, verdict in found.items() if verdict.level is not Level.CLEAR} == {("close", -1)}
+    stopped = found["close", -1]
+    assert (stopped.cause, {stopped.link, stopped.other_link}) == (Cause.MACHINE, {"left", "part"})
+    assert not holding.allowed_contacts and not holding.allowances
+    # unless somebody says that it may, which every summary says
+    allowing = holding.allowing(("part", "left"))
+    assert check_motion(space, allowing, JOINTS, Motion("close", -1, 0.02)).level is Level.CLEAR
+    assert allowing.allowances == ("May touch each other, by the site's word: part and left",)
+
+
+def test_a_part_on_an_early_link_ends_the_way_of_the_next_one_as_a_link_would(tmp_path):
+    """What is carried is as good as what is fixed: the same post in the URDF and as a part."""
+    post = link("post", (0.06, 0.06, 0.6), (0.4, 0, 0.3))
+    fixed = machine(tmp_path, BASE, *SWING, post, joint("stands", "base", "post", kind="fixed"))
+    pose = np.eye(4)
+    pose[:3, 3] = (0.4, 0, 0.3)
+    bare = machine(tmp_path, BASE, *SWING)
+    carried = bare.with_part("base", Part.box("post", (0.06, 0.06, 0.6)), pose)
+    joints, motion = {"turn": 0.8}, Motion("turn", -1, 0.5)
+    space = FreeSpace.from_occupied(GRID, nothing_in(GRID))
+    verdicts = [check_motion(space.without(m, joints), m, joints, motion) for m in (fixed, carried)]
+    assert all(verdict.cause is Cause.MACHINE for verdict in verdicts)
+    assert verdicts[0].free_travel == pytest.approx(verdicts[1].free_travel, abs=1e-6)
+    assert not carried.allowed_contacts
+
+
+def test_a_part_that_the_next_link_touches_in_nearly_all_poses_may_touch_it_and_that_is_said(tmp_path):
+    bare = machine(tmp_path, BASE, *SWING)
+    pose = np.eye(4)
+    pose[:3, 3] = (0, 0, 0.1)
+    holding = bare.with_part("base", Part.cylinder("collar", 0.1, 0.1), pose)
+    assert holding.allowed_contacts == (("collar", "swing"),)
+    assert holding.allowances == ("May touch each other, by the site's word: collar and swing",)
+    assert holding.without_part("collar").allowed_contacts == ()
 
 
 def test_a_part_is_taken_off_again(gripper):

@@ -1,5 +1,7 @@
 """Links that are added to a tree of links, and those that are taken off it again: what a machine carries."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -50,8 +52,25 @@ def pruned(tree: Tree, stays: NDArray[np.bool_]) -> Tree:
     return rows._replace(parent=np.where(rows.parent < 0, -1, left[rows.parent]))
 
 
-def held_with(tree: Tree, row: int) -> list[int]:
-    """The links that are fixed to a link, itself among them, and those that hang on them, such as fingers.
+class Held(NamedTuple):
+    """Links about one that holds something, by row.
+
+    Args:
+        fixed: to it, itself among them.
+        hanging: on those by a joint, such as fingers.
+    """
+
+    fixed: tuple[int, ...]
+    hanging: tuple[int, ...]
+
+    @property
+    def all(self) -> tuple[int, ...]:
+        """Both."""
+        return self.fixed + self.hanging
+
+
+def held_with(tree: Tree, row: int) -> Held:
+    """The links that are fixed to a link, and those that hang on them.
 
     Args:
         tree: by link.
@@ -61,8 +80,11 @@ def held_with(tree: Tree, row: int) -> list[int]:
     for other, parent in enumerate(tree.parent):
         if parent >= 0 and tree.kind[other] == FIXED:
             roots[other] = roots[parent]
-    return [
-        other
-        for other, parent in enumerate(tree.parent)
-        if roots[other] == roots[row] or (parent >= 0 and roots[parent] == roots[row])
-    ]
+    return Held(
+        tuple(other for other, root in enumerate(roots) if root == roots[row]),
+        tuple(
+            other
+            for other, parent in enumerate(tree.parent)
+            if parent >= 0 and roots[parent] == roots[row] != roots[other]
+        ),
+    )

@@ -30,7 +30,7 @@ from elbowroom.machine.joint_state import (
 )
 from elbowroom.machine.kernels.body import Tree, place_links
 from elbowroom.machine.link import Link
-from elbowroom.machine.overlap import POSES
+from elbowroom.machine.overlap import POSES, always_touching
 from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.part import Part
 from elbowroom.machine.poses import random_poses
@@ -319,19 +319,23 @@ class Machine:
     @cached_property
     def allowances(self) -> tuple[str, ...]:
         """What somebody's word lets pass, a line each: every summary says it."""
-        own = [pair for pair in self.allowed_contacts if not set(pair) & set(self.parts)]
         return (
             *map(str, self.zones),
             *map(str, self.contacts),
             *(f"Not stopped by anything there, by the site's word: {stand}" for stand in self.stands),
-            *(f"May touch each other, by the site's word: {one} and {other}" for one, other in own),
+            *(
+                f"May touch each other, by the site's word: {one} and {other}"
+                for one, other in self.allowed_contacts
+            ),
             *(() if self.own_links is None else (self.own_links.said,)),
         )
 
     def with_part(self, link: str, part: Part, link_from_part: ArrayLike | None = None) -> "Machine":
         """The machine with a part on one of its links, as a link of its own: explained, taken out and swept with it.
 
-        The part may touch its link, what is fixed to that, and what hangs on these, such as the fingers of a hand.
+        The part may touch its link and what is fixed to that; of the moving links that hang on these, those that touch
+        it in nearly all poses, which is then among `allowed_contacts`. Fingers that hold it are compared with it: where
+        they close on, they stop, unless they are allowed to touch it (`allowing`).
 
         Args:
             link: name of the link that carries it.
@@ -349,22 +353,18 @@ class Machine:
         pose = nearest_rigid(given, f"part {part.name}: link_from_part", MachineError)
         row = self.link_names.index(link)
         carried = Link(part.name, part.surface.vertices, part.surface.faces.astype(np.int32))
-        touched = [(part.name, self.link_names[other]) for other in branch.held_with(self.tree, row)]
         holding = replace(
             self,
             links=(*self.links, carried),
             tree=branch.grown(self.tree, row, pose),
-            allowed_contacts=(*self.allowed_contacts, *touched),
             parts=(*self.parts, part.name),
         )
-        require_beside(
-            f"machine {self.name}",
-            holding.links,
-            holding.shape,
-            {self.link_names.index(name) for _, name in touched},
-            holding.random_places(POSES),
-        )
-        return holding
+        held, poses = branch.held_with(self.tree, row), holding.random_places(POSES)
+        require_beside(f"machine {self.name}", holding.links, holding.shape, set(held.all), poses)
+        hanging = [(other, len(self.links)) for other in held.hanging if self.links[other].has_geometry]
+        always = always_touching(holding.shape, hanging, poses)
+        touched = [self.link_names[other] for (other, _), touch in zip(hanging, always, strict=True) if touch]
+        return holding.allowing(*((part.name, name) for name in touched)) if touched else holding
 
     def random_places(self, count: int, seed: int = 0) -> NDArray[np.float64]:
         """Where links are in poses drawn from the joints' limits, shape (count, n_links, 4, 4).
