@@ -45,7 +45,7 @@ def site(folder, name, **keys):
     return path
 
 
-def machine(**keys):
+def machine_of_one(**keys):
     return {
         "machine": {"urdf": "arm.urdf", "world_from_base": stands(0.0)} | keys,
         "joints": {"turn": dict(SPEED), "tilt": dict(SPEED)},
@@ -59,7 +59,7 @@ def stands(x, y=0.0, turned=1.0):
 
 
 def test_pairs_that_own_links_finds_are_what_the_site_that_names_them_leaves_out(tmp_path, capsys):
-    path, found = site(tmp_path, "bare", **machine()), tmp_path / "own.yaml"
+    path, found = site(tmp_path, "bare", **machine_of_one()), tmp_path / "own.yaml"
     argv = [
         "site",
         "own-links",
@@ -78,7 +78,7 @@ def test_pairs_that_own_links_finds_are_what_the_site_that_names_them_leaves_out
         frozenset(("upper", "tool")),
     }
     assert {frozenset(pair) for pair in row["never"]} == {frozenset(("base", "tool"))}
-    named = Site.load(site(tmp_path, "named", **machine(own_links="own.yaml"))).machine()
+    named = Site.load(site(tmp_path, "named", **machine_of_one(own_links="own.yaml"))).machine()
     assert isinstance(named.own_links, OwnLinks) and named.own_links != Site.load(path).machine().own_links
     # what is there is not overwritten unless asked
     assert run(argv) == 2 and "is there already" in capsys.readouterr().err
@@ -87,7 +87,7 @@ def test_pairs_that_own_links_finds_are_what_the_site_that_names_them_leaves_out
 
 def test_an_srdf_is_read_and_said_in_every_summary(tmp_path, capsys):
     (tmp_path / "arm.srdf").write_text(SRDF)
-    path = site(tmp_path, "srdf", **machine(srdf="arm.srdf"))
+    path = site(tmp_path, "srdf", **machine_of_one(srdf="arm.srdf"))
     assert run(["site", "check", str(path)]) == 0
     assert "by arm.srdf: 2 (1 adjacent, 1 never)" in capsys.readouterr().out
     assert any("arm.srdf" in line for line in Site.load(path).machine().allowances)
@@ -163,3 +163,45 @@ def test_two_machines_of_a_recording_have_joints_of_their_own(pair, tmp_path):
     assert run(argv) == 0
     (row,) = json.loads(out.read_text())["rows"]
     assert row["cause"] == "machine" and row["other_link"].startswith("left/")
+
+
+def test_the_file_of_several_machines_is_named_where_the_command_says(pair, tmp_path, capsys):
+    found = pair.parent / "all.yaml"
+    assert run(["site", "own-links", str(pair), "--out", str(found), "--poses", "100"]) == 0
+    assert capsys.readouterr().out.rstrip().endswith("own_links, beside machines")
+    content = yaml.safe_load(pair.read_text()) | {"own_links": "all.yaml"}
+    content["allowed_contacts"] = [["left/tool", "right/tool"]]
+    named = pair.with_name("named.yaml")
+    named.write_text(yaml.safe_dump(content))
+    machine = Site.load(named).machine()
+    assert machine.own_links.has("left/base", "left/upper")
+    assert machine.own_links.pairs == OwnLinks.from_yaml(found).pairs
+    assert machine.allowed_contacts == (("left/tool", "right/tool"),)
+    # with pairs of one machine's own file as well
+    (pair.parent / "arm.srdf").write_text(SRDF)
+    content["machines"][0]["srdf"] = "arm.srdf"
+    named.write_text(yaml.safe_dump(content))
+    both = Site.load(named).machine().own_links
+    assert both.source == "arm.srdf, all.yaml" and both.has("right/tool", "left/tool")
+    (pair.parent / "all.yaml").write_text("machine: x\nnever:\n  - [left/tool, post]\n")
+    with pytest.raises(MachineError, match="link 'post' does not exist"):
+        Site.load(named).machine()
+    # a single machine has them in its own entry
+    alone = site(tmp_path, "alone", **machine_of_one(), allowed_contacts=[["tool", "base"]])
+    assert run(["site", "check", str(alone)]) == 2
+    assert "here it belongs into machine" in capsys.readouterr().err
+
+
+def test_a_part_is_among_the_pairs_that_the_command_finds_and_the_site_names(tmp_path):
+    carries = {
+        "carries": [
+            {"name": "plate", "link": "tool", "box_m": [0.1, 0.1, 0.1], "link_from_part": stands(0.3)}
+        ]
+    }
+    path, found = site(tmp_path, "bare", **machine_of_one(**carries)), tmp_path / "own.yaml"
+    assert run(["site", "own-links", str(path), "--out", str(found), "--poses", "100"]) == 0
+    assert "plate" in found.read_text()
+    named = Site.load(site(tmp_path, "named", **machine_of_one(own_links="own.yaml", **carries))).machine()
+    assert named.own_links.has("plate", "base")
+    # taken off, it takes its pairs with it
+    assert not named.without_part("plate").own_links.has("plate", "base")

@@ -22,8 +22,8 @@ def own_links(
     As MoveIt's setup assistant does: links that a joint joins, that touch in nearly
     all poses, that touch where all joints are at zero, or that came within 2 cm in no
     pose. Look at the file: a pair that stands there is not compared at all. Then name
-    it in the site's machine, own_links. An SRDF that came with the robot does as well
-    (machine: srdf).
+    it in the site's machine, own_links; of several machines, beside machines. An SRDF
+    that came with the robot does as well (machine: srdf).
     """
     from rich.console import Console
 
@@ -49,4 +49,5 @@ def own_links(
     write_json(json_file, [{"machine": machine.name, "poses": poses, **found}])
     for reason, words in REASONS.items():
         print(f"{reason:9} {len(found[reason]):4}  {words}")
-    print(f"{out} written; look at it, then name it in {site_path}: machine: own_links")
+    where = "own_links, beside machines" if site.entry.machines else "machine: own_links"
+    print(f"{out} written; look at it, then name it in {site_path}: {where}")

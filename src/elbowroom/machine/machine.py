@@ -391,6 +391,7 @@ class Machine:
             links=tuple(link for link, here in zip(self.links, stays, strict=True) if here),
             tree=branch.pruned(self.tree, stays),
             allowed_contacts=tuple(pair for pair in self.allowed_contacts if not gone & set(pair)),
+            own_links=None if self.own_links is None else self.own_links.without(gone),
             unchecked_links=tuple(link for link in self.unchecked_links if link not in gone),
             parts=tuple(part for part in self.parts if part not in gone),
         )

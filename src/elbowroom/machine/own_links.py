@@ -78,6 +78,24 @@ class OwnLinks:
             self.source, tuple(pair for pair in self.pairs if pair[0] in links and pair[1] in links), True
         )
 
+    @classmethod
+    def all_of(cls, several: Sequence["OwnLinks"]) -> Self:
+        """The pairs of several files together; of a pair that two name, the reason of the first.
+
+        Args:
+            several: at least one.
+        """
+        pairs: dict[frozenset[str], tuple[str, str, str]] = {}
+        for pair in (pair for own in several for pair in own.pairs):
+            pairs.setdefault(frozenset(pair[:2]), pair)
+        source = ", ".join(dict.fromkeys(own.source for own in several))
+        return cls(source, tuple(pairs.values()), any(own.of_others for own in several))
+
+    def without(self, links: Collection[str]) -> "OwnLinks":
+        """The same without the pairs of some links, such as those that were taken off; `links`: their names."""
+        pairs = tuple(pair for pair in self.pairs if not set(pair[:2]) & set(links))
+        return OwnLinks(self.source, pairs, self.of_others)
+
     def named(self, prefix: str) -> "OwnLinks":
         """The same with something before all names of links."""
         pairs = tuple((prefix + a, prefix + b, why) for a, b, why in self.pairs)

@@ -162,12 +162,7 @@ def _own_links(members: Sequence[Member]) -> OwnLinks | None:
         for member in members
         if member.machine.own_links is not None
     ]
-    if not known:
-        return None
-    return OwnLinks(
-        ", ".join(dict.fromkeys(own.source for own in known)),
-        tuple(pair for own in known for pair in own.pairs),
-    )
+    return OwnLinks.all_of(known) if known else None
 
 
 def _tolerance(members: Sequence[Member]) -> JointTolerance:

@@ -89,9 +89,11 @@ class MachineEntry(Entry):
         Raises:
             SiteError, MachineError: a URDF, a link or a pose that is not usable.
         """
-        machine = self._bare(beside).comparing(self._own_links(beside))
+        machine = self._bare(beside)
         for part in self.carries:
             machine = part.on(machine, beside)
+        # parts are links that the file may name
+        machine = machine.comparing(self._own_links(beside))
         machine = machine.allowing(*self.allowed_contacts)
         machine = machine.standing_on(*(stand.build() for stand in self.stands_on))
         machine = machine.near(*(contact.build(beside) for contact in self.contacts))

@@ -117,7 +117,10 @@ SIMULATED_SETTINGS = ("depth_kind", "noise", "min_depth_m", "max_depth_m", "repe
 
 
 class SiteEntry(Entry):
-    """All of a site file."""
+    """All of a site file.
+
+    Beside `machines`, `allowed_contacts` and `own_links` name links of all of them, as `left/tool`.
+    """
 
     name: Text = "site"
     grid: GridEntry
@@ -125,6 +128,8 @@ class SiteEntry(Entry):
     cameras: tuple[CameraEntry, ...] = ()
     machine: MachineEntry | None = None
     machines: tuple[MemberEntry, ...] = ()
+    allowed_contacts: tuple[tuple[Text, Text], ...] = ()
+    own_links: Text | None = None
     joints: dict[Text, JointEntry] = Field(default_factory=dict)
     zones: tuple[ZoneEntry, ...] = ()
     override: OverrideEntry = OverrideEntry()
@@ -184,6 +189,11 @@ class SiteEntry(Entry):
             raise ValueError("no key watch where layout seven_scenes makes a camera of each frame")
         if self.machine is not None and self.machines:
             raise ValueError("either machine or machines, not both")
+        across = sorted(self.model_fields_set & {"allowed_contacts", "own_links"})
+        if across and not self.machines:
+            raise ValueError(
+                f"{across[0]} beside machines, for links of all of them; here it belongs into machine"
+            )
         if self.joints and not self.has_machine:
             raise ValueError("joints only with a machine")
         try:

@@ -16,6 +16,7 @@ from elbowroom.errors import CameraError, GridError, InputError, PoseWarning, Si
 from elbowroom.files.yaml_file import read_yaml
 from elbowroom.geometry import DepthCamera, VoxelGrid
 from elbowroom.machine import Machine
+from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.together import together
 from elbowroom.motion import Braking, Motion, Override
 from elbowroom.reconstruct.terms import Terms
@@ -24,7 +25,7 @@ from elbowroom.site import seven_scenes
 from elbowroom.site.camera_entry import CameraSettings, build_camera, mended_poses
 from elbowroom.site.machine_entry import braking_of, motions_of
 from elbowroom.site.messages import one_line
-from elbowroom.site.paths import existing_bag, existing_folder
+from elbowroom.site.paths import existing_bag, existing_folder, expand
 from elbowroom.site.recording_entry import BagRecording, SevenScenes, StamplessFolder
 from elbowroom.site.schema import SimulatedEntry, SiteEntry
 from elbowroom.site.zone_entry import with_zones
@@ -307,10 +308,19 @@ class Site:
                 self._blame(f"machines[{n}] ({entry.name})", lambda entry=entry: entry.member(beside))  # type: ignore[misc]
                 for n, entry in enumerate(self.entry.machines)
             ]
-            machine = self._blame(None, lambda: together(members))
+            machine = self._blame(None, lambda: self._across(together(members)))
         else:
             return None
         return self._blame(None, lambda: with_zones(machine, self.entry.zones, self.path.parent))
+
+    def _across(self, machine: Machine) -> Machine:
+        """Several machines as one, with the pairs of links of all of them that may touch or are not compared."""
+        machine = machine.allowing(*self.entry.allowed_contacts)
+        if self.entry.own_links is None:
+            return machine
+        known = OwnLinks.from_yaml(expand(self.entry.own_links, self.path.parent)).among(machine.link_names)
+        own = (known,) if machine.own_links is None else (machine.own_links, known)
+        return machine.comparing(OwnLinks.all_of(own))
 
     def motions(self, machine: Machine) -> tuple[Motion, ...]:
         """Each joint that has a speed, in both directions, with its braking distance at full speed.
