@@ -61,3 +61,22 @@ def test_each_joint_has_the_tolerance_of_its_machine(tmp_path):
     with pytest.raises(MachineError, match=r"right_turn: .* out of its limits"):
         machine.checked({"left_turn": 0.0, "right_turn": beyond})
     assert not site(tmp_path, {}, {}).machine().tolerance.own
+
+
+@pytest.mark.parametrize("apart_m", [0.0, 0.05, 2.0])
+def test_machines_that_stand_in_each_other_are_a_note(tmp_path, apart_m):
+    notes = notes_of(site(tmp_path, {}, {}, apart_m=apart_m))
+    said = [note for note in notes if "lie in each other" in note]
+    assert len(said) == (apart_m < 1)
+    if said:
+        assert "left/base and right/base" in said[0] and "world_from_base" in said[0]
+
+
+def test_a_machine_whose_base_stands_within_anothers_is_a_note_unless_it_is_allowed(tmp_path):
+    small = BASE.replace("0.1 0.1 0.1", "0.02 0.02 0.02")
+    (tmp_path / "small.urdf").write_text(f'<robot name="small">{small}</robot>')
+    notes = notes_of(site(tmp_path, {}, {"urdf": "small.urdf"}, apart_m=0.0))
+    assert any("in each other in nearly all poses: left/base and right/base;" in note for note in notes)
+    allowed = {"allowed_contacts": [["left/base", "right/base"]]}
+    notes = notes_of(site(tmp_path, {}, {"urdf": "small.urdf"}, apart_m=0.0, **allowed))
+    assert not any("in each other" in note for note in notes)

@@ -40,7 +40,7 @@ def require_beside(
     within = [
         links[row].name
         for (row, _), touch in zip(rows, always, strict=True)
-        if touch or all(_holds(links, row, pose) for pose in placed[:WITHIN])
+        if touch or all(holds(links, row, last, pose) for pose in placed[:WITHIN])
     ]
     if within:
         raise MachineError(
@@ -49,14 +49,15 @@ def require_beside(
         )
 
 
-def _holds(links: Sequence[Link], row: int, placed: NDArray[np.float64]) -> bool:
-    """Whether one of the last link and another lies wholly in the other.
+def holds(links: Sequence[Link], one: int, other: int, placed: NDArray[np.float64]) -> bool:
+    """Whether of two links that do not touch one lies wholly in the other.
 
     Args:
         links: of the machine.
-        row: of the other one.
+        one, other: their rows.
         placed: where links are, shape (n_links, 4, 4).
     """
-    part, link = links[-1], links[row]
-    part_from_link = invert_rigid(placed[len(links) - 1]) @ placed[row]
-    return is_within(link, part, part_from_link) or is_within(part, link, invert_rigid(part_from_link))
+    other_from_one = invert_rigid(placed[other]) @ placed[one]
+    return is_within(links[one], links[other], other_from_one) or is_within(
+        links[other], links[one], invert_rigid(other_from_one)
+    )

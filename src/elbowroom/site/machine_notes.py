@@ -1,8 +1,14 @@
 """What a user should know of a site's machine: links without a body, slips that pass, wheels on the floor."""
 
+from itertools import combinations
+
 import numpy as np
 
 from elbowroom.machine import Machine
+from elbowroom.machine.carried import holds
+from elbowroom.machine.overlap import POSES, always_touching
+from elbowroom.machine.together import BETWEEN
+from elbowroom.motion.contacts import can_move_apart, is_allowed
 from elbowroom.site.site import Site
 
 ON_THE_FLOOR_VOXELS = 1.0
@@ -40,6 +46,8 @@ def notes_of_machine(machine: Machine, site: Site) -> tuple[str, ...]:
             f"explain_tolerance_m: {', '.join(more)} m have no effect: the least of all machines counts for all, which "
             f"is {least:g} m (the usual one where a machine says nothing)"
         )
+    if site.entry.machines:
+        notes += _in_each_other(machine)
     standing = _wheels_on_the_floor(machine, site)
     if standing:
         notes.append(
@@ -47,6 +55,32 @@ def notes_of_machine(machine: Machine, site: Site) -> tuple[str, ...]:
             "motions that move them stop; say that they stand on it (machine: stands_on)"
         )
     return tuple(notes)
+
+
+def _in_each_other(machine: Machine) -> list[str]:
+    """Links of different machines that touch in nearly all poses, or of which one stands in the other."""
+    bodies = [row for row, link in enumerate(machine.links) if link.has_geometry]
+    names = machine.link_names
+    rows = [
+        (a, b)
+        for a, b in combinations(bodies, 2)
+        if names[a].partition(BETWEEN)[0] != names[b].partition(BETWEEN)[0]
+        and not is_allowed(machine, names[a], names[b])
+    ]
+    placed = machine.random_places(POSES)
+    always = always_touching(machine.shape, rows, placed)
+    met = [
+        f"{names[a]} and {names[b]}"
+        for (a, b), touch in zip(rows, always, strict=True)
+        if touch or (not can_move_apart(machine, a, b) and holds(machine.links, a, b, placed[0]))
+    ]
+    if not met:
+        return []
+    more = f" and {len(met) - MOST_NOTES} pairs more" if len(met) > MOST_NOTES else ""
+    return [
+        f"links of different machines that lie in each other in nearly all poses: {', '.join(met[:MOST_NOTES])}{more}; "
+        "they are not compared: correct world_from_base, or name them in allowed_contacts, beside machines"
+    ]
 
 
 def _wheels_on_the_floor(machine: Machine, site: Site) -> list[str]:
