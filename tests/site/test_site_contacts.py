@@ -1,5 +1,6 @@
 """What a site says of what its machine touches, carries and looks like."""
 
+import numpy as np
 import pytest
 import trimesh
 
@@ -213,3 +214,65 @@ def test_machines_that_cannot_be_told_apart_are_refused(folder, plain, urdf, mor
     with pytest.raises((SiteError, MachineError), match=words) as error:
         Site.load(folder.write(content)).machine()
     assert "\n" not in str(error.value)
+
+
+FAR = [[1, 0, 0, 300], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+
+
+@pytest.mark.parametrize(
+    ("machine", "more", "words"),
+    [
+        (
+            {"carries": [{"name": "rod", "link": "hand", "mesh": "mm.stl"}]},
+            {},
+            r"part rod: is 300 m long, at most 20 m may be; is it in millimetres\? mesh_scale .* 0.001 makes it 0.3 m",
+        ),
+        (
+            {"carries": [{"name": "rod", "link": "hand", "box_m": [300, 20, 10]}]},
+            {},
+            "part rod: is 300 m long",
+        ),
+        (
+            {"carries": [{"name": "rod", "link": "hand", "box_m": [0.1, 0.1, 0.1], "link_from_part": FAR}]},
+            {},
+            r"part rod: lies 299.* m from its link's frame; is link_from_part in millimetres",
+        ),
+        (
+            {"contacts": [{"name": "t", "links": ["hand"], "mesh": "mm.stl"}]},
+            {},
+            "contacts: t: .*mm.stl: is 300 m long",
+        ),
+        (
+            {},
+            {"zones": [{"name": "z", "kind": "kept_out", "mesh": "mm.stl"}]},
+            "zones: z: .*mm.stl: is 300 m long",
+        ),
+        ({"limit_tolerance_deg": 400}, {}, "limit_tolerance_deg"),
+        ({"limit_tolerance_mm": 5000}, {}, "limit_tolerance_mm"),
+    ],
+)
+def test_what_must_be_in_millimetres_is_refused(folder, plain, urdf, machine, more, words):
+    trimesh.creation.box((300, 20, 10)).export(folder.path / "mm.stl")
+    with pytest.raises((SiteError, MachineError), match=words):
+        site_of(folder, {**plain, **more}, urdf=urdf, **machine).machine()
+
+
+def test_what_may_be_in_another_unit_is_a_note(folder, plain, urdf):
+    contact = {"name": "post", "links": ["hand"], "lower_m": [300, 0, 0], "upper_m": [301, 1, 1]}
+    carries = [{"name": "rod", "link": "hand", "box_m": [15, 0.01, 0.01], "link_from_part": beside(8.0)}]
+    carries += [{"name": "dot", "link": "hand", "box_m": [1e-4, 1e-4, 1e-4], "link_from_part": beside(0.5)}]
+    site = site_of(folder, plain, urdf=urdf, contacts=[contact], carries=carries)
+    notes = "\n".join(notes_of(site))
+    for words in (
+        "part rod is 15 m long",
+        "part dot is 0.1 mm long",
+        "contact post lies outside the watched box",
+    ):
+        assert words in notes
+    assert not site.machine().without_part("rod").without_part("dot").findings
+
+
+def beside(x):
+    pose = np.eye(4)
+    pose[0, 3] = x
+    return pose.tolist()

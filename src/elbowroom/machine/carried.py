@@ -6,10 +6,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.errors import MachineError
+from elbowroom.finding import Finding
 from elbowroom.geometry import invert_rigid
 from elbowroom.machine.link import Link
 from elbowroom.machine.overlap import always_touching, is_within
 from elbowroom.machine.shape import Shape
+from elbowroom.machine.sizes import (
+    LARGEST_LINK_M,
+    ODD,
+    SMALLEST_M,
+    SUSPECT_M,
+    away_of,
+    length_of,
+    require_metres,
+)
 
 WITHIN = 3
 """In so many poses it is asked whether a part lies wholly in a link, or a link in it."""
@@ -47,6 +57,43 @@ def require_beside(
             f"{what}: part {links[last].name} lies in {', '.join(within)} in all poses, which do not carry it: "
             "give its place (link_from_part), a smaller shape, or the link that does carry it"
         )
+
+
+def require_size(
+    what: str, links: Sequence[Link], carried: Link, points: NDArray[np.float64]
+) -> tuple[Finding, ...]:
+    """Refuses a part that cannot be meant in metres; what may be is said.
+
+    Args:
+        what: the machine, for a message.
+        links: of it, without the part.
+        carried: the part.
+        points: its corners in the frame of the link that carries it, shape (n, 3) [m].
+
+    Raises:
+        MachineError: it is longer than links may be, or lies farther from the link.
+    """
+    name = f"{what}: part {carried.name}"
+    longest = max((length_of(link.vertices) for link in links if link.has_geometry), default=0.0)
+    largest, length, away = max(LARGEST_LINK_M, longest), length_of(carried.vertices), away_of(points)
+    require_metres(name, carried.vertices, largest, "mesh_scale (scale of Part.mesh)")
+    if away > largest:
+        raise MachineError(
+            f"{name}: lies {away:.4g} m from its link's frame; is link_from_part in millimetres? it must be in metres"
+        )
+    said = []
+    if length > SUSPECT_M and length > ODD * longest > 0:
+        said.append(
+            f"part {carried.name} is {length:.3g} m long, the longest link {longest:.2g} m: is it in metres?"
+        )
+    if away > SUSPECT_M and away > ODD * longest > 0:
+        said.append(
+            f"part {carried.name} lies {away:.3g} m from its link, the longest link is {longest:.2g} m: is "
+            "link_from_part in metres?"
+        )
+    if length < SMALLEST_M:
+        said.append(f"part {carried.name} is {1e3 * length:.2g} mm long; is it scaled twice?")
+    return tuple(Finding("unit", (carried.name,), text, stops=False) for text in said)
 
 
 def holds(links: Sequence[Link], one: int, other: int, placed: NDArray[np.float64]) -> bool:

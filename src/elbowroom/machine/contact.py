@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
 from elbowroom.machine.link import Surface
+from elbowroom.machine.sizes import LARGEST_MESH_M, require_metres
 
 NEAR_M = 0.1
 """How near to a thing voxels are given to its links, where nothing else is said [m]."""
@@ -107,7 +108,7 @@ class Contact:
             pose: world_from_mesh, shape (4, 4), rigid; None: frames are one.
 
         Raises:
-            MachineError: a file that is missing or unreadable, or as the class.
+            MachineError: a file that is missing, unreadable or not in metres, or as the class.
         """
         # what reads meshes is slow to load, and most machines carry none
         from elbowroom.machine.mesh_file import read_mesh
@@ -115,6 +116,7 @@ class Contact:
         if not path.is_file():
             raise MachineError(f"contacts: {name}: {path}: no such file; expected a mesh")
         read = read_mesh(path)
+        require_metres(f"contacts: {name}: {path}", read.vertices, LARGEST_MESH_M)
         given = np.eye(4) if pose is None else pose
         pose = nearest_rigid(given, f"contacts: {name}: world_from_mesh", MachineError)
         vertices = read.vertices @ pose[:3, :3].T + pose[:3, 3]
@@ -130,18 +132,20 @@ class Contact:
         Args:
             points_in_world: shape (n, 3) [m].
         """
-        corners = self.surface.vertices[np.unique(self.surface.faces)]
-        lower, upper = corners.min(axis=0) - self.near_m, corners.max(axis=0) + self.near_m
+        least, greatest = self.extent_m
+        lower, upper = least - self.near_m, greatest + self.near_m
         if self.zone is not None:
             lower, upper = np.maximum(lower, self.zone[0]), np.minimum(upper, self.zone[1])
         return np.asarray(((points_in_world >= lower) & (points_in_world <= upper)).all(axis=-1))
 
-    def __str__(self) -> str:
+    @property
+    def extent_m(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Its least and greatest corner, shape (3,) each, world frame [m]."""
         corners = self.surface.vertices[np.unique(self.surface.faces)]
-        lower, upper = (
-            "(" + ", ".join(f"{value:.4g}" for value in corner) + ")"
-            for corner in (corners.min(axis=0), corners.max(axis=0))
-        )
+        return corners.min(axis=0), corners.max(axis=0)
+
+    def __str__(self) -> str:
+        lower, upper = ("(" + ", ".join(f"{value:.4g}" for value in corner) + ")" for corner in self.extent_m)
         may = "touch" if self.may_touch else "be near"
         return (
             f"May {may} {self.name}, {lower} to {upper} m, by the site's word: {', '.join(self.links)}, within "

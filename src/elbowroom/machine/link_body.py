@@ -17,16 +17,13 @@ from elbowroom.machine.description.shapes import Shape
 from elbowroom.machine.link import Link, Surface
 from elbowroom.machine.meshes import triangles_of
 from elbowroom.machine.seen import are_the_same, fit_of, together
+from elbowroom.machine.sizes import LARGEST_LINK_M, SMALLEST_M
 
 if TYPE_CHECKING:
     from elbowroom.machine.mesh_file import MeshFile
 
-LARGEST_LINK_M = 20.0
-"""A longer link is refused, unless the site says otherwise [m]."""
 SUSPECT_LINK_M = 2.0
 """From this length on, a mesh is compared with the rest of the machine [m]."""
-SMALLEST_MESH_M = 0.001
-"""A smaller mesh is said: it may have been scaled twice [m]."""
 TINY_M = 0.01
 """A moving mesh that is smaller after its scale, and before it no longer than the machine, is said [m]."""
 TO_METRES = 0.01
@@ -159,7 +156,7 @@ class Bodies:
             link.name: float(np.ptp(link.vertices, axis=0).max()) for link in links if link.has_geometry
         }
         for link in self.robot.links:
-            if link.name not in machine.moving or lengths.get(link.name, 0.0) < SMALLEST_MESH_M:
+            if link.name not in machine.moving or lengths.get(link.name, 0.0) < SMALLEST_M:
                 continue
             largest_m = max(
                 [machine.reach_m, *(length for name, length in lengths.items() if name != link.name)]
@@ -307,7 +304,7 @@ def _check_sizes(
                 f"the link is {length:.4g} m long, the next one {rest:.2g} m, and all joints reach {reach_m:.2g} m; "
                 f"{_meant(length, unscaled)}",
             )
-        if length < SMALLEST_MESH_M and any(shape.kind == "mesh" for shape in shapes[name]):
+        if length < SMALLEST_M and any(shape.kind == "mesh" for shape in shapes[name]):
             report.warn("unit", of, f"the link is {1e3 * length:.2g} mm long; is its mesh scaled twice?")
 
 

@@ -16,7 +16,7 @@ from elbowroom.errors import MachineError, MachineWarning
 from elbowroom.finding import Finding
 from elbowroom.geometry import nearest_rigid
 from elbowroom.machine import branch
-from elbowroom.machine.carried import require_beside
+from elbowroom.machine.carried import require_beside, require_size
 from elbowroom.machine.contact import Contact
 from elbowroom.machine.free_joint import FreeKind, Skeleton, free_positions, on_free_base
 from elbowroom.machine.joint import Joint
@@ -343,8 +343,8 @@ class Machine:
             link_from_part: where the part is on it, shape (4, 4), rigid; None: frames are one.
 
         Raises:
-            MachineError: no such link, a link of the part's name, a pose that is not rigid, or a part that lies in
-                links that do not carry it.
+            MachineError: no such link, a link of the part's name, a pose that is not rigid, a part that cannot be in
+                metres, or one that lies in links that do not carry it.
         """
         self._require_links("part " + part.name, [link])
         if part.name in self.link_names:
@@ -353,8 +353,11 @@ class Machine:
         pose = nearest_rigid(given, f"part {part.name}: link_from_part", MachineError)
         row = self.link_names.index(link)
         carried = Link(part.name, part.surface.vertices, part.surface.faces.astype(np.int32))
+        points = carried.vertices @ pose[:3, :3].T + pose[:3, 3]
+        odd = require_size(f"machine {self.name}", self.links, carried, points)
         holding = replace(
             self,
+            findings=(*self.findings, *odd),
             links=(*self.links, carried),
             tree=branch.grown(self.tree, row, pose),
             parts=(*self.parts, part.name),
@@ -394,6 +397,9 @@ class Machine:
             own_links=None if self.own_links is None else self.own_links.without(gone),
             unchecked_links=tuple(link for link in self.unchecked_links if link not in gone),
             parts=tuple(part for part in self.parts if part not in gone),
+            findings=tuple(
+                told for told in self.findings if not (told.about and gone.issuperset(told.about))
+            ),
         )
 
     def joint(self, name: str) -> Joint:

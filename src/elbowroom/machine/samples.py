@@ -294,7 +294,7 @@ def _too_large(link: Link, voxel_size_m: float) -> str:
     size = " x ".join(f"{extent:.3g}" for extent in np.ptp(link.vertices, axis=0))
     return (
         f"link {link.name}: {size} m is too large for voxels of {voxel_size_m:g} m: use larger voxels, or if its "
-        'mesh is in millimetres, scale="0.001 0.001 0.001" in the URDF'
+        'mesh is in millimetres, scale="0.001 0.001 0.001" in the URDF, of a part mesh_scale: 0.001'
     )
 
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.errors import MachineError
 from elbowroom.machine.link import Surface
+from elbowroom.machine.sizes import LARGEST_MESH_M, require_metres
 
 ZoneKind = Literal["kept_out", "not_watched"]
 ROUNDING_M = 1e-6
@@ -130,7 +131,7 @@ class Zone:
             path: of a kind that links may have.
 
         Raises:
-            MachineError: a file that is missing or unreadable, or as `mesh`.
+            MachineError: a file that is missing, unreadable or not in metres, or as `mesh`.
         """
         # what reads meshes is slow to load, and most machines carry none
         from elbowroom.machine.mesh_file import read_mesh
@@ -138,6 +139,7 @@ class Zone:
         if not path.is_file():
             raise MachineError(f"zones: {name}: {path}: no such file; expected a mesh")
         read = read_mesh(path)
+        require_metres(f"zones: {name}: {path}", read.vertices, LARGEST_MESH_M)
         return cls.mesh(name, kind, Surface(read.vertices, read.faces.astype(np.int32)), links, reason)
 
     def names(self, link: str) -> bool:

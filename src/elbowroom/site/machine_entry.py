@@ -57,8 +57,8 @@ class MachineEntry(Entry):
     xacro_arguments: dict[Text, Text | Number | Flag] = Field(default_factory=dict)
     without_body: tuple[Text, ...] = ()
     largest_link_m: Positive | None = None
-    limit_tolerance_deg: NotNegative | None = None
-    limit_tolerance_mm: NotNegative | None = None
+    limit_tolerance_deg: Annotated[NotNegative, up_to(90, "degrees")] | None = None
+    limit_tolerance_mm: Annotated[NotNegative, up_to(1000, "mm")] | None = None
 
     @model_validator(mode="after")
     def _one_source(self) -> "MachineEntry":

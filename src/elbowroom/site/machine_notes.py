@@ -7,6 +7,7 @@ import numpy as np
 from elbowroom.machine import Machine
 from elbowroom.machine.carried import holds
 from elbowroom.machine.overlap import POSES, always_touching
+from elbowroom.machine.sizes import LARGEST_LINK_M
 from elbowroom.machine.together import BETWEEN
 from elbowroom.motion.contacts import can_move_apart, is_allowed
 from elbowroom.site.site import Site
@@ -46,6 +47,13 @@ def notes_of_machine(machine: Machine, site: Site) -> tuple[str, ...]:
             f"explain_tolerance_m: {', '.join(more)} m have no effect: the least of all machines counts for all, which "
             f"is {least:g} m (the usual one where a machine says nothing)"
         )
+    grid = site.grid()
+    for contact in machine.contacts:
+        lower, upper = contact.extent_m
+        if (upper <= grid.lower_m).any() or (lower >= grid.upper_m).any():
+            notes.append(f"contact {contact.name} lies outside the watched box: it changes nothing")
+        elif (upper - lower).max() > LARGEST_LINK_M:
+            notes.append(f"contact {contact.name} is {(upper - lower).max():.3g} m long: is it in metres?")
     if site.entry.machines:
         notes += _in_each_other(machine)
     standing = _wheels_on_the_floor(machine, site)
