@@ -200,8 +200,8 @@ def test_zones_stand_in_what_is_said_of_a_machine(arm):
 
 def test_links_that_never_leave_a_volume_are_found(arm):
     all_of_it = Zone.box("all", "not_watched", (-3, -3, -3), (3, 3, 3), ("*",), "why")
-    assert never_out_of(arm, all_of_it.has, lambda _: True) == ("cart", "arm", "hand")
-    assert never_out_of(arm, all_of_it.has, all_of_it.names) == ("cart", "arm", "hand")
+    assert never_out_of(arm, [(all_of_it.has, lambda _: True)]) == ("cart", "arm", "hand")
+    assert never_out_of(arm, [(all_of_it.has, all_of_it.names)]) == ("cart", "arm", "hand")
     # the hand is always above 0.5 m, and the arm is not
-    assert never_out_of(arm, high().has, lambda _: True) == ("hand",)
+    assert never_out_of(arm, [(high().has, lambda _: True)]) == ("hand",)
     assert 1.2 < reach_m(arm) < 3.0

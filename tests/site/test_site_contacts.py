@@ -96,6 +96,28 @@ def test_what_cannot_be_meant_is_refused_in_a_line(folder, plain, urdf, more, wo
     assert "\n" not in str(error.value)
 
 
+def split(**keys):
+    """Two boxes that meet at z = 0.1 and are as large as the room."""
+    for lower, upper in (([-9, -9, -9], [9, 9, 0.1]), ([-9, -9, 0.1], [9, 9, 9])):
+        yield {"lower_m": lower, "upper_m": upper, "links": ["hand"]} | keys
+
+
+def test_boxes_that_cover_a_links_whole_way_together_are_refused(folder, plain, urdf):
+    """As one of them would be, whatever it is."""
+    first, second = split()
+    with pytest.raises(SiteError, match=r"stands_on: hand in .* and hand in .*: cover the whole way of hand"):
+        site_of(folder, plain, urdf=urdf, stands_on=[first, second]).machine()
+    near = [{**box, "name": name} for box, name in zip(split(), "ab", strict=True)]
+    with pytest.raises(SiteError, match="contacts: a and b: cover the whole way of hand"):
+        site_of(folder, plain, urdf=urdf, contacts=near).machine()
+    zones = [{**box, "kind": "not_watched", "reason": "why"} for box in near]
+    with pytest.raises(SiteError, match="zones: a and b: hand never leave them"):
+        site_of(folder, {**plain, "zones": zones}, urdf=urdf).machine()
+    # not where each has a link of its own, nor where one half stays uncovered
+    site_of(folder, plain, urdf=urdf, stands_on=[first, {**second, "links": ["base"]}]).machine()
+    site_of(folder, {**plain, "zones": zones[:1]}, urdf=urdf).machine()
+
+
 HIGH = {
     "name": "high",
     "kind": "not_watched",

@@ -1,6 +1,6 @@
 """Where links go: which of them a volume covers wherever they are, and how far they can reach at most."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,24 +17,36 @@ Inside = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
 """Whether points, shape (n, 3), world frame [m], lie in a volume."""
 
 
-def never_out_of(machine: Machine, inside: Inside, links: Callable[[str], bool]) -> tuple[str, ...]:
-    """Links that move and lie wholly in a volume in all of some random poses.
+Names = Callable[[str], bool]
+"""Whether a volume is one for a link, by its name."""
+
+
+def never_out_of(machine: Machine, volumes: Sequence[tuple[Inside, Names]]) -> tuple[str, ...]:
+    """Links that move and lie wholly in the union of their volumes in all of some random poses.
 
     Args:
         machine: whose links.
-        inside: which points the volume holds; where it holds the corners of a link's triangles it holds the link.
-        links: which links are asked for, by name.
+        volumes: which points each holds, and for which links it is; what holds the corners and the middles of a link's
+            triangles holds the link.
     """
     placed = machine.random_places(POSES)
     bodies = machine.shape.within(COARSE_M)
     covered = []
     for row, link in enumerate(machine.links):
-        if not (link.has_geometry and links(link.name) and moves(machine, row)):
+        own = [inside for inside, names in volumes if names(link.name)]
+        if not (own and link.has_geometry and moves(machine, row)):
             continue
         corners = bodies[row].vertices[np.unique(bodies[row].faces)]
-        if all(inside(corners @ pose[:3, :3].T + pose[:3, 3]).all() for pose in placed[:, row]):
+        if len(own) > 1:  # those of one, which is convex, say it of the middles too
+            corners = np.concatenate([corners, bodies[row].vertices[bodies[row].faces].mean(axis=1)])
+        if all(_is_in(own, corners @ pose[:3, :3].T + pose[:3, 3]) for pose in placed[:, row]):
             covered.append(link.name)
     return tuple(covered)
+
+
+def _is_in(volumes: Sequence[Inside], points: NDArray[np.float64]) -> bool:
+    """Whether each of some points lies in one of some volumes."""
+    return bool(np.any([inside(points) for inside in volumes], axis=0).all())
 
 
 def moves(machine: Machine, row: int) -> bool:

@@ -1,5 +1,6 @@
 """What a machine may touch and what it carries, as a site file describes it."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +11,7 @@ from pydantic import Field, model_validator
 from elbowroom.errors import SiteError
 from elbowroom.machine import Contact, Machine, Part, Stand, Zone
 from elbowroom.machine.contact import NEAR_M
-from elbowroom.machine.ways import never_out_of
+from elbowroom.machine.ways import Inside, Names, never_out_of
 from elbowroom.site.entry import Entry, Flag, Matrix, Point, Positive, Text
 from elbowroom.site.paths import expand
 from elbowroom.site.ranges import MILLIMETRES, up_to
@@ -83,7 +84,7 @@ class ContactEntry(Entry):
 
 
 def require_protected(machine: Machine) -> None:
-    """Refuses contacts and stands that a moving link never leaves.
+    """Refuses contacts and stands that a moving link never leaves, one alone or several together.
 
     Args:
         machine: with what it may touch.
@@ -91,21 +92,30 @@ def require_protected(machine: Machine) -> None:
     Raises:
         SiteError: there is one; says what would be unprotected.
     """
-    for contact in machine.contacts:
-        covered = never_out_of(machine, contact.is_near, contact.names)
+    near = [(contact.name, contact.is_near, contact.names) for contact in machine.contacts]
+    for name, covered in _covering(machine, near):
+        raise SiteError(
+            f"contacts: {name} the whole way of {covered}: wherever these links go, what lies close to it would be "
+            "taken for it; name fewer links, a smaller near_m or a zone"
+        )
+    stands = [
+        (str(stand), Zone.box("stand", "kept_out", stand.lower_m, stand.upper_m).has, stand.names)
+        for stand in machine.stands
+    ]
+    for name, covered in _covering(machine, stands):
+        raise SiteError(
+            f"stands_on: {name} the whole way of {covered}: wherever these links go, nothing would stop them, a hand "
+            "neither; name fewer links or a smaller box"
+        )
+
+
+def _covering(machine: Machine, volumes: Sequence[tuple[str, Inside, Names]]) -> Iterator[tuple[str, str]]:
+    """Which of some volumes cover the whole way of which links, one alone and then all together, in words."""
+    for some in (*([volume] for volume in volumes), volumes):
+        covered = never_out_of(machine, [(inside, names) for _, inside, names in some])
         if covered:
-            raise SiteError(
-                f"contacts: {contact.name}: covers the whole way of {', '.join(covered)}: wherever these links go, "
-                "what lies close to it would be taken for it; name fewer links, a smaller near_m or a zone"
-            )
-    for stand in machine.stands:
-        inside = Zone.box("stand", "kept_out", stand.lower_m, stand.upper_m).has
-        covered = never_out_of(machine, inside, stand.names)
-        if covered:
-            raise SiteError(
-                f"stands_on: {stand}: covers the whole way of {', '.join(covered)}: wherever these links go, "
-                "nothing would stop them, a hand neither; name fewer links or a smaller box"
-            )
+            which = [name for name, _, names in some if any(map(names, covered))]
+            yield " and ".join(which) + (": covers" if len(which) == 1 else ": cover"), ", ".join(covered)
 
 
 class PartEntry(Entry):

@@ -66,11 +66,14 @@ def with_zones(machine: Machine, entries: tuple[ZoneEntry, ...], beside: Path) -
     """
     zones = tuple(entry.build(beside) for entry in entries)
     machine = machine.with_zones(*zones)
-    for zone in zones:
-        covered = never_out_of(machine, zone.has, zone.names) if zone.kind == "not_watched" else ()
+    unwatched = [zone for zone in zones if zone.kind == "not_watched"]
+    for some in (*([zone] for zone in unwatched), unwatched):
+        covered = never_out_of(machine, [(zone.has, zone.names) for zone in some])
         if covered:
+            names = [zone.name for zone in some if any(map(zone.names, covered))]
+            them = "it" if len(names) == 1 else "them"
             raise SiteError(
-                f"zones: {zone.name}: {', '.join(covered)} never leave it: nothing that they could hit would be "
-                "watched for; make the zone smaller, or name these links in the machine's unchecked_links"
+                f"zones: {' and '.join(names)}: {', '.join(covered)} never leave {them}: nothing that they could "
+                "hit would be watched for; make the zone smaller, or name these links in the machine's unchecked_links"
             )
     return machine

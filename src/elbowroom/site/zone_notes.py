@@ -25,7 +25,7 @@ def notes_of_zones(machine: Machine, grid: VoxelGrid) -> tuple[str, ...]:
                 f"zone {zone.name}: no link reaches it, {reach:.1f} m is the farthest from the base: it changes nothing"
             )
         elif zone.kind == "kept_out":
-            covered = never_out_of(machine, zone.has, lambda _: True)
+            covered = never_out_of(machine, [(zone.has, lambda _: True)])
             if covered:
                 notes.append(
                     f"zone {zone.name}: {', '.join(covered)} never leave it: motions that move them always stop"
