@@ -132,6 +132,7 @@ def test_a_mesh_is_read_in_its_unit(gripper, tmp_path):
         (lambda m: Part.mesh("part", "nowhere.stl"), "no such file"),
         (lambda m: Part.mesh("part", __file__, 0.0), "scale is 0.0"),
         (lambda m: Part.box("", (1, 1, 1)), "has no name"),
+        (lambda m: Part.box("*", (1, 1, 1)), r"part '\*': a name with \* or \? would stand for other links"),
     ],
 )
 def test_what_cannot_be_carried_is_said(gripper, make, words):

@@ -5,7 +5,7 @@ import math
 import pytest
 import trimesh
 
-from elbowroom.errors import MachineError
+from elbowroom.errors import MachineError, SiteError
 from elbowroom.site import Site
 from elbowroom.site.machine_entry import MachineEntry, _as_xacro
 from elbowroom.site.notes import notes_of
@@ -100,3 +100,17 @@ def test_arguments_of_xacro_are_the_sites(site_of):
 def test_a_number_reaches_xacro_with_all_its_digits(value, text):
     entry = MachineEntry(urdf="r.urdf", xacro_arguments={"n": value})
     assert _as_xacro(entry.xacro_arguments["n"]) == text
+
+
+def test_a_follower_among_the_joints_is_said_to_follow(site_of):
+    body = BOX.format("base") + WHEEL.format(0.5)
+    body += (
+        WHEEL.format(0.5)
+        .replace("wheel", "idler")
+        .replace("roll", "idle")
+        .replace("</joint>", '<mimic joint="roll"/></joint>')
+    )
+    speed = {"max_speed_deg_s": 90, "braking_time_s": 0.2}
+    site = site_of(body, {"idle": speed})
+    with pytest.raises(SiteError, match=r"joints\.idle: follows roll \(mimic\)"):
+        site.motions(site.machine())

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Self
 
@@ -12,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from elbowroom.errors import MachineError
 from elbowroom.geometry import nearest_rigid
 from elbowroom.machine.link import Surface
+from elbowroom.machine.names import is_named
 from elbowroom.machine.sizes import LARGEST_MESH_M, require_metres
 
 NEAR_M = 0.1
@@ -124,7 +124,7 @@ class Contact:
 
     def names(self, link: str) -> bool:
         """Whether a link may be near it; names may hold wildcards ("*")."""
-        return any(fnmatchcase(link, name) for name in self.links)
+        return any(is_named(link, name) for name in self.links)
 
     def is_near(self, points_in_world: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Whether points may lie where it changes anything: in the box that holds it, grown by `near_m`, and its zone.

@@ -3,7 +3,6 @@
 import warnings
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import Path
 from weakref import WeakValueDictionary
@@ -30,6 +29,7 @@ from elbowroom.machine.joint_state import (
 )
 from elbowroom.machine.kernels.body import Tree, place_links
 from elbowroom.machine.link import Link
+from elbowroom.machine.names import named_by
 from elbowroom.machine.overlap import POSES, always_touching
 from elbowroom.machine.own_links import OwnLinks
 from elbowroom.machine.part import Part
@@ -141,10 +141,17 @@ class Machine:
     def _require_links(self, what: str, names: Sequence[str]) -> None:
         """Each name, which may hold wildcards, is that of a link."""
         for name in names:
-            if not any(fnmatchcase(link, name) for link in self.link_names):
+            found = named_by(name, self.link_names)
+            if not found:
                 raise MachineError(
                     f"machine {self.name}: {what}: link {name!r} does not exist; links are "
                     f"{', '.join(self.link_names)}"
+                )
+            if name in found and len(found) > 1:
+                others = ", ".join(link for link in found if link != name)
+                raise MachineError(
+                    f"machine {self.name}: {what}: {name!r} is a link, and stands for {others} as well by its "
+                    "wildcards; rename it"
                 )
 
     @classmethod
@@ -411,9 +418,15 @@ class Machine:
         for joint in self.joints:
             if joint.name == name and joint.mimic is None:
                 return joint
+        leader = self.leader_of(name)
+        why = "" if leader is None else f" that is commanded: it follows {leader}"
         raise MachineError(
-            f"machine {self.name}: no joint {name!r}; joints are {', '.join(self.joint_names) or 'none'}"
+            f"machine {self.name}: no joint {name!r}{why}; joints are {', '.join(self.joint_names) or 'none'}"
         )
+
+    def leader_of(self, name: str) -> str | None:
+        """The commanded joint that a joint of this name follows (mimic); None: it follows none, or is none."""
+        return next((each.leader for each in self._followers if each.joint.name == name), None)
 
     def moved_links(self, joint: str) -> tuple[str, ...]:
         """Names of the links that move with a joint or with its followers, with or without geometry.

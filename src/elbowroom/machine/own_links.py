@@ -53,6 +53,10 @@ class OwnLinks:
     @property
     def said(self) -> str:
         """In one line: how many, for which reasons, by which file."""
+        if not self.pairs:
+            return (
+                f"Pairs of links that are not compared, by {self.source}: none, it names no two of its links"
+            )
         counts = Counter(reason for _, _, reason in self.pairs)
         reasons = ", ".join(f"{count} {reason}" for reason, count in sorted(counts.items()))
         return f"Pairs of links that are not compared, by {self.source}: {len(self.pairs)} ({reasons})"
@@ -109,7 +113,7 @@ class OwnLinks:
             path: the file.
 
         Raises:
-            MachineError: missing, no XML, no SRDF, or an entry without two links.
+            MachineError: missing, no XML, no SRDF, one that is xacro yet, or an entry without two links.
         """
         path = Path(path)
         root = _xml(path)
@@ -121,6 +125,11 @@ class OwnLinks:
             if not one or not other:
                 raise MachineError(
                     f"{path}: line {entry.sourceline}: disable_collisions without link1 or link2"
+                )
+            if "${" in one + other:
+                raise MachineError(
+                    f"{path}: line {entry.sourceline}: link {(one if '${' in one else other)!r}: the file is xacro; "
+                    "expand it, as with `xacro FILE > robot.srdf`, and name what comes out"
                 )
             if one != other:
                 pairs.append((one, other, (entry.get("reason") or "unnamed").lower()))

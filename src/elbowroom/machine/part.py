@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from elbowroom.errors import MachineError
 from elbowroom.machine.link import Surface
+from elbowroom.machine.names import WILD
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,7 +22,7 @@ class Part:
         surface: its triangles.
 
     Raises:
-        MachineError: no name, or no triangles.
+        MachineError: no name, one with wildcards, or no triangles.
     """
 
     name: str
@@ -30,6 +31,10 @@ class Part:
     def __post_init__(self) -> None:
         if not self.name:
             raise MachineError("part: has no name; verdicts name what meets a block")
+        if set(self.name) & set(WILD):
+            raise MachineError(
+                f"part {self.name!r}: a name with {' or '.join(WILD)} would stand for other links; choose another one"
+            )
         if not len(self.surface.faces) or not np.isfinite(self.surface.vertices).all():
             raise MachineError(f"part {self.name}: has no triangles with finite corners")
 

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.errors import MachineError
+from elbowroom.machine.names import is_named
 
 ROUNDING_IN_VOXELS = 1e-6
 """Corners of voxels may stand out of a box by this much and lie in it."""
@@ -65,7 +65,7 @@ class Stand:
 
     def names(self, link: str) -> bool:
         """Whether a link may touch it; names may hold wildcards ("*")."""
-        return any(fnmatchcase(link, name) for name in self.links)
+        return any(is_named(link, name) for name in self.links)
 
     def __str__(self) -> str:
         corners = " to ".join(

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Literal, Self
 
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowroom.errors import MachineError
 from elbowroom.machine.link import Surface
+from elbowroom.machine.names import is_named
 from elbowroom.machine.sizes import LARGEST_MESH_M, require_metres
 
 ZoneKind = Literal["kept_out", "not_watched"]
@@ -144,7 +144,7 @@ class Zone:
 
     def names(self, link: str) -> bool:
         """Whether the zone is not watched for a link; names may hold wildcards ("*")."""
-        return any(fnmatchcase(link, name) for name in self.links)
+        return any(is_named(link, name) for name in self.links)
 
     def has(self, points_in_world: NDArray[np.float64], beyond_m: float = 0.0) -> NDArray[np.bool_]:
         """Whether points lie in it, or no farther out of any of its planes than a distance.

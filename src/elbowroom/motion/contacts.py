@@ -1,6 +1,5 @@
 """Which links of a machine must not meet, and which touch as they are meant to."""
 
-from fnmatch import fnmatchcase
 from itertools import combinations
 
 import numpy as np
@@ -11,6 +10,7 @@ from elbowroom.machine import Machine
 from elbowroom.machine.boxes import boxes_of
 from elbowroom.machine.kernels.apart import Bodies
 from elbowroom.machine.kernels.samples import cluster
+from elbowroom.machine.names import is_named
 from elbowroom.machine.overlap import POSES, always_touching, bodies_of
 from elbowroom.machine.samples import COVER_IN_VOXELS, ROUNDING_M, BodySamples, body_samples
 from elbowroom.machine.shape import Shape
@@ -103,7 +103,7 @@ def is_allowed(machine: Machine, one: str, other: str) -> bool:
     if machine.own_links is not None and machine.own_links.has(one, other):
         return True
     return any(
-        (fnmatchcase(one, a) and fnmatchcase(other, b)) or (fnmatchcase(one, b) and fnmatchcase(other, a))
+        (is_named(one, a) and is_named(other, b)) or (is_named(one, b) and is_named(other, a))
         for a, b in machine.allowed_contacts
     )
 

@@ -280,4 +280,9 @@ def _require_known(machine: Machine, joints: Mapping[str, JointEntry]) -> None:
     for name in joints:
         if name not in machine.joint_names:
             known = ", ".join(machine.joint_names) or "none"
+            leader = machine.leader_of(name)
+            if leader is not None:
+                raise SiteError(
+                    f"joints.{name}: follows {leader} (mimic) and has no speed of its own; name {leader}"
+                )
             raise SiteError(f"joints.{name}: unknown joint; joints of {machine.name} are {known}")
