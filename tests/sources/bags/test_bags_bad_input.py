@@ -17,6 +17,7 @@ from elbowroom.site import Site
 from elbowroom.sources import moments, time_findings
 from elbowroom.sources.bags import depth, messages
 from elbowroom.sources.bags.bag import Bag
+from elbowroom.sources.bags.site_of import Wish, site_of
 from reference import bag_files as bags
 from reference.bag_room import bag_room
 
@@ -98,11 +99,61 @@ def test_compressed_images_that_are_none(told, tmp_path):
     assert told in text and "/cam02/depth" in text
 
 
-def test_two_images_at_one_time_and_no_bag_at_all(tmp_path):
-    found = bag_room().messages()
-    other = bags.image(np.full((36, 48), 7, np.uint16), bags.T0)
-    bag = bags.written(tmp_path / "bag", [*found, ("/cam00/depth/image_raw", bags.T0 + 10**9, other)])
-    assert f"{bags.T0} ns: two frames of camera cam00 at one time" in refusal(bag)
+def twins(count):
+    """The bag, in which the first images of a camera come again with other pixels and the same stamps."""
+    other = np.full((36, 48), 7, np.uint16)
+    stamps = list(bag_room().raw["cam00"])[:count]
+    again = [("/cam00/depth/image_raw", at + 10**9, bags.image(other, at, "cam00_optical")) for at in stamps]
+    return [*bag_room().messages(), *again]
+
+
+def test_of_two_images_at_one_time_the_first_is_kept_and_said(tmp_path):
+    bag = bags.written(tmp_path / "bag", twins(1))
+    room = bag_room()
+    site = Site.load(room.site(tmp_path / "site.yaml", room.recording(bag)))
+    plain = Site.load(
+        room.site(tmp_path / "one.yaml", room.recording(bags.written(tmp_path / "one", room.messages())))
+    )
+    for mine, theirs in zip(moments(site), moments(plain), strict=True):
+        assert mine.now_ns == theirs.now_ns
+        assert all(
+            np.array_equal(a.depth_m, b.depth_m) for a, b in zip(mine.frames, theirs.frames, strict=True)
+        )
+    (said,) = time_findings(site)
+    assert f"1 of 5 images of camera cam00 have the time of another, the first {bags.T0} ns" in said.text
+    assert "came first is kept" in said.text and not said.stops
+
+
+def test_many_images_at_one_time_are_refused_with_what_to_do(tmp_path):
+    text = refusal(bags.written(tmp_path / "bag", twins(3)))
+    assert "3 of 7 images of camera cam00" in text and "stamp each image by its exposure" in text
+
+
+@pytest.mark.parametrize(("storage", "packed"), [("mcap", None), ("mcap", "message"), ("sqlite3", None)])
+@pytest.mark.parametrize("name", ["cam01_optical", "/a_frame_of_a_camera" * 9])
+def test_images_of_two_cameras_on_one_topic_are_refused(storage, packed, name, tmp_path):
+    pixels = bag_room().raw["cam01"][bags.T0]
+    at = bags.T0 + 150 * bags.MS
+    other = ("/cam00/depth/image_raw", at, bags.image(pixels, at, name))
+    bag = bags.written(tmp_path / "bag", [*bag_room().messages(), other], storage, packed)
+    text = refusal(bag)
+    assert "cam00" in text and f"images of two frames, cam00_optical and {name.removeprefix('/')}" in text
+    assert "on one topic, /cam00/depth/image_raw" in text
+    with Bag(bag) as opened, pytest.raises(FrameError, match="images of two frames"):
+        site_of(opened, Wish())
+
+
+def test_a_frame_with_a_slash_or_none_is_no_other_camera(tmp_path):
+    pixels, found = bag_room().raw["cam00"][bags.T0], bag_room().messages()
+    for number, name in enumerate(("/cam00_optical", "")):
+        at = bags.T0 + (150 + number) * bags.MS
+        found.append(("/cam00/depth/image_raw", at, bags.image(pixels, at, name)))
+    room, bag = bag_room(), bags.written(tmp_path / "bag", found)
+    assert list(moments(Site.load(room.site(tmp_path / "site.yaml", room.recording(bag)))))
+
+
+def test_no_bag_at_all(tmp_path):
+    bag = bags.written(tmp_path / "bag", bag_room().messages())
     (tmp_path / "empty").mkdir()
     assert "no bag: neither metadata.yaml nor files" in refusal(tmp_path / "empty")
     assert "no folder or file" in refusal(tmp_path / "gone")

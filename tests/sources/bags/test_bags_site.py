@@ -334,3 +334,14 @@ def test_a_folder_with_a_bag_of_ros_1_is_told_how_to_convert_it(tmp_path):
     (tmp_path / "old.bag").write_bytes(b"#ROSBAG V2.0\n")
     with pytest.raises(BagError, match=r"old\.bag is a bag of ROS 1: rosbags-convert --src"):
         Bag(tmp_path)
+
+
+def test_camera_info_of_two_cameras_on_one_topic_is_refused(tmp_path):
+    room, topic = bag_room(), "/cam00/depth/camera_info"
+    mixed = [*room.messages(), (topic, bags.T0, bags.camera_info(room.cameras[1], bags.T0, "cam01_optical"))]
+    text = refusal(tmp_path / "frames", mixed)
+    assert "CameraInfo of two frames, cam01_optical and cam00_optical" in text
+    lens = bags.camera_info(room.cameras[0], bags.T0, "cam00_optical")
+    lens.k[0] *= 1.2
+    text = refusal(tmp_path / "lens", [*room.messages(), (topic, bags.T0 + 150 * bags.MS, lens)])
+    assert "the lens or the size of message 3 is not that of the beginning" in text

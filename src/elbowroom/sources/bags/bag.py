@@ -12,8 +12,9 @@ from typing import Self
 from elbowroom.errors import BagError
 from elbowroom.files.content import head_of, what_it_is
 from elbowroom.sources.bags import mcap_file, sqlite_file
-from elbowroom.sources.bags.cdr import stamp_at_head
+from elbowroom.sources.bags.cdr import HEADER_BYTES, Cdr, frame_at_head, stamp_at_head
 from elbowroom.sources.bags.mcap_file import McapFile
+from elbowroom.sources.bags.messages import header_of
 from elbowroom.sources.bags.metadata import ROS1_MAGIC, parts_of
 from elbowroom.sources.bags.sqlite_file import SqliteFile
 from elbowroom.sources.bags.storage import Storage, Stored, Topic
@@ -113,6 +114,20 @@ class Bag:
         if stamp is None:
             raise BagError(f"{self.path}: a message of {stored.size} bytes has no header")
         return stamp
+
+    def frame(self, stored: Stored) -> str:
+        """The frame of a message that begins with a header, without a slash in front; "": it names none.
+
+        Raises:
+            BagError: it is damaged, or does not begin so.
+        """
+        frame = stored.frame
+        if frame is None:
+            data = self.read(stored)
+            frame = frame_at_head(data[:HEADER_BYTES])
+            if frame is None:
+                frame = header_of(Cdr(data, f"{self.path}: a message of {stored.size} bytes")).frame
+        return frame.removeprefix("/")
 
     def require(self, topic: str) -> Topic:
         """A topic by its name; raises as `messages`."""

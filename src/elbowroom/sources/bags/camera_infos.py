@@ -1,10 +1,15 @@
 """Which CameraInfo belongs to a topic of depth, and what it says of the lens."""
 
 from elbowroom.errors import BagError, FrameError
+from elbowroom.sources.bags.axes import frames_named
 from elbowroom.sources.bags.bag import Bag
 from elbowroom.sources.bags.depth_topics import DepthTopic, camera_name, first_kind
 from elbowroom.sources.bags.lenses import Lens, lens_of
 from elbowroom.sources.bags.messages import CAMERA_INFO, CameraInfo, camera_info_of
+
+
+LOOKED_AT = 8
+"""So many of the first messages are compared: two cameras on one topic take turns."""
 
 
 def info_topic(bag: Bag, topic: DepthTopic) -> str:
@@ -32,12 +37,21 @@ def info_of(bag: Bag, name: str) -> CameraInfo:
     """The first CameraInfo of a topic.
 
     Raises:
-        BagError: malformed, or a later one says another lens.
+        BagError: malformed, of two frames, or a later one says another lens.
     """
+    messages = bag.messages(name)
+    frames = frames_named(bag, messages)
+    if len(frames) > 1:
+        raise BagError(
+            f"{bag.path}: {name}: CameraInfo of two frames, {frames[0]} and {frames[1]}, on one topic: do two cameras "
+            "publish on it? Give each a topic of its own (remap its driver), and record anew"
+        )
     first = _info(bag, name)
-    last = camera_info_of(bag.read(bag.messages(name)[-1]), f"{bag.path}: {name}")
-    if (first.k != last.k).any() or (first.width, first.height) != (last.width, last.height):
-        raise BagError(f"{bag.path}: {name}: the lens or the size at the end is not that of the beginning")
+    for number, stored in enumerate(dict.fromkeys((*messages[:LOOKED_AT], messages[-1]))):
+        other = camera_info_of(bag.read(stored), f"{bag.path}: {name}")
+        if (first.k != other.k).any() or (first.width, first.height) != (other.width, other.height):
+            where = f"of message {number + 1}" if number < LOOKED_AT else "at the end"
+            raise BagError(f"{bag.path}: {name}: the lens or the size {where} is not that of the beginning")
     return first
 
 

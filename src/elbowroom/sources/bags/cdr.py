@@ -1,6 +1,7 @@
 """Bytes of a ROS 2 message to values: CDR (OMG, DDSI-RTPS 10.2), every length checked before anything is made of it."""
 
 import struct
+import sys
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,6 +14,8 @@ ORDERS = {b"\x00\x00": ">", b"\x00\x01": "<"}
 HEAD = 4
 LONGEST_TEXT = 4096
 """Names of frames, joints and encodings are shorter [bytes]."""
+HEADER_BYTES = 128
+"""Of a message so many bytes are looked at to find the time and the frame in its header."""
 
 
 class Cdr:
@@ -123,3 +126,22 @@ def stamp_at_head(start: bytes | memoryview) -> int | None:
         return None
     seconds, rest = struct.unpack_from(f"{order}iI", start, HEAD)
     return int(seconds) * 1_000_000_000 + int(rest)
+
+
+def frame_at_head(start: bytes | memoryview) -> str | None:
+    """The name of the frame in that header; None: these bytes end before it, or are no CDR, or no text.
+
+    Args:
+        start: of the message, as much as there is of it up to `HEADER_BYTES`.
+    """
+    order = ORDERS.get(bytes(start[:2]))
+    at = HEAD + 12
+    if order is None or len(start) < at:
+        return None
+    (length,) = struct.unpack_from(f"{order}I", start, at - 4)
+    if at + length > len(start):
+        return None
+    try:
+        return sys.intern(bytes(start[at : at + length]).rstrip(b"\x00").decode())
+    except UnicodeDecodeError:
+        return None

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from elbowroom.errors import BagError, FrameError, InputError
+from elbowroom.sources.bags.axes import frames_named
 from elbowroom.sources.bags.bag import Bag
 from elbowroom.sources.bags.depth import TRANSPORT, Kind, kind_of
 from elbowroom.sources.bags.lenses import RECTIFIED
@@ -32,6 +33,7 @@ class DepthTopic(NamedTuple):
         kind: of its first image.
         images: how many.
         step_ns: its usual step [ns]; None: there are no two.
+        frames: that its images name.
     """
 
     name: str
@@ -39,6 +41,7 @@ class DepthTopic(NamedTuple):
     kind: Kind
     images: int
     step_ns: float | None
+    frames: tuple[str, ...] = ()
 
     @property
     def is_aligned(self) -> bool:
@@ -59,7 +62,7 @@ class DepthTopic(NamedTuple):
     def text(self) -> str:
         """What there is, in a line."""
         rate = "" if self.step_ns is None else f", {hz(max(self.step_ns, 1.0))}"
-        return f"{self.kind.text}, {self.images} images{rate}, axes of {self.kind.frame or 'no frame'}"
+        return f"{self.kind.text}, {self.images} images{rate}, axes of {' and '.join(self.frames) or self.kind.frame or 'no frame'}"
 
 
 class Found(NamedTuple):
@@ -89,7 +92,8 @@ def depth_topics(bag: Bag) -> Found:
             continue
         times = stamped(bag, topic).messages
         stamps = np.array([message.stamp_ns for message in times], dtype=np.int64)
-        found[topic] = DepthTopic(topic, camera_name(topic), kind, len(times), usual_step_ns(stamps))
+        frames = frames_named(bag, (message.stored for message in times))
+        found[topic] = DepthTopic(topic, camera_name(topic), kind, len(times), usual_step_ns(stamps), frames)
     return Found(found, others)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
 from elbowroom.errors import BagError
-from elbowroom.sources.bags.cdr import stamp_at_head
+from elbowroom.sources.bags.cdr import HEADER_BYTES, frame_at_head, stamp_at_head
 from elbowroom.sources.bags.mcap_chunk import LONGEST_HEAD, Chunk, chunk_of, content_of
 from elbowroom.sources.bags.storage import LARGEST_MESSAGE, Stored, Topic
 from elbowroom.sources.bags.unpacked import is_zstd, unpacked
@@ -21,8 +21,8 @@ KEPT = 1 << 26
 """Of unpacked chunks the newest are kept, up to so many bytes together, and one at least."""
 RECORD = struct.Struct("<BQ")
 MESSAGE_HEAD = struct.Struct("<HIQQ")
-HEAD_SIZE = MESSAGE_HEAD.size + 12
-"""Of a message so much is looked at: with the time in its header [bytes]."""
+HEAD_SIZE = MESSAGE_HEAD.size + HEADER_BYTES
+"""Of a message so much is looked at: with the time and the frame in its header [bytes]."""
 SCHEMA, CHANNEL, MESSAGE, CHUNK, FOOTER, DATA_END = 3, 4, 5, 6, 2, 15
 ALONE = -1
 """The chunk of a message that lies in none."""
@@ -191,8 +191,9 @@ class McapFile:
         data_size = size - MESSAGE_HEAD.size
         begin += MESSAGE_HEAD.size
         place, within = (begin, ALONE) if chunk == ALONE else (chunk, begin)
-        stamp = stamp_at_head(head[MESSAGE_HEAD.size :])
-        self._stored[topic.name].append(Stored(received, stamp, data_size, self.part, place, within))
+        start = head[MESSAGE_HEAD.size :]
+        stamp, frame = stamp_at_head(start), frame_at_head(start)
+        self._stored[topic.name].append(Stored(received, stamp, data_size, self.part, place, within, frame))
 
     def _bounded(self, record: _Record) -> bytes:
         return self._at(record.begin, min(record.size, 1 << 16))

@@ -93,7 +93,7 @@ def image_of(data: bytes | memoryview, what: str) -> RawImage:
         BagError: the message is malformed, as of all of these.
     """
     cdr = Cdr(data, what)
-    header, height, width = _header(cdr), cdr.whole("I"), cdr.whole("I")
+    header, height, width = header_of(cdr), cdr.whole("I"), cdr.whole("I")
     return RawImage(header, height, width, cdr.text(), cdr.flag(), cdr.whole("I"), cdr.octets())
 
 
@@ -105,7 +105,7 @@ def compressed_of(data: bytes | memoryview, what: str) -> CompressedImage:
         what: names it in errors.
     """
     cdr = Cdr(data, what)
-    return CompressedImage(_header(cdr), cdr.text(), cdr.octets())
+    return CompressedImage(header_of(cdr), cdr.text(), cdr.octets())
 
 
 def camera_info_of(data: bytes | memoryview, what: str) -> CameraInfo:
@@ -116,7 +116,7 @@ def camera_info_of(data: bytes | memoryview, what: str) -> CameraInfo:
         what: names it in errors.
     """
     cdr = Cdr(data, what)
-    header, height, width, model = _header(cdr), cdr.whole("I"), cdr.whole("I"), cdr.text()
+    header, height, width, model = header_of(cdr), cdr.whole("I"), cdr.whole("I"), cdr.text()
     d, k, r, p = cdr.reals(), cdr.reals(9), cdr.reals(9), cdr.reals(12)
     binning = cdr.whole("I"), cdr.whole("I")
     roi = cdr.whole("I"), cdr.whole("I"), cdr.whole("I"), cdr.whole("I")
@@ -142,7 +142,7 @@ def joint_state_of(data: bytes | memoryview, what: str) -> JointState:
         what: names it in errors.
     """
     cdr = Cdr(data, what)
-    found = JointState(_header(cdr), cdr.texts(), cdr.reals(), cdr.reals())
+    found = JointState(header_of(cdr), cdr.texts(), cdr.reals(), cdr.reals())
     for told, values in (("positions", found.positions), ("velocities", found.velocities)):
         if len(values) not in (0, len(found.names)):
             raise BagError(f"{what}: {len(found.names)} names of joints and {len(values)} {told}")
@@ -158,9 +158,19 @@ def transforms_of(data: bytes | memoryview, what: str) -> Sequence[Transform]:
     """
     cdr = Cdr(data, what)
     least = 8 + 4 + 4 + 56
-    return [Transform(_header(cdr), cdr.text(), cdr.reals(3), cdr.reals(4)) for _ in range(cdr.count(least))]
+    return [
+        Transform(header_of(cdr), cdr.text(), cdr.reals(3), cdr.reals(4)) for _ in range(cdr.count(least))
+    ]
 
 
-def _header(cdr: Cdr) -> Header:
+def header_of(cdr: Cdr) -> Header:
+    """The header with which most messages begin.
+
+    Args:
+        cdr: at its beginning.
+
+    Raises:
+        BagError: the message is malformed.
+    """
     seconds, rest = cdr.whole("i"), cdr.whole("I")
     return Header(seconds * 1_000_000_000 + rest, cdr.text())

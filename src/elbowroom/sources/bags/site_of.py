@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import BagError
 from elbowroom.geometry import DepthCamera
+from elbowroom.sources.bags.axes import require_one_frame
 from elbowroom.sources.bags.bag import Bag
 from elbowroom.sources.bags.camera_infos import info_topic, lens_by
 from elbowroom.sources.bags.depth import METRES, OWN, OWN_RADIAL, depth_of
@@ -70,10 +71,12 @@ def site_of(bag: Bag, wish: Wish) -> SiteOf:
 
     Raises:
         BagError: no depth, no CameraInfo, no chain of transforms, or one of these that cannot be read.
+        FrameError: a topic with images of two frames.
         InputError: several topics of depth of a camera, or a wish that the bag cannot fulfil.
     """
     topics, frames = chosen(bag, wish.depth), frames_of(bag)
     for name, topic in topics.items():
+        require_one_frame(f"{name} ({bag.path})", topic.name, topic.frames)
         if not topic.kind.frame:
             raise BagError(
                 f"{bag.path}: {topic.name}: its header names no frame, so camera {name} has no place"

@@ -8,8 +8,8 @@ from contextlib import closing
 from pathlib import Path
 
 from elbowroom.errors import BagError
-from elbowroom.sources.bags.cdr import stamp_at_head
-from elbowroom.sources.bags.storage import HEAD_BYTES, LARGEST_MESSAGE, Stored, Topic
+from elbowroom.sources.bags.cdr import HEADER_BYTES, frame_at_head, stamp_at_head
+from elbowroom.sources.bags.storage import LARGEST_MESSAGE, Stored, Topic
 from elbowroom.sources.bags.unpacked import is_zstd, unpacked
 
 MAGIC = b"SQLite format 3\x00"
@@ -100,8 +100,10 @@ class SqliteFile:
             for number, topic_id, received, size in self._rows():
                 topic = self._names.get(topic_id)
                 if topic is not None and 0 <= received < 2**63 and 0 < size <= LARGEST_MESSAGE:
-                    stamp = self._stamp(number, size)
-                    self._stored[topic.name].append(Stored(received, stamp, size, self.part, number, 0))
+                    stamp, frame = self._head(number, size)
+                    self._stored[topic.name].append(
+                        Stored(received, stamp, size, self.part, number, 0, frame)
+                    )
         except FAULTS as error:
             self.notes.append(f"{self.path}: cut off or damaged ({_said(error)}); it is read up to there")
 
@@ -111,12 +113,13 @@ class SqliteFile:
             if all(isinstance(value, int) for value in row):
                 yield row
 
-    def _stamp(self, number: int, size: int) -> int | None:
+    def _head(self, number: int, size: int) -> tuple[int | None, str | None]:
+        """Time and frame of a message's header."""
         with closing(self._blob(number)) as blob:
-            start = blob.read(min(size, HEAD_BYTES))
+            start = blob.read(min(size, HEADER_BYTES))
         if is_zstd(start):
-            return None
-        return stamp_at_head(start)
+            return None, None
+        return stamp_at_head(start), frame_at_head(start)
 
     def _blob(self, number: int) -> sqlite3.Blob:
         return self._base.blobopen("messages", "data", number, readonly=True)

@@ -5,8 +5,6 @@ from typing import NamedTuple, Protocol
 
 LARGEST_MESSAGE = 1 << 28
 """No image that is read here is larger [bytes]."""
-HEAD_BYTES = 64
-"""Of a message so many bytes are looked at to find its stamp."""
 
 
 class Topic(NamedTuple):
@@ -33,6 +31,7 @@ class Stored(NamedTuple):
         part: number of the file.
         place: where in the file: a row, or a chunk and its byte.
         within: byte within the chunk.
+        frame: of the header; None: that is not known without reading it.
     """
 
     received_ns: int
@@ -41,6 +40,7 @@ class Stored(NamedTuple):
     part: int
     place: int
     within: int
+    frame: str | None = None
 
 
 class Storage(Protocol):

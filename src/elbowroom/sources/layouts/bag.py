@@ -11,12 +11,12 @@ from elbowroom.site.recording_entry import BagRecording
 from elbowroom.site.site import Site
 from elbowroom.sources.bags.bag import Bag
 from elbowroom.sources.bags.camera_infos import lens_by
-from elbowroom.sources.bags.depth import METRES, kind_of
 from elbowroom.sources.bags.joints import Told, record_of, told_of
 from elbowroom.sources.bags.messages import COMPRESSED, IMAGE, JOINT_STATE
 from elbowroom.sources.bags.opened import opened
-from elbowroom.sources.bags.stamps import Stamped, Times, stamped
+from elbowroom.sources.bags.stamps import Times, stamped
 from elbowroom.sources.layouts.bag_image import Arrival, Message
+from elbowroom.sources.layouts.bag_rows import Row, row_of
 from elbowroom.sources.layouts.gathered import gathered, series_of
 from elbowroom.sources.layouts.image import Image
 from elbowroom.sources.room_clock import RoomClock
@@ -100,7 +100,8 @@ class BagFrames:
         has_joints = self.site.entry.machine is not None and self._has_told
         lenses = [self._lens_note(camera) for camera in self.site.cameras()]
         odd = [note for note in lenses if note is not None]
-        return (*self._bag.notes, *told, *odd, *(self._told.notes if has_joints else ()))
+        alike = [note for row in self._taken.values() for note in row.notes]
+        return (*self._bag.notes, *told, *alike, *odd, *(self._told.notes if has_joints else ()))
 
     def _lens_note(self, camera: DepthCamera) -> str | None:
         """That the bag says another lens than the site; None: it says the same, or none."""
@@ -175,31 +176,21 @@ class BagFrames:
         return stamped(self._bag, topic)
 
     @cached_property
+    def _taken(self) -> dict[str, Row]:
+        topics = self.recording.topics
+        return {
+            camera.name: row_of(
+                self.site, camera, self._bag, topics[camera.name], self._times[camera.name].messages
+            )
+            for camera in self.site.cameras()
+        }
+
+    @cached_property
     def _rows(self) -> dict[str, list[Image]]:
-        rows = {camera.name: self._images_of(camera) for camera in self.site.cameras()}
+        rows = {name: row.images for name, row in self._taken.items()}
         stamps = {name: [image.stamp_ns or 0 for image in row] for name, row in rows.items()}
         require_possible(self.site.path, stamps, "ns", True)
         return rows
-
-    def _images_of(self, camera: DepthCamera) -> list[Image]:
-        topic, messages = self.recording.topics[camera.name], self._times[camera.name].messages
-        in_metres = bool(messages) and self._kind(topic, messages[0]) == METRES
-        images: list[Image] = []
-        for message in messages:
-            stamp, where = message.stamp_ns, f"{self.path}: {topic} at {message.stamp_ns} ns"
-            stored = Message(self._bag, topic, message.stored, where, in_metres)
-            if images and images[-1].stamp_ns == stamp:
-                if images[-1].content() == stored.content():
-                    continue
-                raise FrameError(f"{where}: two frames of camera {camera.name} at one time")
-            path = self.path / topic.strip("/") / f"{stamp}.png"
-            images.append(Image.of(self.site, camera, stamp, path, stored))
-        return images
-
-    def _kind(self, topic: str, message: Stamped) -> str:
-        """The encoding of a topic's first image."""
-        what = f"{self.path}: {topic} at {message.stamp_ns} ns"
-        return kind_of(self._bag.topics[topic].type, self._bag.read(message.stored), what).encoding
 
     def _missing(self, name: str, told: Told) -> str:
         said = ", ".join(told.positions) or "none with a position"
