@@ -154,16 +154,16 @@ def _findings(site: "Site") -> dict[str, Any]:
 
 
 def _of_the_model(site: "Site", found: "Sequence[Finding]") -> "Sequence[Finding]":
-    """Links that a recording's first moment shows elsewhere, or smaller than their model; if nothing else stops."""
+    """Links that the first moment with joints shows elsewhere, or smaller than their model; if nothing else stops."""
     from elbowroom.reconstruct.machine_there import machine_there
     from elbowroom.reconstruct.model_findings import model_findings
-    from elbowroom.sources import open_room
+    from elbowroom.sources import first_known, open_room
 
     machine, is_there = site.machine(), site.entry.recording is not None and site.missing_recording is None
     if machine is None or not is_there or any(finding.stops for finding in found):
         return ()
     room = open_room(site)
-    snapshot = next(iter(room.source), None)
+    snapshot = first_known(site)
     if snapshot is None:
         return ()
     is_absent = room.terms.without_machine

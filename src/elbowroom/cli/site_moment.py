@@ -48,11 +48,11 @@ def tight_notes(site: "Site") -> list[str]:
 
 
 def _recorded(site: "Site") -> "Snapshot | None":
-    """The first moment; None: there is none that has all that it needs, which other commands will say."""
-    from elbowroom.sources import moments
+    """The first moment that knows the joints; None: there is none that has all that it needs, as other commands say."""
+    from elbowroom.sources import first_known
 
     try:
-        return next(moments(site), None)
+        return first_known(site)
     except InputError:
         return None
 

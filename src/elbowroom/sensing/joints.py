@@ -129,6 +129,18 @@ class JointRecord:
                 found |= self._turned(yaw, before, share)
         return found
 
+    def knows(self, stamp_ns: int) -> bool:
+        """Whether `at` has an answer.
+
+        Args:
+            stamp_ns: time [ns].
+        """
+        try:
+            self.at(stamp_ns)
+        except JointsError:
+            return False
+        return True
+
     def velocities_at(self, stamp_ns: int) -> dict[str, float]:
         """How fast joints were at a time, straight between the two rows around it, of those of which it is known.
 

@@ -83,6 +83,30 @@ def moments(site: Site, joints: Joints | None = None) -> Iterator[Snapshot]:
     return (_snapshot(group, known) for group in groups)
 
 
+def first_known(site: Site) -> Snapshot | None:
+    """The first moment of which it is known where the machine was; None: there is none, or no moment at all.
+
+    Recorders do not begin all topics at once, so that images often come before joints.
+
+    Args:
+        site: with a recording.
+
+    Raises:
+        SiteError, FrameError, InputError: as `moments`, but for moments of which a record of joints knows nothing.
+    """
+    layout = layout_of(site)
+    groups, known = layout.moments(), layout.joints()
+    require_joints(site, known)
+    if isinstance(layout, Folder | BagFrames):
+        require_company(site.path, layout.meeting)
+    for group in groups:
+        stamps = [image.stamp_ns for image in group if image.stamp_ns is not None]
+        if isinstance(known, JointRecord) and not all(map(known.knows, stamps)):
+            continue
+        return _snapshot(group, known)
+    return None
+
+
 def require_joints(site: Site, known: Joints | None) -> None:
     """Refuses a recording of which nobody knows where its machine was, unless it was not there.
 
@@ -161,7 +185,11 @@ def time_findings(site: Site) -> tuple[Finding, ...]:
         return ()
     layout.moments()
     record = layout.joints() if site.entry.has_machine and layout.joints_path.exists() else None
-    joints = () if record is None else joint_findings(layout.joints_path, record, layout.meeting)
+    joints = (
+        ()
+        if record is None
+        else joint_findings(layout.joints_path, record, layout.meeting, isinstance(layout, BagFrames))
+    )
     notes = layout.notes if isinstance(layout, BagFrames) else ()
     clocks = layout.clocks() if isinstance(layout, BagFrames) else {}
     told = [text for name, clock in clocks.items() if (text := clock_text(name, clock)) is not None]

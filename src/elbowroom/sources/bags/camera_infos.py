@@ -7,7 +7,6 @@ from elbowroom.sources.bags.depth_topics import DepthTopic, camera_name, first_k
 from elbowroom.sources.bags.lenses import Lens, lens_of
 from elbowroom.sources.bags.messages import CAMERA_INFO, CameraInfo, camera_info_of
 
-
 LOOKED_AT = 8
 """So many of the first messages are compared: two cameras on one topic take turns."""
 

@@ -62,7 +62,8 @@ class DepthTopic(NamedTuple):
     def text(self) -> str:
         """What there is, in a line."""
         rate = "" if self.step_ns is None else f", {hz(max(self.step_ns, 1.0))}"
-        return f"{self.kind.text}, {self.images} images{rate}, axes of {' and '.join(self.frames) or self.kind.frame or 'no frame'}"
+        axes = " and ".join(self.frames) or self.kind.frame or "no frame"
+        return f"{self.kind.text}, {self.images} images{rate}, axes of {axes}"
 
 
 class Found(NamedTuple):

@@ -68,7 +68,10 @@ def _left_out(what: str, camera: str, alike: Sequence[int], count: int) -> tuple
     """
     if not alike:
         return ()
-    told = f"{what}: {len(alike)} of {count} images of camera {camera} have the time of another, the first {alike[0]} ns"
+    told = (
+        f"{what}: {len(alike)} of {count} images of camera {camera} have the time of another, the first "
+        f"{alike[0]} ns"
+    )
     if len(alike) > max(1, MOST_ALIKE * count):
         raise FrameError(
             f"{told}: its driver stamps two images alike, or two cameras publish on this topic; have the driver stamp "

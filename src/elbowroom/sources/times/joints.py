@@ -161,13 +161,16 @@ def _fits(rows: Span, images: Span, ns: int) -> bool:
     return begins <= slack and ends <= slack
 
 
-def joint_findings(path: Path, record: JointRecord, meeting: Meeting) -> Iterator[Finding]:
+def joint_findings(
+    path: Path, record: JointRecord, meeting: Meeting, is_played: bool = False
+) -> Iterator[Finding]:
     """Moments of which a record does not know where the machine was.
 
     Args:
         path: of the record.
         record: of the machine.
         meeting: of the images.
+        is_played: whether `monitor` goes on where nobody knows where the machine is, as with a bag.
     """
     taken = meeting.taken()
     known = np.ones(len(meeting.lead), dtype=np.bool_)
@@ -186,9 +189,10 @@ def joint_findings(path: Path, record: JointRecord, meeting: Meeting) -> Iterato
     if not parts:
         parts.append("have gaps longer than max_joint_gap_ms")
     first = int(np.argmin(known))
+    there = "in which every motion is stop" if is_played else "where monitor ends"
     text = (
         f"{path.name}: joints {' and '.join(parts)}: {without} of {len(known)} moments have none, the first is moment "
-        f"{first}, where monitor ends"
+        f"{first}, {there}"
     )
     yield Finding("joints", (), text, False)
 
