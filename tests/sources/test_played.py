@@ -7,7 +7,7 @@ import pytest
 
 from elbowroom.errors import JointsError, SiteError
 from elbowroom.site import Site
-from elbowroom.sources import Played, live, moments, open_room
+from elbowroom.sources import Played, live, moments, open_room, time_findings
 from reference import bag_files as bags
 from reference.bag_room import LATE_NS, STEP_NS, bag_room
 
@@ -240,3 +240,47 @@ def test_velocities_that_another_writer_wrote_are_those_of_the_snapshot(tmp_path
 def test_without_velocities_in_a_bag_none_are_known(tmp_path):
     site = site_of(tmp_path, bag_room().messages())
     assert all(dict(one[0].velocities) == {} for one in played(site)[0])
+
+
+def joints_told(late_ns, ahead_ns=0):
+    """The bag, whose joints come so long after they were so, by a clock that is so much ahead."""
+    found = [m for m in bag_room().messages() if m[0] != "/joint_states"]
+    return found + [
+        ("/joint_states", stamp + late_ns, bags.joint_state(joints, stamp + ahead_ns))
+        for stamp, joints in bag_room().joints.items()
+    ]
+
+
+@pytest.mark.parametrize("late_ms", [0, 5, 60, 130, 250])
+def test_no_joints_are_used_that_had_not_come(tmp_path, late_ms):
+    site = site_of(tmp_path, joints_told(late_ms * MS))
+    found, _ = played(site)
+    known = 0
+    for snapshot, *_ in found:
+        had_come = [at for at in bag_room().joints if at + late_ms * MS <= snapshot.now_ns]
+        assert (snapshot.joints is None) == (not had_come)
+        if had_come:
+            known += 1
+            assert snapshot.joints == bag_room().joints[had_come[-1]]
+            assert snapshot.joints_ns == had_come[-1]
+    assert known >= 1
+    said = {f.text for _, findings, _ in found for f in findings if f.kind == "clock"}
+    told = {f.text for f in time_findings(site)}
+    if late_ms > 100:
+        assert said and f"/joint_states: joints come 0.{late_ms // 10} s after their stamps" in next(iter(said))
+        assert any("joints come" in text for text in told)
+    else:
+        assert not said and not told
+
+
+def test_joints_ahead_of_when_they_come_are_taken_back_and_said(tmp_path):
+    site = site_of(tmp_path, joints_told(MS, 200 * MS))
+    found, _ = played(site)
+    for snapshot, findings, _ in found:
+        truth = bag_room().joints[snapshot.frames[0].stamp_ns]
+        for joint, at in truth.items():
+            assert snapshot.joints_of["cam00"][joint] == pytest.approx(at, abs=1e-3)
+        assert snapshot.joints_ns <= snapshot.now_ns
+        (said,) = findings
+        assert "0.199 s ahead of when joints come" in said.text and not said.stops
+    assert any("ahead of when joints come" in finding.text for finding in time_findings(site))

@@ -47,6 +47,7 @@ class JointRecord:
         max_gap_ns: rows farther apart than this have nothing known between them; None: any two rows are
             joined.
         velocities: per joint its velocities [m/s or rad/s], shape (n,); of joints that are missing they are not known.
+        received_ns: when each row had come [ns, the recorder's clock], shape (n,); None: at its own time.
 
     Raises:
         JointsError: no rows, no joints, lengths that differ, stamps that do not rise, numbers that are not
@@ -57,6 +58,7 @@ class JointRecord:
     positions: Mapping[str, NDArray[np.float64]]
     max_gap_ns: int | None = None
     velocities: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    received_ns: NDArray[np.int64] | None = None
 
     def __post_init__(self) -> None:
         stamps = np.array(self.stamps_ns)
@@ -76,6 +78,14 @@ class JointRecord:
             raise JointsError("joint record: no joints; at least one is needed")
         stamps.setflags(write=False)
         object.__setattr__(self, "stamps_ns", stamps)
+        if self.received_ns is not None:
+            received = np.array(self.received_ns, dtype=np.int64)
+            if received.shape != stamps.shape:
+                raise JointsError(
+                    f"joint record: received_ns has shape {received.shape}, its stamps have {stamps.shape}"
+                )
+            received.setflags(write=False)
+            object.__setattr__(self, "received_ns", received)
         for name in ("positions", "velocities"):
             object.__setattr__(self, name, _columns(getattr(self, name), stamps.shape))
 

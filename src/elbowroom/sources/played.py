@@ -4,25 +4,25 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from elbowroom.errors import JointsError
 from elbowroom.finding import Finding
-from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
+from elbowroom.sensing import JointRecord, Snapshot
 from elbowroom.site.recording_entry import BagRecording
 from elbowroom.site.site import Site
 from elbowroom.sources.layouts.bag import BagFrames
 from elbowroom.sources.layouts.bag_image import Arrival
 from elbowroom.sources.newest import Newest
+from elbowroom.sources.played_joints import PlayedJoints
 from elbowroom.sources.recorded import Joints, require_joints
 from elbowroom.sources.room_clock import RoomClock
 from elbowroom.sources.times.clock import ClockEstimate
-from elbowroom.sources.times.series import length_text
 
 IDLE_NS = 200_000_000
 """Where nothing comes for so long, what there is comes again: it grows old [ns]."""
 BEGIN_NS = 1_000_000_000
 """For so long at most all cameras are awaited at the beginning [ns]."""
+Told = PlayedJoints | Mapping[str, float] | None
+"""Where the machine is: as it is said, or positions that hold throughout [m or rad]; None: there is none."""
 
 
 @dataclass(slots=True, eq=False)
@@ -67,14 +67,13 @@ class Played:
         require_joints(self.site, joints)
         stampless = frozenset(c.name for c in self.site.cameras() if not layout.by_header(c.name))
         max_skew_ns = round(recording.max_skew_ms * 1e6)
-        return self._snapshots(arrivals, Newest(RoomClock(stampless), max_skew_ns), joints)
+        told = PlayedJoints(joints, layout.joint_arrivals) if isinstance(joints, JointRecord) else joints
+        return self._snapshots(arrivals, Newest(RoomClock(stampless), max_skew_ns), told)
 
     def close(self) -> None:
         """Nothing is held between two snapshots."""
 
-    def _snapshots(
-        self, arrivals: Sequence[Arrival], frames: Newest, joints: Joints | None
-    ) -> Iterator[Snapshot]:
+    def _snapshots(self, arrivals: Sequence[Arrival], frames: Newest, joints: Told) -> Iterator[Snapshot]:
         done, begin_ns, start_ns = 0, _begin_ns(arrivals), self.clock_ns()
         while done < len(arrivals):
             now_ns = begin_ns + self.clock_ns() - start_ns
@@ -93,53 +92,26 @@ class Played:
             frames.come(arrivals[first:done])
             yield self._snapshot(frames, now_ns, joints)
 
-    def _snapshot(self, frames: Newest, now_ns: int, joints: Joints | None) -> Snapshot:
+    def _snapshot(self, frames: Newest, now_ns: int, joints: Told) -> Snapshot:
         newest, found = frames.at(now_ns)
         taken = tuple(one.frame for one in newest)
         bounds = {one.frame.camera: one.bound_ns for one in newest}
         self.clocks = frames.clock.estimates(now_ns)
         found = [*frames.clock.findings(now_ns), *found]
-        now_at: Mapping[str, float] | None = None
-        at_frame: Mapping[str, Mapping[str, float]] = {}
-        speeds: Mapping[str, float] = {}
+        if not isinstance(joints, PlayedJoints):
+            self.findings = tuple(found)
+            return Snapshot(taken, joints, {}, now_ns, bounds)
+        joints.come(now_ns)
+        found += joints.findings(now_ns)
         try:
-            now_at, at_frame, speeds = _joints_of(joints, taken, now_ns)
+            where = joints.at(taken, now_ns)
         except JointsError as error:
-            found.append(Finding("joints", (), str(error), True))
+            self.findings = (*found, Finding("joints", (), str(error), True))
+            return Snapshot(taken, None, {}, now_ns, bounds, joints.said_ns(now_ns))
         self.findings = tuple(found)
-        said_ns = _said_ns(joints, now_ns)
-        return Snapshot(taken, now_at, at_frame, now_ns, bounds, said_ns, velocities=speeds)
-
-
-def _joints_of(
-    joints: Joints | None, frames: Sequence[DepthFrame], now_ns: int
-) -> tuple[Mapping[str, float] | None, Mapping[str, Mapping[str, float]], Mapping[str, float]]:
-    """Where the machine is by the last row before now, where it was at each frame's time, and how fast it is.
-
-    Raises:
-        JointsError: the record does not know it, or nothing has come for longer than it may have gaps.
-    """
-    if not isinstance(joints, JointRecord):
-        return joints, {}, {}
-    heard = int(np.searchsorted(joints.stamps_ns, now_ns, side="right"))
-    last_ns = int(joints.stamps_ns[heard - 1]) if heard else None
-    if last_ns is None or (joints.max_gap_ns is not None and now_ns - last_ns > joints.max_gap_ns):
-        since = (
-            "nothing was said yet"
-            if last_ns is None
-            else f"nothing was said for {length_text(now_ns - last_ns)}"
+        return Snapshot(
+            taken, where.now_at, where.at_frame, now_ns, bounds, where.said_ns, velocities=where.velocities
         )
-        raise JointsError(f"joints: where the machine is, is not known: {since}")
-    at_frame = {frame.camera: joints.at(min(frame.stamp_ns or 0, last_ns)) for frame in frames}
-    return joints.at(last_ns), at_frame, joints.velocities_at(last_ns)
-
-
-def _said_ns(joints: Joints | None, now_ns: int) -> int | None:
-    """When the last row before now was so [ns]; None: there is no record, or none was."""
-    if not isinstance(joints, JointRecord):
-        return None
-    heard = int(np.searchsorted(joints.stamps_ns, now_ns, side="right"))
-    return int(joints.stamps_ns[heard - 1]) if heard else None
 
 
 def _begin_ns(arrivals: Sequence[Arrival]) -> int:

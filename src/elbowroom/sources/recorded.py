@@ -8,6 +8,7 @@ from elbowroom.finding import Finding
 from elbowroom.geometry import DepthCamera
 from elbowroom.sensing import DepthFrame, JointRecord, Snapshot
 from elbowroom.site.site import Site
+from elbowroom.sources.joint_clock import joint_clock_text
 from elbowroom.sources.layouts.bag import BagFrames
 from elbowroom.sources.layouts.folder import Folder
 from elbowroom.sources.layouts.image import Image
@@ -192,7 +193,11 @@ def time_findings(site: Site) -> tuple[Finding, ...]:
     )
     notes = layout.notes if isinstance(layout, BagFrames) else ()
     clocks = layout.clocks() if isinstance(layout, BagFrames) else {}
+    joint_clocks = layout.joint_clocks() if isinstance(layout, BagFrames) else {}
     told = [text for name, clock in clocks.items() if (text := clock_text(name, clock)) is not None]
+    told += [
+        text for topic, one in joint_clocks.items() if (text := joint_clock_text(topic, one)) is not None
+    ]
     return (
         *(Finding("bag", (), text, False) for text in (*notes, *told)),
         *findings_of(layout.meeting),

@@ -21,12 +21,17 @@ class Told(NamedTuple):
         stamps_ns, positions: of each joint, by rising time [ns], [m or rad].
         notes: what was odd.
         velocities: of each joint at the same times [m/s or rad/s]; NaN where nobody said.
+        received_ns: of each joint when what is said of these times had come [ns, the recorder's clock].
+        arrivals: of each topic whose headers have stamps, when its messages came and these stamps [ns], shape (n, 2),
+            by time of receipt.
     """
 
     stamps_ns: Mapping[str, NDArray[np.int64]]
     positions: Mapping[str, NDArray[np.float64]]
     notes: Sequence[str]
     velocities: Mapping[str, NDArray[np.float64]]
+    received_ns: Mapping[str, NDArray[np.int64]]
+    arrivals: Mapping[str, NDArray[np.int64]]
 
 
 def told_of(bag: Bag, topics: Sequence[str]) -> Told:
@@ -42,6 +47,8 @@ def told_of(bag: Bag, topics: Sequence[str]) -> Told:
     """
     said: dict[str, dict[int, float]] = defaultdict(dict)
     speeds: dict[str, dict[int, float]] = defaultdict(dict)
+    came: dict[str, dict[int, int]] = defaultdict(dict)
+    arrivals: dict[str, NDArray[np.int64]] = {}
     notes: list[str] = []
     for topic in topics:
         if bag.require(topic).type != JOINT_STATE:
@@ -49,30 +56,37 @@ def told_of(bag: Bag, topics: Sequence[str]) -> Told:
         times = stamped(bag, topic)
         notes += times.notes
         for message in times.messages:
-            _take((said, speeds), bag, topic, message)
+            _take((said, speeds, came), bag, topic, message)
+        if times.by_header and times.messages:
+            heard = sorted((message.stored.received_ns, message.stamp_ns) for message in times.messages)
+            arrivals[topic] = np.array(heard, dtype=np.int64)
     found = {name: sorted(rows.items()) for name, rows in said.items() if rows}
     return Told(
         {name: np.array([at for at, _ in rows], dtype=np.int64) for name, rows in found.items()},
         {name: np.array([value for _, value in rows]) for name, rows in found.items()},
         notes,
         {name: np.array([speeds[name].get(at, np.nan) for at, _ in rows]) for name, rows in found.items()},
+        {name: np.array([came[name][at] for at, _ in rows], dtype=np.int64) for name, rows in found.items()},
+        arrivals,
     )
 
 
 def _take(
-    to: tuple[Mapping[str, dict[int, float]], Mapping[str, dict[int, float]]],
+    to: tuple[Mapping[str, dict[int, float]], Mapping[str, dict[int, float]], Mapping[str, dict[int, int]]],
     bag: Bag,
     topic: str,
     message: Stamped,
 ) -> None:
-    """Adds the positions and velocities of a message to those that were said."""
-    said, speeds = to
+    """Adds the positions and velocities of a message to those that were said, and when they came."""
+    said, speeds, came = to
     what = f"{bag.path}: {topic} at {message.stamp_ns} ns"
     state = joint_state_of(bag.read(message.stored), what)
     for name, value in zip(state.names, state.positions, strict=False):
         if not np.isfinite(value):
             continue
         before = said[name].setdefault(message.stamp_ns, float(value))
+        first_ns = came[name].setdefault(message.stamp_ns, message.stored.received_ns)
+        came[name][message.stamp_ns] = min(first_ns, message.stored.received_ns)
         if before != value:
             raise JointsError(
                 f"{what}: joint {name} is at {before:g} and at {value:g}; do two publishers name one joint?"
@@ -115,7 +129,9 @@ def record_of(told: Told, names: Sequence[str], max_gap_ns: int) -> JointRecord:
         for name in names
         if np.isfinite(told.velocities[name]).all()
     }
-    return JointRecord(times, positions, max_gap_ns, speeds)
+    # between two of its times a joint is known once the later one has come
+    received = [told.received_ns[name][np.searchsorted(told.stamps_ns[name], times)] for name in names]
+    return JointRecord(times, positions, max_gap_ns, speeds, np.max(received, axis=0))
 
 
 def _known(own: NDArray[np.int64], asked: NDArray[np.int64], max_gap_ns: int) -> NDArray[np.bool_]:

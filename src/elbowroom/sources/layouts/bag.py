@@ -1,8 +1,12 @@
 """Layout `bag`: images and joints in a bag of ROS 2; what lies near in time makes a moment."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 from elbowroom.errors import BagError, FrameError, JointsError, SiteError
 from elbowroom.geometry import DepthCamera
@@ -138,6 +142,20 @@ class BagFrames:
         record = record_of(told, names, round(self.recording.max_joint_gap_ms * 1e6))
         require_span(self.path, record, self.meeting, "do cameras and joints come from one clock?")
         return of_machine(self.site, machine, self.path, record)
+
+    @property
+    def joint_arrivals(self) -> Mapping[str, NDArray[np.int64]]:
+        """Of each topic of joints when its messages came and their stamps (`Told.arrivals`); raises as `joints`."""
+        return self._told.arrivals if self.site.entry.machine is not None and self._has_told else {}
+
+    def joint_clocks(self) -> dict[str, ClockEstimate]:
+        """What is known at the end of the bag of the clock of each topic of joints; raises as `joints`."""
+        room, end_ns = RoomClock(), 0
+        for topic, times in self.joint_arrivals.items():
+            for received_ns, stamp_ns in times.tolist():
+                room.hear(topic, received_ns, stamp_ns)
+            end_ns = max(end_ns, int(times[-1, 0]))
+        return dict(room.estimates(end_ns))
 
     @cached_property
     def _bag(self) -> Bag:
