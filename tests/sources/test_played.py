@@ -267,7 +267,9 @@ def test_no_joints_are_used_that_had_not_come(tmp_path, late_ms):
     said = {f.text for _, findings, _ in found for f in findings if f.kind == "clock"}
     told = {f.text for f in time_findings(site)}
     if late_ms > 100:
-        assert said and f"/joint_states: joints come 0.{late_ms // 10} s after their stamps" in next(iter(said))
+        assert said and f"/joint_states: joints come 0.{late_ms // 10} s after their stamps" in next(
+            iter(said)
+        )
         assert any("joints come" in text for text in told)
     else:
         assert not said and not told

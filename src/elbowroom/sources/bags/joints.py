@@ -12,6 +12,7 @@ from elbowroom.sensing import JointRecord
 from elbowroom.sources.bags.bag import Bag
 from elbowroom.sources.bags.messages import JOINT_STATE, joint_state_of
 from elbowroom.sources.bags.stamps import Stamped, stamped
+from elbowroom.sources.times.two_tellers import clock_fall
 
 
 class Told(NamedTuple):
@@ -24,6 +25,7 @@ class Told(NamedTuple):
         received_ns: of each joint when what is said of these times had come [ns, the recorder's clock].
         arrivals: of each topic whose headers have stamps, when its messages came and these stamps [ns], shape (n, 2),
             by time of receipt.
+        fell: that the clock of a topic went back, in words; None: none did.
     """
 
     stamps_ns: Mapping[str, NDArray[np.int64]]
@@ -32,6 +34,7 @@ class Told(NamedTuple):
     velocities: Mapping[str, NDArray[np.float64]]
     received_ns: Mapping[str, NDArray[np.int64]]
     arrivals: Mapping[str, NDArray[np.int64]]
+    fell: str | None
 
 
 def told_of(bag: Bag, topics: Sequence[str]) -> Told:
@@ -50,16 +53,24 @@ def told_of(bag: Bag, topics: Sequence[str]) -> Told:
     came: dict[str, dict[int, int]] = defaultdict(dict)
     arrivals: dict[str, NDArray[np.int64]] = {}
     notes: list[str] = []
+    fell: str | None = None
     for topic in topics:
         if bag.require(topic).type != JOINT_STATE:
             raise JointsError(f"{bag.path}: {topic} is {bag.topics[topic].type}, must be {JOINT_STATE}")
         times = stamped(bag, topic)
         notes += times.notes
-        for message in times.messages:
-            _take((said, speeds, came), bag, topic, message)
         if times.by_header and times.messages:
-            heard = sorted((message.stored.received_ns, message.stamp_ns) for message in times.messages)
+            heard = sorted(
+                ((message.stored.received_ns, message.stamp_ns) for message in times.messages),
+                key=lambda one: one[0],
+            )
             arrivals[topic] = np.array(heard, dtype=np.int64)
+        fallen = clock_fall(topic, arrivals[topic]) if topic in arrivals else None
+        if fallen is not None:
+            notes.append(f"{fallen}: where the machine was is doubtful for as long after that")
+        fell = fell or fallen
+        for message in times.messages:
+            _take((said, speeds, came), bag, topic, message, fallen)
     found = {name: sorted(rows.items()) for name, rows in said.items() if rows}
     return Told(
         {name: np.array([at for at, _ in rows], dtype=np.int64) for name, rows in found.items()},
@@ -68,6 +79,7 @@ def told_of(bag: Bag, topics: Sequence[str]) -> Told:
         {name: np.array([speeds[name].get(at, np.nan) for at, _ in rows]) for name, rows in found.items()},
         {name: np.array([came[name][at] for at, _ in rows], dtype=np.int64) for name, rows in found.items()},
         arrivals,
+        fell,
     )
 
 
@@ -76,6 +88,7 @@ def _take(
     bag: Bag,
     topic: str,
     message: Stamped,
+    fell: str | None,
 ) -> None:
     """Adds the positions and velocities of a message to those that were said, and when they came."""
     said, speeds, came = to
@@ -88,9 +101,12 @@ def _take(
         first_ns = came[name].setdefault(message.stamp_ns, message.stored.received_ns)
         came[name][message.stamp_ns] = min(first_ns, message.stored.received_ns)
         if before != value:
-            raise JointsError(
-                f"{what}: joint {name} is at {before:g} and at {value:g}; do two publishers name one joint?"
+            why = (
+                "do two publishers name one joint?"
+                if fell is None
+                else f"{fell}; set it before recording, and record anew, or cut the bag there"
             )
+            raise JointsError(f"{what}: joint {name} is at {before:g} and at {value:g}; {why}")
     for name, value in zip(state.names, state.velocities, strict=False):
         if np.isfinite(value):
             speeds[name][message.stamp_ns] = float(value)

@@ -141,7 +141,7 @@ class BagFrames:
         names = list(machine.joint_names)
         record = record_of(told, names, round(self.recording.max_joint_gap_ms * 1e6))
         require_span(self.path, record, self.meeting, "do cameras and joints come from one clock?")
-        return of_machine(self.site, machine, self.path, record)
+        return of_machine(self.site, machine, self.path, record, told.fell)
 
     @property
     def joint_arrivals(self) -> Mapping[str, NDArray[np.int64]]:

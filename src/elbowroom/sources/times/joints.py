@@ -19,6 +19,7 @@ from elbowroom.sources.times.joint_names import meant
 from elbowroom.sources.times.meeting import Meeting
 from elbowroom.sources.times.series import length_text, span_text, usual_step_ns
 from elbowroom.sources.times.stamp import NS, WORDS
+from elbowroom.sources.times.two_tellers import SHARE, to_and_fro
 
 FASTEST_ROWS_HZ = 20_000
 """No machine tells its joints more often."""
@@ -30,7 +31,9 @@ TOO_FAST, SLOW_ENOUGH = 10.0, 1.5
 """Speeds above so many times full speed are none; those below so many times may be."""
 
 
-def of_machine(site: Site, machine: Machine, path: Path, record: JointRecord) -> JointRecord:
+def of_machine(
+    site: Site, machine: Machine, path: Path, record: JointRecord, fell: str | None = None
+) -> JointRecord:
     """The columns of a record that are joints of the machine, in metres and radians.
 
     Args:
@@ -38,9 +41,11 @@ def of_machine(site: Site, machine: Machine, path: Path, record: JointRecord) ->
         machine: the site's.
         path: of the record, to be named.
         record: as the file has it.
+        fell: that its clock went back, in words; None: it did not.
 
     Raises:
-        JointsError: a joint without a column, or turning joints that are in degrees where radians are said.
+        JointsError: a joint without a column, one that two publishers name, or turning joints that are in degrees where
+            radians are said.
     """
     recording = site.entry.recording
     assert isinstance(recording, StampedFolder | BagRecording)
@@ -52,6 +57,7 @@ def of_machine(site: Site, machine: Machine, path: Path, record: JointRecord) ->
             )
     turning = [name for name in machine.joint_names if machine.joint(name).unit == "rad"]
     if recording.angle_unit == "rad":
+        _require_one_teller(site, path, [machine.joint(name) for name in machine.joint_names], record, fell)
         _require_radians(site, path, [machine.joint(name) for name in turning], record)
     in_radians = np.radians if recording.angle_unit == "deg" else np.asarray
 
@@ -60,6 +66,31 @@ def of_machine(site: Site, machine: Machine, path: Path, record: JointRecord) ->
         return {name: in_radians(told[name]) if name in turning else told[name] for name in names}
 
     return replace(record, positions=own(record.positions), velocities=own(record.velocities))
+
+
+def _require_one_teller(
+    site: Site, path: Path, joints: Sequence[Joint], record: JointRecord, fell: str | None
+) -> None:
+    """Refuses joints that are in two places by turns, as of two publishers, or of a clock that went back."""
+    recording = site.entry.recording
+    topics = f" on {', '.join(recording.joint_topics)}" if isinstance(recording, BagRecording) else ""
+    for joint in joints:
+        given, entry = record.positions[joint.name], site.entry.joints.get(joint.name)
+        if entry is None or len(given) < 3:
+            continue
+        limit = TOO_FAST * entry.speed_of(joint)
+        if fell is not None and _fastest(record.stamps_ns, given) > limit:
+            raise JointsError(
+                f"{path}: {fell}: joint {joint.name} is in two places at once after that; set the clock before "
+                "recording (chrony steps it at its start), and record anew, or cut the bag there"
+            )
+        steps = to_and_fro(record.stamps_ns, given, limit)
+        if len(steps) > SHARE * len(given):
+            raise JointsError(
+                f"{path}: two publishers of joint {joint.name}{topics}: it goes {np.median(steps):.3g} {joint.unit} to "
+                f"and fro between rows, {len(steps)} times of {len(given)}; let one of them say where it is, and "
+                "record anew"
+            )
 
 
 def _require_radians(site: Site, path: Path, joints: Sequence[Joint], record: JointRecord) -> None:
