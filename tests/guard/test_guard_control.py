@@ -104,7 +104,7 @@ def test_one_who_left_before_the_answer_is_no_matter(tmp_path: Path, control: Co
 
 def test_what_is_no_socket_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "control").write_text("somebody's notes")
-    with pytest.raises(InputError, match="cannot be listened at"):
+    with pytest.raises(InputError, match="cannot be listened at: something else lies there; take it away"):
         Control(tmp_path)
     assert (tmp_path / "control").read_text() == "somebody's notes"
 

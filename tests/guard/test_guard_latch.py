@@ -108,6 +108,23 @@ def test_a_folder_in_its_place_is_latched(tmp_path: Path) -> None:
     assert not kept.is_ours and "cannot be read" in kept.faults[0].sentence
 
 
+def test_a_pipe_in_its_place_is_latched_and_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "latch")
+    file = LatchFile(tmp_path, SITE)
+    (fault,) = file.begin()
+    assert fault.reason is Reason.LATCH_FILE and "no plain file; take it away" in fault.sentence
+    file.keep((), 0)
+    assert file.fault is not None and (tmp_path / "latch").is_fifo()
+
+
+def test_a_pipe_where_a_write_begins_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / ".latch.unfinished")
+    with pytest.raises(OSError):
+        write_latch(tmp_path / "latch", SITE, Mark.ENDED)
+    write_latch(tmp_path / "latch", SITE, Mark.ENDED)
+    assert not read_latch(tmp_path / "latch", SITE).faults
+
+
 def test_mark_and_faults_go_together() -> None:
     for mark, faults in ((Mark.ENDED, (MOVED,)), (Mark.RUNNING, (MOVED,)), (Mark.LATCHED, ())):
         with pytest.raises(InputError, match=mark.value):

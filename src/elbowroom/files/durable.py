@@ -17,7 +17,9 @@ def write_durably(path: Path, content: bytes) -> None:
         OSError: it could not be written; the file is as it was.
     """
     unfinished = path.with_name(f".{path.name}.unfinished")
-    flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_NOFOLLOW", 0)
+    # a pipe of that name, which nobody reads, is not waited for
+    flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC
+    flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
     try:
         file = os.open(unfinished, flags, 0o600)
         try:

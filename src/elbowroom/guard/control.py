@@ -50,12 +50,20 @@ class Control:
         self._listener.setblocking(False)
         mask = os.umask(0o177)
         try:
+            if path.exists() and not path.is_socket():
+                raise InputError(
+                    f"{path}: cannot be listened at: something else lies there; take it away, or give the gate a "
+                    "folder of its own"
+                )
             if path.is_socket():  # of a monitor that was killed; a running one holds the folder's lock
                 path.unlink()
             self._listener.bind(os.fspath(path))
         except OSError as error:
             self._listener.close()
             raise InputError(f"{path}: cannot be listened at ({error.strerror})") from None
+        except InputError:
+            self._listener.close()
+            raise
         finally:
             os.umask(mask)
         self._listener.listen(MOST_OPEN)

@@ -9,6 +9,8 @@ byte, changed, lost, one write older, of another site or of a later version: lat
 
 import hashlib
 import json
+import os
+import stat
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -96,12 +98,11 @@ def read_latch(path: Path, site: str) -> Kept:
         site: what it should be a latch of.
     """
     try:
-        with path.open("rb") as file:
-            content = file.read(MAX_BYTES + 1)
+        content = _content(path)
     except FileNotFoundError:
         return Kept((_fault(f"{path}: there is no latch yet, so nobody has reset it"),))
     except OSError as error:
-        return Kept((_fault(f"{path}: cannot be read ({error.strerror})"),), False)
+        return Kept((_fault(f"{path}: cannot be read ({error.strerror or error})"),), False)
     try:
         told = _told(content)
         version, of = told["elbowroom latch"], told["site"]
@@ -113,6 +114,19 @@ def read_latch(path: Path, site: str) -> Kept:
         return Kept(_faults(Mark(told["mark"]), told["faults"]))
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return Kept((_fault(f"{path}: is damaged, and so taken for latched"),))
+
+
+def _content(path: Path) -> bytes:
+    """The first bytes of a plain file. What is none, such as a pipe that nobody writes to, is not waited for.
+
+    Raises:
+        OSError: it cannot be read, or is no plain file.
+    """
+    file = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    with os.fdopen(file, "rb") as opened:
+        if not stat.S_ISREG(os.fstat(file).st_mode):
+            raise OSError("is no plain file; take it away")
+        return opened.read(MAX_BYTES + 1)
 
 
 def _told(content: bytes) -> dict[str, Any]:

@@ -118,6 +118,8 @@ def refuse_other_files(site: Site, path: Path) -> None:
     if not path.exists():
         return
     refuse_own_file(site, path)
+    if not path.is_file():
+        raise SiteError(f"{path}: is no file; name another")
     with path.open(encoding="utf-8", errors="replace") as file:
         if SIGNATURE not in file.readline(1000):
             raise SiteError(

@@ -36,6 +36,8 @@ def check_depth_pgm(path: Path, width: int, height: int) -> int:
     Raises:
         FrameError: no binary PGM of 16 bits, another size, or fewer or more pixels than its header says.
     """
+    if not path.is_file():
+        raise FrameError(f"{path}: is no file")
     with path.open("rb") as file:
         start = file.read(LONGEST_HEADER)
     kind = _HEADER.match(start)
