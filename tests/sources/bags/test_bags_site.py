@@ -345,3 +345,21 @@ def test_camera_info_of_two_cameras_on_one_topic_is_refused(tmp_path):
     lens.k[0] *= 1.2
     text = refusal(tmp_path / "lens", [*room.messages(), (topic, bags.T0 + 150 * bags.MS, lens)])
     assert "the lens or the size of message 3 is not that of the beginning" in text
+
+
+def test_a_rectified_image_whose_p_is_not_filled_in_has_the_lens_of_k_if_that_changes_nothing():
+    k, straight = np.array([[60.5, 0, 49.5], [0, 60.5, 37], [0, 0, 1]]), np.eye(3)
+
+    def lens(d=0.0, r=straight, k=k):
+        info = CameraInfo(
+            Header(0, "c"), 75, 100, "plumb_bob", np.full(5, d), k, r, np.zeros((3, 4)), (0, 0), (0, 0, 0, 0)
+        )
+        return lens_of(info, (100, 75), True, "/depth")
+
+    for r in (straight, np.zeros((3, 3))):
+        found = lens(r=r)
+        assert (found.intrinsics.fx, found.intrinsics.cx) == (60.5, 49.5)
+        assert "P is all zeros: K is taken" in found.notes[0]
+    for wrong in ({"d": 0.1}, {"r": np.diag([1.0, -1.0, -1.0])}, {"k": np.zeros((3, 3))}):
+        with pytest.raises(BagError, match="is this camera calibrated"):
+            lens(**wrong)

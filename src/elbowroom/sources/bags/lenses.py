@@ -46,10 +46,11 @@ def lens_of(info: CameraInfo, size: tuple[int, int], rectified: bool, what: str)
     Raises:
         BagError: a matrix that is none, another size, or a model that is not read.
     """
-    matrix = info.p[:, :3] if rectified else info.k
+    is_plain = rectified and not info.p.any() and not info.d.any() and _is_same_axes(info.r)
+    matrix = info.p[:, :3] if rectified and not is_plain else info.k
     if not np.isfinite(matrix).all() or matrix[0, 0] <= 0 or matrix[1, 1] <= 0:
         raise BagError(
-            f"{what}: {'P' if rectified else 'K'} is {matrix.tolist()}; is this camera calibrated?"
+            f"{what}: {'P' if rectified and not is_plain else 'K'} is {matrix.tolist()}; is this camera calibrated?"
         )
     binning, (x, y, width, height) = _binning(info), _region(info)
     _require_size(size, (width // binning[0], height // binning[1]), what)
@@ -63,7 +64,9 @@ def lens_of(info: CameraInfo, size: tuple[int, int], rectified: bool, what: str)
         raise BagError(f"{what}: {error}") from None
     if rectified and np.any(info.d):
         notes.append("the images are rectified: P is taken, and D, which was before that, is not")
-    if rectified:
+    if is_plain:
+        notes.append("P is all zeros: K is taken, since D is 0, so that rectifying changes nothing")
+    elif rectified:
         notes += _moved(info)
     own = Intrinsics(
         fx=plain.fx / binning[0],
@@ -73,6 +76,11 @@ def lens_of(info: CameraInfo, size: tuple[int, int], rectified: bool, what: str)
         distortion=plain.distortion,
     )
     return Lens(own, tuple(notes))
+
+
+def _is_same_axes(r: NDArray[np.float64]) -> bool:
+    """Whether rectifying turns nothing: R is the identity, or was not filled in."""
+    return not r.any() or bool(np.allclose(r, np.eye(3)))
 
 
 def _moved(info: CameraInfo) -> list[str]:

@@ -53,6 +53,7 @@ class McapFile:
         self._stored: dict[str, list[Stored]] = defaultdict(list)
         self._chunks: list[Chunk] = []
         self._kept: OrderedDict[int, bytes] = OrderedDict()
+        self._cut_at: tuple[int, bool] | None = None
         self._lock = threading.Lock()
         self._file = path.open("rb")
         self._length = path.stat().st_size
@@ -99,6 +100,8 @@ class McapFile:
                 self._add_message(head, record.begin, record.size, ALONE)
             elif record.kind in (SCHEMA, CHANNEL):
                 self._define(record.kind, self._bounded(record))
+        if self._cut_at is not None:
+            self.notes.append(self._cut_text(*self._cut_at))
 
     def _records(self) -> Iterator[_Record]:
         """The records up to the end of the data, or to where the file is cut off or is none any more."""
@@ -106,24 +109,28 @@ class McapFile:
         while True:
             head = self._at(at, RECORD.size)
             if len(head) < RECORD.size:
-                self._cut(at)
+                self._cut_at = at, False
                 return
             kind, size = RECORD.unpack(head)
             begin = at + RECORD.size
             if kind in (DATA_END, FOOTER):
                 return
             if kind == 0 or begin + size > self._length:
-                self._cut(at)
+                self._cut_at = at, kind == CHUNK
                 if kind == CHUNK:
                     yield _Record(CHUNK, begin, self._length - begin)
                 return
             yield _Record(kind, begin, size)
             at = begin + size
 
-    def _cut(self, at: int) -> None:
-        self.notes.append(
-            f"{self.path}: cut off or damaged at byte {at:,} of {self._length:,}; it is read up to there"
+    def _cut_text(self, at: int, is_chunk: bool) -> str:
+        """Where the file ends too early, and how much of it could be read."""
+        times = [stored.received_ns for messages in self._stored.values() for stored in messages]
+        read = f"{len(times):,} messages are read" + (
+            f", {(max(times) - min(times)) / 1e9:.3g} s from the first to the last" if times else ""
         )
+        where = f"in the chunk that begins at byte {at:,}" if is_chunk else f"at byte {at:,}"
+        return f"{self.path}: cut off or damaged {where} of {self._length:,}; {read}"
 
     def _look_into(self, record: _Record) -> None:
         """Adds the messages of a chunk, as far as it goes."""
