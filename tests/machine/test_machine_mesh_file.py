@@ -145,6 +145,13 @@ def test_all_solids_of_an_stl_in_letters_are_read_whether_or_not_they_end(tmp_pa
     assert read.notes == (("its last endsolid is missing: was it cut off?",) if said else ())
 
 
+def test_marks_of_an_editor_and_facets_on_the_line_of_their_solid_are_none_of_its_name(tmp_path):
+    (tmp_path / "a.stl").write_bytes(b"\xef\xbb\xbf" + letters(("a facet", "b")).encode())
+    assert len(read_mesh(tmp_path / "a.stl").faces) == 24
+    (tmp_path / "a.stl").write_text(" ".join(letters(("a",)).split()))
+    assert len(read_mesh(tmp_path / "a.stl").faces) == 12
+
+
 def test_a_last_solid_that_does_not_end_is_said_of_the_machine(tmp_path):
     (tmp_path / "a.stl").write_text(letters().replace("endsolid b\n", ""))
     with pytest.warns(MachineWarning, match=r"link a: <mesh .*a.stl.*its last endsolid is missing"):

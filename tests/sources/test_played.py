@@ -286,3 +286,14 @@ def test_joints_ahead_of_when_they_come_are_taken_back_and_said(tmp_path):
         (said,) = findings
         assert "0.199 s ahead of when joints come" in said.text and not said.stops
     assert any("ahead of when joints come" in finding.text for finding in time_findings(site))
+
+
+def test_joints_of_several_machines_are_heard_as_those_of_one(tmp_path):
+    several = [{"name": "arm", "builtin": "ceiling_c_arm"}]
+    room = bag_room()
+    bag = bags.written(tmp_path / "bag", sorted(joints_told(MS, 200 * MS), key=lambda one: one[1]))
+    room.site(tmp_path / "site.yaml", room.recording(bag), machine=None, machines=several)
+    site = Site.load(tmp_path / "site.yaml")
+    assert any("ahead of when joints come" in finding.text for finding in time_findings(site))
+    for snapshot, *_ in played(site)[0]:
+        assert snapshot.joints_ns <= snapshot.now_ns

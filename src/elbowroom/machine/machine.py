@@ -331,18 +331,27 @@ class Machine:
             *map(str, self.contacts),
             *(f"Not stopped by anything there, by the site's word: {stand}" for stand in self.stands),
             *(
-                f"May touch each other, by the site's word: {one} and {other}"
+                f"May touch each other, {self._why_allowed(one, other)}: {one} and {other}"
                 for one, other in self.allowed_contacts
             ),
             *(() if self.own_links is None else (self.own_links.said,)),
+        )
+
+    def _why_allowed(self, one: str, other: str) -> str:
+        """Whose word lets links touch; with what a link carries, it may be that they nearly always do."""
+        return (
+            "as nearly always or by the site's word"
+            if {one, other} & set(self.parts)
+            else "by the site's word"
         )
 
     def with_part(self, link: str, part: Part, link_from_part: ArrayLike | None = None) -> "Machine":
         """The machine with a part on one of its links, as a link of its own: explained, taken out and swept with it.
 
         The part may touch its link and what is fixed to that; of the moving links that hang on these, those that touch
-        it in nearly all poses, which is then among `allowed_contacts`. Fingers that hold it are compared with it: where
-        they close on, they stop, unless they are allowed to touch it (`allowing`).
+        it in nearly all poses, which is then among `allowed_contacts`. Fingers that hold it are compared with it,
+        unless they are allowed to touch it (`allowing`): those that touch it already may go deeper by what is in doubt
+        about how deep they are, and thin ones are not ended by it.
 
         Args:
             link: name of the link that carries it.

@@ -166,6 +166,29 @@ def test_a_macro_that_is_called_without_the_prefix_is_named_and_not_left_off(tmp
         Machine.from_urdf(written(tmp_path, body + "<tool parent='a'/>"))
 
 
+def test_what_a_sensor_has_may_bear_the_name_of_a_macro(tmp_path):
+    pytest.importorskip("xacro")
+    sensor = "<sensor name='s'><parent link='a'/><camera><image width='4' height='4'/></camera></sensor>"
+    body = f"{TOOL.format('camera')}<link name='a'>{BOX}</link>"
+    assert Machine.from_urdf(written(tmp_path, body + sensor)).checked_links == ("a",)
+
+
+def test_xacro_puts_what_an_entity_of_its_file_stands_for_in_its_place(tmp_path):
+    pytest.importorskip("xacro")
+    link = f"<xacro:property name='l' value='1'/><link name='a'>{BOX}</link>&more;"
+    path = written(tmp_path, link)
+    more = (
+        f"<link name='b'>{BOX}</link><joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>"
+    )
+    for said, has in ((f'"{more}"', True), ("SYSTEM 'more.xml'", False)):
+        path.write_text(f"<!DOCTYPE robot [<!ENTITY more {said}>]>" + ROBOT.format(link))
+        if has:
+            assert Machine.from_urdf(path).checked_links == ("a", "b")
+        else:
+            with pytest.raises(MachineError, match=r"&more; stands for other text"):
+                Machine.from_urdf(path)
+
+
 @pytest.mark.parametrize("name", ["box", "inertia", "link"])
 def test_a_macro_may_have_the_name_of_an_element_of_a_urdf(tmp_path, name):
     pytest.importorskip("xacro")

@@ -1,5 +1,7 @@
 """Two who tell one joint, and a clock that went back, are no other unit; smooth motion is neither."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,7 +10,7 @@ from hypothesis import strategies as st
 from elbowroom.errors import JointsError
 from elbowroom.site import Site
 from elbowroom.sources import moments, time_findings
-from elbowroom.sources.times.two_tellers import clock_fall, to_and_fro
+from elbowroom.sources.times.two_tellers import clock_fall, steps_of, to_and_fro
 from reference import bag_files as bags
 from reference.bag_room import JOINT_STEP_NS, bag_room
 
@@ -24,7 +26,7 @@ def smooth(rows, speed, phase=0.0):
 @given(st.integers(3, 300), st.floats(0, FULL_SPEED), st.floats(0, 6), st.sampled_from([1.0, 180 / np.pi]))
 def test_a_smooth_motion_goes_nowhere_to_and_fro_in_any_unit(rows, speed, phase, unit):
     times, positions = smooth(rows, speed, phase)
-    assert not to_and_fro(times, positions * unit, 10 * FULL_SPEED)
+    assert not to_and_fro(times, np.diff(positions * unit), 10 * FULL_SPEED)
 
 
 @given(st.integers(40, 300), st.integers(1, 8), st.floats(0.3, 2.0), st.sampled_from([1, -1]))
@@ -33,8 +35,20 @@ def test_another_teller_is_found_however_often_it_tells(rows, every, away, sign)
     told = np.concatenate([times, times[::every] + 7 * MS])
     values = np.concatenate([positions, positions[::every] + sign * away])
     order = np.argsort(told)
-    steps = to_and_fro(told[order], values[order], 10 * FULL_SPEED)
+    steps = to_and_fro(told[order], np.diff(values[order]), 10 * FULL_SPEED)
     assert len(steps) >= 0.05 * len(told) and np.median(steps) == pytest.approx(away, abs=0.1)
+
+
+@given(st.integers(0, 1000), st.floats(0, 0.2))
+def test_a_joint_without_end_that_rests_at_half_a_turn_goes_nowhere(seed, speed):
+    """Drivers tell it between -pi and pi, so that noise makes whole turns of it; one with limits cannot turn so."""
+    times, positions = smooth(200, speed)
+    turned = np.pi + positions + np.random.default_rng(seed).normal(0, 1e-4, 200)
+    told = (turned + np.pi) % (2 * np.pi) - np.pi
+    steps = steps_of(SimpleNamespace(kind="continuous"), told)
+    assert steps == pytest.approx(np.diff(turned), abs=1e-9)
+    assert not to_and_fro(times, steps, 10 * FULL_SPEED)
+    assert (steps_of(SimpleNamespace(kind="revolute"), told) == np.diff(told)).all()
 
 
 @given(st.integers(20, 400), st.integers(15, 900), st.integers(0, 300))

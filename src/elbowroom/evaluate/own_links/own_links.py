@@ -126,9 +126,9 @@ def _drawn(
 ) -> dict[str, float] | None:
     """A random pose in which no links touch, as those of a machine that stands there; None: none was found."""
     rest = np.array([machine.nearest_to_zero()[name] for name in machine.joint_names])
-    lower, upper = np.array([drawn_between(machine.joint(name)) for name in machine.joint_names]).T
+    ends = np.array([drawn_between(machine.joint(name)) for name in machine.joint_names]).reshape(-1, 2)
     for draw in range(DRAWS):
-        there = rest + (1 - draw / DRAWS) * (random.uniform(lower, upper) - rest)
+        there = rest + (1 - draw / DRAWS) * (random.uniform(ends[:, 0], ends[:, 1]) - rest)
         pose = dict(zip(machine.joint_names, there.tolist(), strict=True))
         if not exact.touching(pose, pairs):
             return pose

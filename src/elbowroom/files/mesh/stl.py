@@ -13,7 +13,7 @@ from elbowroom.files.mesh.objects import MeshFile, MeshObject, named_apart
 
 HEAD_BYTES, TRIANGLE_BYTES = 84, 50
 """Of a file in bytes: what stands before its triangles, and each of them."""
-_SOLID = re.compile(rb"^[ \t]*solid\b([^\r\n]*)", re.MULTILINE | re.IGNORECASE)
+_SOLID = re.compile(rb"^[ \t]*solid\b((?:(?!(?<!\S)facet\s+normal\s)[^\r\n])*)", re.MULTILINE | re.IGNORECASE)
 _END = re.compile(rb"^[ \t]*end[ \t]*solid\b[^\r\n]*", re.MULTILINE | re.IGNORECASE)
 _BEGUN = re.compile(rb"(?<!\S)facet(?!\S)", re.IGNORECASE)
 _CORNER = rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)\s+"
@@ -51,7 +51,7 @@ def _of_bytes(path: Path, count: int) -> MeshFile:
 
 
 def _of_letters(path: Path) -> MeshFile:
-    content = path.read_bytes()
+    content = path.read_bytes().removeprefix(b"\xef\xbb\xbf")
     found = [(name, _facets(path, part)) for name, part in _solids(content)]
     found = [(name, corners) for name, corners in found if len(corners)]
     if len(found) == 1:

@@ -69,13 +69,12 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
         raise report.error(
             element, "stands for another file (XInclude), which is not read: put its content there"
         )
-    entity = first_entity(root)
-    if entity is not None:
+    sign, entity = xacro.first_sign(root), first_entity(root)
+    if entity is not None and (sign is None or not _stands_in_the_file(entity)):
         raise report.error(
             entity.getparent(),
             f"{entity.text} stands for other text (an XML entity), which is not read: put its content there",
         )
-    sign = xacro.first_sign(root)
     if sign is not None:
         made = xacro.expanded(path, report.said(sign.element, sign.text), packages, xacro_arguments)
         report.expanded, report.lines_before = True, 0
@@ -95,6 +94,15 @@ def read_document(path: Path, packages: Packages, xacro_arguments: Mapping[str, 
     return Document(root, report)
 
 
+def _stands_in_the_file(entity: etree._Entity) -> bool:
+    """Whether the file says itself what an entity stands for; xacro puts that in its place."""
+    said = entity.getroottree().docinfo.internalDTD
+    return said is not None and any(
+        one.name == entity.name and one.content is not None and one.system_url is None
+        for one in said.iterentities()
+    )
+
+
 def _require_calls(macros: Collection[str], root: etree._Element, report: Report) -> None:
     """Refuses a file that defines macros and calls none, or calls one as xacro did before it had a prefix.
 
@@ -108,7 +116,8 @@ def _require_calls(macros: Collection[str], root: etree._Element, report: Report
             f"{report.path}: only defines macros ({', '.join(sorted(macros))}) and calls none: the robot has no "
             "<link>. Give the file that includes this one and calls them"
         )
-    for element in walk(root):
+    called_from = (root, *(child for child in walk(root) if tag_of(child) in ("link", "joint")))
+    for element in (child for parent in called_from for child in parent.iterchildren(etree.Element)):
         name = tag_of(element)
         if name in macros and name not in WORDS_OF_A_URDF:
             raise report.error(

@@ -93,7 +93,8 @@ def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
 
 
 def _mid_pose(machine: Machine) -> dict[str, float]:
-    """All joints in the middle of their limits, those without limits at zero [m or rad]."""
+    """All joints in the middle of their limits, those without two of them as near to zero as may be [m or rad]."""
     joints = [machine.joint(name) for name in machine.joint_names]
     middles = {joint.name: (joint.lower + joint.upper) / 2 for joint in joints}
-    return {name: middle if math.isfinite(middle) else 0.0 for name, middle in middles.items()}
+    near = machine.nearest_to_zero()
+    return {name: middle if math.isfinite(middle) else near[name] for name, middle in middles.items()}

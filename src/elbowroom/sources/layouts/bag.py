@@ -101,7 +101,7 @@ class BagFrames:
     def notes(self) -> tuple[str, ...]:
         """What is wrong with the bag and odd about its stamps; raises as `moments`."""
         told = [note for times in self._times.values() for note in times.notes]
-        has_joints = self.site.entry.machine is not None and self._has_told
+        has_joints = self.site.entry.has_machine and self._has_told
         lenses = [self._lens_note(camera) for camera in self.site.cameras()]
         odd = [note for note in lenses if note is not None]
         alike = [note for row in self._taken.values() for note in row.notes]
@@ -146,7 +146,7 @@ class BagFrames:
     @property
     def joint_arrivals(self) -> Mapping[str, NDArray[np.int64]]:
         """Of each topic of joints when its messages came and their stamps (`Told.arrivals`); raises as `joints`."""
-        return self._told.arrivals if self.site.entry.machine is not None and self._has_told else {}
+        return self._told.arrivals if self.site.entry.has_machine and self._has_told else {}
 
     def joint_clocks(self) -> dict[str, ClockEstimate]:
         """What is known at the end of the bag of the clock of each topic of joints; raises as `joints`."""

@@ -19,7 +19,7 @@ from elbowroom.sources.times.joint_names import meant
 from elbowroom.sources.times.meeting import Meeting
 from elbowroom.sources.times.series import length_text, span_text, usual_step_ns
 from elbowroom.sources.times.stamp import NS, WORDS
-from elbowroom.sources.times.two_tellers import SHARE, to_and_fro
+from elbowroom.sources.times.two_tellers import SHARE, steps_of, to_and_fro
 
 FASTEST_ROWS_HZ = 20_000
 """No machine tells its joints more often."""
@@ -81,12 +81,13 @@ def _require_one_teller(
         if entry is None or len(given) < 3:
             continue
         limit = TOO_FAST * entry.speed_of(joint)
-        if fell is not None and _fastest(record.stamps_ns, given) > limit:
+        moved = steps_of(joint, given)
+        if fell is not None and _fastest(record.stamps_ns, moved) > limit:
             raise JointsError(
                 f"{path}: {fell}: joint {joint.name} is in two places at once after that; set the clock before "
                 "recording (chrony steps it at its start), and record anew, or cut the bag there"
             )
-        steps = to_and_fro(record.stamps_ns, given, limit)
+        steps = to_and_fro(record.stamps_ns, moved, limit)
         if len(steps) > SHARE * len(given):
             raise JointsError(
                 f"{path}: two publishers of joint {joint.name} on {topics}: it goes {np.median(steps):.3g} "
@@ -114,7 +115,7 @@ def _require_radians(site: Site, path: Path, joints: Sequence[Joint], record: Jo
         if beyond > 0.2 and fits:
             why = f"up to {np.abs(given).max():g}, its limits are {joint.lower:g} to {joint.upper:g} rad"
         elif entry is not None and len(given) > 1:
-            fastest = _fastest(record.stamps_ns, given)
+            fastest = _fastest(record.stamps_ns, steps_of(joint, given))
             limit = entry.speed_of(joint)
             if fastest > TOO_FAST * limit and np.radians(fastest) < SLOW_ENOUGH * limit:
                 why = f"moves at {fastest:.3g} rad/s, its full speed is {limit:.3g} rad/s"
@@ -124,9 +125,9 @@ def _require_radians(site: Site, path: Path, joints: Sequence[Joint], record: Jo
             )
 
 
-def _fastest(stamps_ns: NDArray[np.int64], positions: NDArray[np.float64]) -> float:
+def _fastest(stamps_ns: NDArray[np.int64], steps: NDArray[np.float64]) -> float:
     """The speed that nineteen of twenty moving rows stay below [units of the positions a second]."""
-    speeds = np.abs(np.diff(positions)) / (np.diff(stamps_ns) / 1e9)
+    speeds = np.abs(steps) / (np.diff(stamps_ns) / 1e9)
     moving = speeds[speeds > 0]
     return float(np.percentile(moving, 95)) if len(moving) else 0.0
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowroom.machine import Joint
 from elbowroom.sources.times.series import length_text
 
 FELL_NS = 10_000_000
@@ -15,6 +16,9 @@ NEAR = 5
 """So many messages before and after are compared."""
 RETURNS, SHARE, LEAST_STEP = 3, 0.05, 0.05
 """Times that a joint goes to and fro at least, and the share of rows in which it does; steps beyond such [m or rad]."""
+
+A_TURN = 0.5
+"""A step that differs from a whole turn by less is one, of a joint without end [rad]."""
 
 
 def clock_fall(topic: str, arrivals: NDArray[np.int64]) -> str | None:
@@ -44,18 +48,32 @@ def _stays(late: NDArray[np.int64], row: int, fell_ns: int) -> bool:
     return len(after) > 1 and bool(after.min() - before.min() > fell_ns / 2)
 
 
-def to_and_fro(stamps_ns: NDArray[np.int64], positions: NDArray[np.float64], fast: float) -> Sequence[float]:
+def steps_of(joint: Joint, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far a joint goes from row to row [m or rad]; one without end goes on where it is told within a turn.
+
+    Args:
+        joint: which.
+        positions: of its rows, shape (n,) [m or rad].
+
+    Returns:
+        Shape (n - 1,).
+    """
+    steps: NDArray[np.float64] = np.diff(positions)
+    is_turn = (np.abs(np.abs(steps) - 2 * np.pi) < A_TURN) & (joint.kind == "continuous")
+    return steps - np.where(is_turn, np.copysign(2 * np.pi, steps), 0.0)
+
+
+def to_and_fro(stamps_ns: NDArray[np.int64], steps: NDArray[np.float64], fast: float) -> Sequence[float]:
     """The steps from which a joint is back in the next row, faster than it can go, as where two tell it by turns.
 
     Args:
         stamps_ns: of its rows [ns].
-        positions: of the joint [m or rad].
+        steps: of the joint from row to row, as of `steps_of` [m or rad].
         fast: no joint goes so fast [m/s or rad/s].
 
     Returns:
         Their lengths [m or rad]; none, where most fast steps are none of these.
     """
-    steps = np.diff(positions)
     is_fast = np.abs(steps) / (np.diff(stamps_ns) / 1e9) > fast
     there, back = steps[:-1], steps[1:]
     returns = is_fast[:-1] & is_fast[1:] & (np.abs(there + back) < 0.2 * np.abs(there))
