@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from house_report import by_folder, figures
 from reference import house
 from reference.house import House, Place
 
@@ -298,9 +299,10 @@ def test_kernels_are_counted_by_module_and_by_folder(tmp_path: Path) -> None:
     assert [place.line for place in house.kernel_lines(path)] == [4, 5, 7]
 
 
-def test_the_report_names_each_figure_and_where() -> None:
-    report = Path(__file__).with_name("house_report.py")
-    done = subprocess.run([sys.executable, report, "--list"], capture_output=True, text=True, check=True)
+def test_the_report_names_each_figure_and_where(today: House, tmp_path: Path) -> None:
+    places = house.kernel_lines()
+    told_of = figures(today, places)
+    listed = "\n".join(by_folder(told_of, []))
     for figure in (
         "parameters, 90 % / max",
         "code lines",
@@ -309,5 +311,14 @@ def test_the_report_names_each_figure_and_where() -> None:
         "Args",
         "lines that name kernels",
     ):
-        assert figure in done.stdout
-    assert all(str(place) in done.stdout for place in house.kernel_lines())
+        assert any(one.name.startswith(figure) for one in told_of)
+    assert all(str(place) in listed for place in places)
+    small = tmp_path / "src" / "small"
+    small.mkdir(parents=True)
+    (tmp_path / "pyproject.toml").write_text("[tool]\n")
+    (small / "one.py").write_text("def one(a, b, c):\n    return a\n")
+    report = Path(__file__).with_name("house_report.py")
+    done = subprocess.run(
+        [sys.executable, report, small, "--list"], capture_output=True, text=True, check=True
+    )
+    assert all(one.name in done.stdout for one in told_of) and "one.py" in done.stdout
