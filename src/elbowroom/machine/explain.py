@@ -179,6 +179,9 @@ def _image(camera: DepthCamera, depth: NDArray[np.float32]) -> NDArray[np.float3
             f"frame of {camera.name}: image has shape {image.shape}, the camera delivers "
             f"{(camera.height, camera.width)}"
         )
+    # as frames have it: what may be written is another type to numba, which would compile the kernel for it
+    image = image.view()
+    image.setflags(write=False)
     return image
 
 

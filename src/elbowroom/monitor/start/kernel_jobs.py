@@ -69,7 +69,7 @@ def _machine_in_images() -> None:
 
     camera = DepthCamera("one", 32, 24, np.eye(4), Intrinsics(30, 30, 15.5, 11.5))
     depth = np.ones((24, 32), dtype=np.float32)
-    depth.setflags(write=False)  # as frames have it; to numba that is another type
+
     grid = VoxelGrid((-0.2, -0.2, -0.2), (8, 8, 8), 0.05)
     explain_frames(probe(), [camera], [depth], [{"slide": 0.0}], grid=grid)
 
