@@ -17,8 +17,10 @@ if numba.config.DISABLE_JIT:
     # as in compiled code: whole numbers wrap, and floats divide by zero, without a word
     np.seterr(all="ignore")
 
-# how long an example takes is no law: computers are shared, and the first one may load kernels
-settings.register_profile("laws", deadline=None)
+# how long an example takes is no law: computers are shared, and the first one may load kernels; the same examples each
+# time, or a change could fail for what it did not touch. `--hypothesis-profile=search` looks for others
+settings.register_profile("laws", deadline=None, derandomize=True)
+settings.register_profile("search", deadline=None)
 settings.load_profile("laws")
 
 PROJECT = Path(__file__).resolve().parents[1]
