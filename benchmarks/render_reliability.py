@@ -81,9 +81,9 @@ ten minutes of either skew. Half an hour of both is not measured yet.
 **Who comes nearer while the machine brakes is met.** In the ten minutes without skew this happened once, for the 9
 ticks in the table: the doctor walked towards a machine that turned to him at full speed. *Stop* was in force 33 ms
 after he came within its braking distance (`lags_ms` of part 3 in the result file), and the machine, which needs half a
-second to stand, met him while it braked. A level says what is in the way now. Where people may walk up to a machine that moves at full speed,
-obey the [distances](safety.md#distances) as well, which count what a person walks until the machine stands; the loop
-here does not.
+second to stand, met him while it braked. A level says what is in the way now. Where people may walk up to a machine
+that moves at full speed, obey the [distances](safety.md#distances) as well, which count what a person walks until the
+machine stands; the loop here does not.
 """,
         "elbowroom evaluate lag",
         tables.lag_tables,
