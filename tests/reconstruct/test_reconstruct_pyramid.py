@@ -3,8 +3,6 @@ import pytest
 
 from elbowroom.geometry.kernels.noise import DepthMargin
 from elbowroom.reconstruct.kernels import flying, pyramid, texels
-from elbowroom.reconstruct.kernels.camera import Texels
-from elbowroom.reconstruct.kernels.look import least_of_tiles
 from elbowroom.reconstruct.kernels.texels import NEUTRAL, Counting
 from reference import reconstruct_pyramid as naive
 from reference.reconstruct_pyramid import NO_RETURN, bounds_of, packed
@@ -217,7 +215,7 @@ def test_squares_hold_the_least_of_the_texels_from_each_on(shape):
     least, greatest = bounds_of(smaller)
     for edge in (2, 4, 8):
         squares = np.zeros(shape, dtype=np.uint32)
-        pyramid.squares_of(smaller, edge, squares)
+        pyramid.squares_of(smaller, edge, (0, shape[0], 0, shape[1]), squares)
         for v, u in np.ndindex(shape):
             here = (slice(v, v + edge), slice(u, u + edge))
             assert bounds_of(squares[v, u]) == (least[here].min(), greatest[here].max())
@@ -228,21 +226,21 @@ def test_the_least_of_a_rectangle_of_tiles_is_the_least_of_all_in_it():
     shape, first = (17, 23), 5
     tiles = random_texels(shape, 5)
     least, greatest = bounds_of(tiles)
-    flat, squares = np.zeros(first + tiles.size, dtype=np.uint32), []
+    flat = np.zeros(first + tiles.size, dtype=np.uint32)
     flat[first:] = tiles.reshape(-1)
+    squares = [flat]
     smaller = tiles
     for edge in (2, 4, 8):
         squares.append(np.zeros_like(flat))
         larger = np.zeros_like(tiles)
-        pyramid.squares_of(smaller, edge, larger)
+        pyramid.squares_of(smaller, edge, (0, shape[0], 0, shape[1]), larger)
         squares[-1][first:] = larger.reshape(-1)
         smaller = larger
-    doubt = Texels(flat, flat, flat, flat, np.array(squares))
     rng = np.random.default_rng(6)
     for _ in range(300):
         top, left = rng.integers(0, shape[0]), rng.integers(0, shape[1])
         bottom, right = rng.integers(top, shape[0]), rng.integers(left, shape[1])
-        got = least_of_tiles(doubt, first, shape[1], (top, bottom, left, right))
+        got = pyramid.least_of_tiles(np.array(squares), first, shape[1], (top, bottom, left, right))
         here = (slice(top, bottom + 1), slice(left, right + 1))
         assert bounds_of(np.uint32(got)) == (least[here].min(), greatest[here].max())
 

@@ -18,8 +18,8 @@ from elbowroom.reconstruct.kernels.pyramid import TILE_LEVEL
 from elbowroom.reconstruct.kernels.texels import Counting
 from elbowroom.reconstruct.records import Records, counting_of, records_of
 
-SQUARES = 3
-"""Of tiles of doubt, squares of 2, 4 and 8 either way are kept."""
+SQUARES = 4
+"""Of tiles, squares of 1, 2, 4 and 8 either way are kept."""
 
 
 @dataclass(slots=True, eq=False)
@@ -72,9 +72,12 @@ class Layout:
             np.zeros(own[-1].stop if own else 0, dtype=np.uint32) for own in (self.texels, self.tiles)
         )
         doubt, doubt_tiles = (np.zeros_like(a) if split else a for a in (trust, tiles))
-        squares = np.zeros((SQUARES if split else 0, len(tiles)), dtype=np.uint32)
+        trust_squares, squares = (
+            np.zeros((many, len(tiles)), dtype=np.uint32) for many in (SQUARES, SQUARES if split else 0)
+        )
         return Buffers(
-            Texels(trust, doubt, tiles, doubt_tiles, squares), np.zeros(self.windows, dtype=np.uint32)
+            Texels(trust, doubt, tiles, doubt_tiles, trust_squares, squares),
+            np.zeros(self.windows, dtype=np.uint32),
         )
 
     def give_back(self, buffers: Buffers) -> None:

@@ -1,6 +1,7 @@
 """Images of a moment as the arrays that carving kernels take."""
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from elbowroom.reconstruct.kernels import pyramid as pyramid
 from elbowroom.reconstruct.kernels import texels as texels
 from elbowroom.reconstruct.kernels.camera import Views
 from elbowroom.reconstruct.kernels.texels import Counting
-from elbowroom.reconstruct.layout import SQUARES, Buffers, Layout
+from elbowroom.reconstruct.layout import Buffers, Layout
 from elbowroom.reconstruct.records import aged, margin_of, pitch_of
 from elbowroom.reconstruct.regions import Rectangle
 
@@ -47,8 +48,8 @@ def fill(
         layout: cameras in a grid.
         images: of those cameras.
         model_depth: by camera, depth up to which the machine explains the pixel [m], 0 where it does not.
-        within: by camera the pixels that the pixel test may ask, all else is left as it was in memory (`regions`);
-            None: all pixels, and squares of tiles, which only the test of footprints asks.
+        within: by camera the pixels that the pixel test may ask, all else is left as it was in memory (`regions`), and
+            of aged images squares of trust; None: all pixels, and squares of doubt, which the test of footprints asks.
 
     Returns:
         What kernels take, and the buffers behind it, to be given back after the carve.
@@ -79,8 +80,12 @@ def fill(
             part = slice(*here[:2]), slice(*here[2:])
             own[0][part], own[1][part] = 0, 0
         _fill_levels(record, buffers, layout.tiles[c], own, (here, apart))
+        record["within"] = here
+        held, tiles = buffers.texels, layout.tiles[c]
+        if within is not None and record["aged_m"] > 0.0:
+            _fill_squares(held.trust_tiles[tiles], held.trust_squares[:, tiles], own[0].shape, here)
         if within is None and buffers.split:
-            _fill_squares(buffers, layout.tiles[c], own[0].shape)
+            _fill_squares(held.doubt_tiles[tiles], held.doubt_squares[:, tiles], own[0].shape, here)
 
     spread(build, range(len(layout.cameras)))
     order = np.argsort(records["aged_m"], kind="stable")
@@ -129,20 +134,25 @@ def _fill_levels(
         pyramid.fill_tiles(doubt, apart, doubt_tiles)
 
 
-def _fill_squares(buffers: Buffers, here: slice, shape: tuple[int, ...]) -> None:
-    """Builds squares of tiles of doubt of one camera.
+def _fill_squares(
+    tiles: NDArray[np.uint32], squares: NDArray[np.uint32], shape: tuple[int, ...], within: Rectangle
+) -> None:
+    """Builds squares of tiles of one camera.
 
     Args:
-        buffers: written.
-        here: where its tiles are.
+        tiles: of the camera, flat.
+        squares: (SQUARES, tiles), written.
         shape: of its image.
+        within: the pixels that are worked on.
     """
     of_tiles = _tiles_of((shape[0], shape[1]))
-    smaller = buffers.texels.doubt_tiles[here].reshape(of_tiles)
-    for level in range(SQUARES):
-        larger = buffers.texels.doubt_squares[level, here].reshape(of_tiles)
-        pyramid.squares_of(smaller, 2 << level, larger)
-        smaller = larger
+    top, bottom, left, right = within
+    here = top // 4, -(-bottom // 4), left // 4, -(-right // 4)
+    levels = [level.reshape(of_tiles) for level in squares]
+    part = slice(*here[:2]), slice(*here[2:])
+    levels[0][part] = tiles.reshape(of_tiles)[part]
+    for number, (smaller, larger) in enumerate(pairwise(levels), start=1):
+        pyramid.squares_of(smaller, 1 << number, here, larger)
 
 
 def _read_only(image: Image) -> Image:

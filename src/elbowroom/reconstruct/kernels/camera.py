@@ -36,6 +36,7 @@ _FIELDS = np.dtype(
         ("level_stride", "i8", LEVELS),
         ("first_texel", "i8"),
         ("first_tile", "i8"),
+        ("within", "i8", 4),
         ("radial", "?"),
         ("flies", "?"),
         ("blank", "?"),
@@ -58,8 +59,9 @@ Boxes, of a voxel (0) and of a block of 4 voxels (1): half extents along the cam
 offset: from child 0 to each of 64 children, in the camera's axes, x times fx and y times fy.
 
 Where its pixels are: how many levels of windows, the finest of them, where each begins and its row length; where its
-texels and tiles begin. Of this moment: whether nothing was delivered, whether the machine explains some of its pixels,
-and aged_m: how far anything may have moved since it was exposed [m].
+texels and tiles begin. Of this moment: which of its pixels are worked on (first row, one past the last, first column,
+one past the last), whether nothing was delivered, whether the machine explains some of its pixels, and aged_m: how far
+anything may have moved since it was exposed [m].
 """
 
 
@@ -67,14 +69,15 @@ class Texels(NamedTuple):
     """The pixels of all cameras, one after the other, as texels (`kernels.texels`).
 
     trust_texels: what pixels free; doubt_texels: what they measured of anything but the machine. trust_tiles,
-    doubt_tiles: the least of 4 x 4 of them each. doubt_squares (3, tiles): the least of 2 x 2, 4 x 4 and 8 x 8 of
-    doubt_tiles, the tile itself first; of no size where nothing asks for them.
+    doubt_tiles: the least of 4 x 4 of them each. trust_squares, doubt_squares (4, tiles): these tiles, and the least of
+    2 x 2, 4 x 4 and 8 x 8 of them from each on; filled where something asks for them.
     """
 
     trust_texels: np.ndarray
     doubt_texels: np.ndarray
     trust_tiles: np.ndarray
     doubt_tiles: np.ndarray
+    trust_squares: np.ndarray
     doubt_squares: np.ndarray
 
 

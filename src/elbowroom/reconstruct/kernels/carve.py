@@ -13,6 +13,7 @@ from elbowroom.geometry.kernels.bits import bit_count, lowest_bit, uncounted
 from elbowroom.reconstruct.kernels.aged import still_through
 from elbowroom.reconstruct.kernels.box import ALL, LANES
 from elbowroom.reconstruct.kernels.cone import VOXEL
+from elbowroom.reconstruct.kernels.grown import GROWN, look_grown
 from elbowroom.reconstruct.kernels.look import Look, ask, contested, measured_at_centre, sort_out
 from elbowroom.reconstruct.kernels.outline import OUTLINES, settle_block
 from elbowroom.reconstruct.kernels.place import blocks_of, cube_at, voxels_of
@@ -34,21 +35,24 @@ FEW = 5
 class Scratch(NamedTuple):
     """Memory of one kernel.
 
-    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.cone`, outlines (1,): one of `kernels.outline`;
-    in arrays, or nothing would hold their memory. order (n,): in which cameras are asked of a cube. By camera of a
-    cube: through, mixed (n,): blocks that it sees through, and those that must be asked voxel by voxel; past (n,):
-    blocks that it saw through when it was exposed, of which it is asked whether that still holds; undecided (n,):
-    blocks with voxels left for the pixel test; unsettled, stopped (n, 64): which voxels, and which of these it surely
-    does not see through; ageing (n, 64): voxels that it saw through, of which it must be asked as well.
+    lanes (1,): a record of `kernels.box`, voxel (1,): one of `kernels.cone`, outlines (1,): one of `kernels.outline`,
+    grown (1,): one of `kernels.grown`; in arrays, or nothing would hold their memory. order (n,): in which cameras are
+    asked of a cube. By camera of a cube: through, mixed (n,): blocks that it sees through, and those that must be asked
+    voxel by voxel; past (n,): blocks that it saw through when it was exposed, of which it is asked whether that still
+    holds; gone (n,): blocks of which it surely sees through nothing any more; undecided (n,): blocks with voxels left
+    for the pixel test; unsettled, stopped (n, 64): which voxels, and which of these it surely does not see through;
+    ageing (n, 64): voxels of which it must be asked whether it still sees through them.
     """
 
     lanes: np.ndarray
     voxel: np.ndarray
     outlines: np.ndarray
+    grown: np.ndarray
     order: np.ndarray
     through: np.ndarray
     mixed: np.ndarray
     past: np.ndarray
+    gone: np.ndarray
     undecided: np.ndarray
     unsettled: np.ndarray
     stopped: np.ndarray
@@ -70,7 +74,9 @@ def carve_cubes(cubes, lattice, views, answers):
         np.empty(1, LANES),
         np.empty(1, VOXEL),
         np.empty(1, OUTLINES),
+        np.empty(1, GROWN),
         np.empty(cameras, dtype=np.int64),
+        np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
         np.empty(cameras, dtype=np.uint64),
@@ -130,28 +136,32 @@ def _put_in_order(order, through, best_first):
 def _ask_blocks(cube, views, answers, scratch):
     """Asks all cameras of the 64 blocks of a cube, and counts who sees through."""
     through, mixed = scratch.through, scratch.mixed
-    blocks = blocks_of(cube)
+    blocks, asked = blocks_of(cube), NOTHING
+    for lane in range(64):
+        if answers.asked[cube.word + lane]:
+            asked |= np.uint64(1) << np.uint64(lane)
     # not a literal: numba would compile all that `ask` calls once more
     keep_partly = np.bool_(True)
     for c in range(through.size):
-        scratch.past[c] = NOTHING
+        scratch.past[c] = scratch.gone[c] = NOTHING
+        look = ask(views.cameras[c], views.windows, blocks, keep_partly, scratch.lanes[0])
+        through[c], mixed[c] = look.through, look.unsure
         if views.cameras[c].aged_m > 0.0:
-            still = ask(views.aged[c], views.windows, blocks, keep_partly, scratch.lanes[0]).through
-            through[c], mixed[c] = still, NOTHING
-            if still != ALL:
-                look = ask(views.cameras[c], views.windows, blocks, keep_partly, scratch.lanes[0])
-                mixed[c], scratch.past[c] = look.unsure, look.through & ~still
-        else:
-            look = ask(views.cameras[c], views.windows, blocks, keep_partly, scratch.lanes[0])
-            through[c], mixed[c] = look.through, look.unsure
-    for lane in range(64):
-        word = cube.word + lane
+            then, still = look.through, NOTHING
+            if answers.fine[cube.word]:
+                still, scratch.gone[c] = look_grown(
+                    views.cameras[c], views.texels, asked & (then | look.unsure), blocks, scratch.grown[0]
+                )
+            elif then:
+                still = ask(views.aged[c], views.windows, blocks, keep_partly, scratch.lanes[0]).through
+            through[c], mixed[c], scratch.past[c] = still, look.unsure & ~still, then & ~still
+    while asked:
+        lane = lowest_bit(asked)
         here = np.uint64(1) << np.uint64(lane)
-        if not answers.asked[word]:
-            continue
+        asked &= ~here
         for c in range(through.size):
             if through[c] & here:
-                note_through(answers, word, ALL)
+                note_through(answers, cube.word + lane, ALL)
 
 
 @uncounted(cache=True, forceinline=True)
@@ -210,19 +220,28 @@ def _look(cube, at, open_voxels, views, answers, scratch):
 
 @uncounted(cache=True, forceinline=True)
 def _still(cube, at, through, views, answers, scratch):
-    """Of voxels that a camera saw through those of which that holds by its windows, whatever has moved since.
+    """Of voxels that a camera saw through those of which that surely holds, whatever has moved since.
 
-    Where the pixel test decides, `scratch.ageing` says of which others it is to be asked.
+    Where the pixel test decides, `scratch.ageing` says of which others it is to be asked. Of voxels that were unsettled
+    and are neither, it is only asked any more what the camera disputes.
     """
     c, lane = at
-    word = cube.word + lane
-    maybe = through | (scratch.unsettled[c, lane] & ~scratch.stopped[c, lane])
+    word, unsettled = cube.word + lane, scratch.unsettled[c, lane]
+    maybe = through | (unsettled & ~scratch.stopped[c, lane])
     if not maybe:
         return NOTHING
-    look = ask(views.aged[c], views.windows, voxels_of(cube, lane), answers.fine[word], scratch.lanes[0])
-    if answers.fine[word]:
-        scratch.ageing[c, lane] = through & ~look.through
-    return look.through & maybe
+    if not answers.fine[word]:
+        look = ask(views.aged[c], views.windows, voxels_of(cube, lane), answers.fine[word], scratch.lanes[0])
+        return look.through & maybe
+    still, gone = NOTHING, ALL
+    if not (scratch.gone[c] >> np.uint64(lane)) & np.uint64(1):
+        boxes = voxels_of(cube, lane)
+        still, gone = look_grown(views.cameras[c], views.texels, maybe, boxes, scratch.grown[0])
+    left = maybe & ~(still | gone)
+    scratch.ageing[c, lane] = left
+    scratch.unsettled[c, lane] = unsettled & ~still
+    scratch.stopped[c, lane] |= ~left
+    return still & maybe
 
 
 @uncounted(cache=True)
@@ -271,5 +290,10 @@ def _ask_pixels(cube, c, turn, views, answers, scratch):
             )
             note_disputed(answers, word, disputed, surface, blind)
         if camera.aged_m > 0.0:
-            seen = still_through(camera, views.texels, seen, boxes, scratch.voxel[0])
+            # of others it is known that what was seen through does not count
+            seen = NOTHING
+            if turn == 0:
+                seen = still_through(camera, views.texels, rest, boxes, scratch.voxel[0])
+            scratch.unsettled[c, lane] &= ~seen
+            scratch.stopped[c, lane] |= rest
         note_through(answers, word, seen)

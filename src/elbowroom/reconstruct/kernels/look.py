@@ -19,7 +19,7 @@ from elbowroom.reconstruct.kernels.box import (
     place_boxes,
 )
 from elbowroom.reconstruct.kernels.planes import NOTHING
-from elbowroom.reconstruct.kernels.pyramid import both_least
+from elbowroom.reconstruct.kernels.pyramid import least_of_tiles
 from elbowroom.reconstruct.kernels.texels import NEUTRAL, NO_RETURN
 
 ROUNDING_M = 2e-5
@@ -212,38 +212,11 @@ def contested(camera, texels, asked, look, lanes):
         u, v = int(lanes.u[lane]), int(lanes.v[lane])
         left, right = max(u - reach, 0) >> 2, min(u + reach, width - 1) >> 2
         top, bottom = max(v - reach, 0) >> 2, min(v + reach, height - 1) >> 2
-        both = least_of_tiles(texels, camera.first_tile, across, (top, bottom, left, right))
+        rectangle = top, bottom, left, right
+        both = least_of_tiles(texels.doubt_squares, camera.first_tile, across, rectangle)
         greatest = np.uint32(NO_RETURN) - (both & np.uint32(0xFFFF))
         past = np.float32(both >> np.uint32(16)) * quantum > lanes.far[lane]
         hidden = greatest < NO_RETURN and np.float32(greatest) * quantum < lanes.near[lane]
         if not (past or hidden):
             disputed |= bit
     return disputed
-
-
-@uncounted(cache=True)
-def least_of_tiles(texels, first_tile, across, rectangle):
-    """The least of a rectangle of tiles of doubt: of the squares that cover it, which may overlap.
-
-    Args:
-        texels: of all cameras, with squares.
-        first_tile, across: where a camera's tiles begin, and how many are in a row.
-        rectangle: first and last row, first and last column.
-    """
-    top, bottom, left, right = rectangle
-    both = NEUTRAL
-    narrow = min(bottom - top, right - left) + 1
-    level = (narrow >= 2) + (narrow >= 4) + (narrow >= 8)
-    edge = 1 << level
-    row = top
-    while row <= bottom:
-        begin = first_tile + min(row, bottom - edge + 1) * across
-        column = left
-        while column <= right:
-            tile = begin + min(column, right - edge + 1)
-            both = both_least(
-                both, texels.doubt_squares[level - 1, tile] if level else texels.doubt_tiles[tile]
-            )
-            column += edge
-        row += edge
-    return both

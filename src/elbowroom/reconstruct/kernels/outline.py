@@ -78,7 +78,7 @@ def outlines(camera, first, edge, out):
     """
     px, py, pz = first
     half = 0.5 * edge
-    (ax, ay, az), (bx, by, bz), (dx, dy, dz) = _half_edges(camera, edge)
+    (ax, ay, az), (bx, by, bz), (dx, dy, dz) = half_edges(camera, edge)
     reach_z = abs(dx) + abs(dy) + abs(dz)
     cx, cy = np.float32(camera.cx), np.float32(camera.cy)
     wide = np.float32(0.5 + camera.lateral_px) + SPARE
@@ -112,7 +112,7 @@ def outlines(camera, first, edge, out):
 
 
 @njit(inline="always")
-def _half_edges(camera, edge):
+def half_edges(camera, edge):
     """A voxel's three half edges along each axis of the camera, x times fx and y times fy, in float32."""
     m, half = camera.camera_from_world, 0.5 * edge
     x, y = half * camera.fx, half * camera.fy
@@ -202,7 +202,7 @@ def _some_meet(camera, block, lane, edge, pixels):
         edge: of a voxel [m].
         pixels: a word of 8 x 8, and column and row of the first.
     """
-    (ax, ay, az), (bx, by, bz), (dx, dy, dz) = _half_edges(camera, edge)
+    (ax, ay, az), (bx, by, bz), (dx, dy, dz) = half_edges(camera, edge)
     u, v, per_far = block.u[lane], block.v[lane], block.per_far[lane]
     x, y = u - np.float32(camera.cx), v - np.float32(camera.cy)
     au, av = (ax - x * dx) * per_far, (bx - y * dx) * per_far

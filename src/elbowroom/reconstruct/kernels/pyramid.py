@@ -8,6 +8,7 @@ gets a window that contains the old one, which is what keeps *wider margins neve
 import numpy as np
 from numba import njit
 
+from elbowroom.geometry.kernels.bits import uncounted
 from elbowroom.reconstruct.kernels.texels import NEUTRAL
 
 TILE_LEVEL = 2
@@ -89,25 +90,61 @@ def windows_of(texels, origin, within, windows):
 
 
 @njit(cache=True, nogil=True)
-def squares_of(tiles, edge, squares):
-    """The least of `edge` x `edge` texels from each on, of fewer at the lower and right edge.
+def squares_of(tiles, edge, within, squares):
+    """The least of `edge` x `edge` texels from each on, of fewer at the lower and right edge of what is worked on.
 
     Args:
         tiles: (rows, columns) uint32: the least of half as many either way, or single texels.
         edge: 2 or more, a power of two.
-        squares: (rows, columns) uint32, written.
+        within: first row, one past the last, first column, one past the last of those that are worked on.
+        squares: (rows, columns) uint32, written in what is worked on.
     """
-    rows, columns = tiles.shape
+    top, bottom, left, right = within
     half = edge // 2
-    for v in range(rows):
-        here, below, out = tiles[v], tiles[min(v + half, rows - 1)], squares[v]
-        for n in range(columns):
+    for v in range(top, bottom):
+        here, below = tiles[v, left:right], tiles[min(v + half, bottom - 1), left:right]
+        out = squares[v, left:right]
+        for n in range(out.size):
             u = np.uint64(n)
             out[u] = both_least(here[u], below[u])
         # in place from the left: what lies to the right is still as it was
-        for n in range(columns - half):
+        for n in range(out.size - half):
             u = np.uint64(n)
             out[u] = both_least(out[u], out[u + np.uint64(half)])
+
+
+@uncounted(cache=True, forceinline=True)
+def least_of_tiles(squares, first_tile, across, rectangle):
+    """The least of a rectangle of tiles: of the squares that cover it, which may overlap.
+
+    Args:
+        squares: (4, tiles) of all cameras: the tiles, and the least of 2 x 2, 4 x 4 and 8 x 8 of them from each on
+            (`squares_of`).
+        first_tile, across: where a camera's tiles begin, and how many are in a row.
+        rectangle: first and last row, first and last column; not empty.
+    """
+    top, bottom, left, right = rectangle
+    rows, columns = bottom - top + 1, right - left + 1
+    narrow = min(rows, columns)
+    level = (narrow >= 2) + (narrow >= 4) + (narrow >= 8)
+    edge = 1 << level
+    first, last = first_tile + top * across, first_tile + (bottom - edge + 1) * across
+    end = right - edge + 1
+    both = both_least(
+        both_least(squares[level, first + left], squares[level, first + end]),
+        both_least(squares[level, last + left], squares[level, last + end]),
+    )
+    if max(rows, columns) <= 2 * edge:
+        return both
+    row = top
+    while row <= bottom:
+        begin = first_tile + min(row, bottom - edge + 1) * across
+        column = left
+        while column <= right:
+            both = both_least(both, squares[level, begin + min(column, end)])
+            column += edge
+        row += edge
+    return both
 
 
 @njit(cache=True, nogil=True)
