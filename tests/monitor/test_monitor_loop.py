@@ -11,7 +11,6 @@ from elbowroom.errors import FrameError, InputError
 from elbowroom.finding import Finding
 from elbowroom.geometry import VoxelGrid
 from elbowroom.monitor import Checks, Cycle, Health, Loop, Pass, cycle, loop
-from elbowroom.monitor.stages import uncollected
 from elbowroom.motion import Cause, Level, Motion, Verdict
 from elbowroom.reconstruct import Terms
 from elbowroom.reconstruct.free_space import FreeSpace
@@ -171,16 +170,6 @@ def test_no_garbage_is_collected_within_a_pass_and_what_was_there_before_is_not_
     assert all(frozen > 1000 for _, frozen in watch.heard)
     # afterwards it is as it was, also where a check raised
     assert gc.isenabled() and gc.get_freeze_count() == 0
-
-
-def test_who_collects_no_garbage_is_left_so():
-    gc.disable()
-    try:
-        with uncollected():
-            assert not gc.isenabled()
-        assert not gc.isenabled()
-    finally:
-        gc.enable()
 
 
 def test_one_pass_is_made_however_short_the_time():

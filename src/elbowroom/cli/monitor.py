@@ -1,6 +1,6 @@
 """`elbowroom monitor`: how far may each joint go, many times a second."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -24,6 +24,7 @@ from elbowroom.cli.options import (
     use_threads,
 )
 from elbowroom.errors import InputError
+from elbowroom.garbage import uncollected
 
 if TYPE_CHECKING:
     from elbowroom.monitor import Gate
@@ -202,7 +203,8 @@ def monitor(
     use_threads(threads)
     named = {"joints": "--joints", "cameras": "--cameras", "resolution": "--resolution", "noise": "--noise"}
     named |= {"knocks": "--knock", "skew_ms": "--skew-ms", "callback": "--callback"}
-    with _early(no_page) as early, options_named(**named):
+    with _early(no_page) as early, options_named(**named), ExitStack() as start:
+        start.enter_context(uncollected())  # what a start makes stays
         from elbowroom.monitor.blackbox.made import recorder_of
         from elbowroom.monitor.gate.made import gate_of
         from elbowroom.site import Site
@@ -225,7 +227,7 @@ def monitor(
         serving = None if service is None else _serving(decides, service, token, service_origin or ())
         pages = [] if no_page else [_page(shown, (page_port, service), language, early)]
         pages += [_foxglove(shown, foxglove_port)] if foxglove else []
-        _watch(shown, seconds, (json, out), Run(decides, recorder, _paths(path), serving, pages))
+        _watch(shown, seconds, (json, out), Run(decides, recorder, _paths(path), serving, pages, start.close))
 
 
 def _early(no_page: bool) -> "AbstractContextManager[Early | None]":
@@ -290,13 +292,14 @@ def _skewed(room: "Room", skew_ms: float) -> "Room":
 
 
 class Run(NamedTuple):
-    """What takes part in a run beside the room."""
+    """What takes part in a run beside the room, and who is told that the start is over."""
 
     gate: "Gate | None"
     recorder: "Recorder | None"
     paths: "MeantPaths | None"
     serving: "Serving | None"
     pages: "Sequence[OpenedPage | str]"
+    has_begun: Callable[[], None]
 
 
 def _serving(gate: "Gate | None", port: int, token: Path | None, origins: Sequence[str]) -> "Serving":
@@ -372,7 +375,7 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
             motion=unasked is None,
             simulator=room.site.simulated is not None,
         )
-        with Steps(console, 4) as steps:
+        with Steps(console, 3) as steps:
             loop = replace(started(room, steps.begin), gate=run.gate, paths=run.paths)
         if loop.checks.unwatched is not None:
             view.note(loop.checks.unwatched)
@@ -389,6 +392,7 @@ def _watch(room: "Room", seconds: float | None, files: tuple[Path | None, Path |
             run.serving.origins = (*run.serving.origins, *own)
             run.serving.start()
             faces.append(run.serving)
+        run.has_begun()
         with asked_to_end() as is_over:
             loop.run(faces, seconds, is_over)
         add(view.log.row())

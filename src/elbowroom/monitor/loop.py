@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
 
+from elbowroom.garbage import uncollected, what_is_here_stays
 from elbowroom.monitor.cycle import Cycle
 from elbowroom.monitor.face import Face, Pass
-from elbowroom.monitor.garbage import what_is_here_stays
 from elbowroom.monitor.gate.gate import Gate
 from elbowroom.monitor.gate.state import Decision
 from elbowroom.monitor.health.checks import Checks
@@ -16,7 +16,6 @@ from elbowroom.monitor.result import CycleResult
 from elbowroom.monitor.separation.margins import Margins
 from elbowroom.monitor.separation.separating import Separating
 from elbowroom.monitor.space_cycle import SpaceCycle
-from elbowroom.monitor.stages import uncollected
 from elbowroom.sensing import MeantPaths, Snapshot
 from elbowroom.sources import Room, Source
 from elbowroom.sources.pace import SLACK_S

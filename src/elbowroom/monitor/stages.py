@@ -1,6 +1,5 @@
-"""How long each stage of a pass takes, what is no fault of it, and that nothing else takes its time."""
+"""How long each stage of a pass takes, and what is no fault of it."""
 
-import gc
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,22 +13,6 @@ def timed(stage: str, stage_ms: dict[str, float]) -> Iterator[None]:
         yield
     finally:
         stage_ms[stage] = (time.perf_counter() - start) * 1e3
-
-
-@contextmanager
-def uncollected() -> Iterator[None]:
-    """Within it no garbage is collected: that would look at every object of the program in the middle of a pass.
-
-    What is left over is collected afterwards, since collecting is asked for as more is made. Several threads may be
-    within it: who finds it off leaves it off.
-    """
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()
 
 
 def raise_interrupt(error: BaseException) -> None:

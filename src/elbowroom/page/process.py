@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from elbowroom.errors import ElbowroomError, InputError
+from elbowroom.garbage import uncollected
 from elbowroom.guard.priority import step_back
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ def main() -> None:
 
 def _get_ready() -> None:
     """Imports what is going to be needed, before it is said what to show."""
-    with contextlib.suppress(ImportError):  # what is missing is said by who needs it
+    with contextlib.suppress(ImportError), uncollected():  # what is missing is said by who needs it
         importlib.import_module("elbowroom.page.live")
         importlib.import_module("viser")
 

@@ -12,11 +12,10 @@ from elbowroom.evaluate.speed.bench_case import BRAKING_TIME_S, SPEEDS, Scene, s
 from elbowroom.evaluate.speed.outliers import Watch, cause_of_worst
 from elbowroom.evaluate.speed.questions import Asked
 from elbowroom.files.peak_memory import peak_memory_mb
+from elbowroom.garbage import uncollected, what_is_here_stays
 from elbowroom.geometry import VoxelGrid, parallel
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
-from elbowroom.monitor.garbage import what_is_here_stays
-from elbowroom.monitor.stages import uncollected
 from elbowroom.motion import joint_motions
 from elbowroom.reconstruct import Terms, carve
 from elbowroom.sensing import NOISE_PRESETS, Snapshot

@@ -13,11 +13,10 @@ from elbowroom.choices import Detail
 from elbowroom.evaluate.rooms.room import cameras_row
 from elbowroom.evaluate.speed.kernels.reference import reference
 from elbowroom.files.peak_memory import peak_memory_mb
+from elbowroom.garbage import uncollected, what_is_here_stays
 from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid, parallel
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
-from elbowroom.monitor.garbage import what_is_here_stays
-from elbowroom.monitor.stages import uncollected
 from elbowroom.motion import joint_motions
 from elbowroom.reconstruct import Terms, carve
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame, NoiseModel, Snapshot

@@ -14,12 +14,11 @@ from elbowroom.evaluate.due import Due
 from elbowroom.evaluate.speed.asked_scene import save_scene
 from elbowroom.evaluate.speed.bench_case import BRAKING_TIME_S, SPEEDS, Scene, summary
 from elbowroom.evaluate.speed.questions import Asked
+from elbowroom.garbage import uncollected, what_is_here_stays
 from elbowroom.geometry import VoxelGrid, parallel
 from elbowroom.machine import Machine
 from elbowroom.machine.c_arm import ceiling_c_arm
 from elbowroom.monitor import Cycle
-from elbowroom.monitor.garbage import what_is_here_stays
-from elbowroom.monitor.stages import uncollected
 from elbowroom.motion import joint_motions
 from elbowroom.reconstruct import Terms
 from elbowroom.sensing import NOISE_PRESETS, DepthFrame, Snapshot

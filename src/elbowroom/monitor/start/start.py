@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 from elbowroom.errors import InputError
@@ -36,7 +37,11 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
     cycle = _cycle(room, separating)
     waits, recorded = isinstance(room.source, Recorded), isinstance(room.source, Recorded | Played)
     pause_ns = _gap_ns(room) if recorded else gap_ns(None)
-    checks = replace(checks_of(room, begin), looks=looks_of(room), first=first_looks_of(room))
+    with ThreadPoolExecutor(1) as aside:
+        # what is loaded for motions is loaded while cameras are commissioned
+        blocked = aside.submit(_judge_blocked, cycle)
+        checks = replace(checks_of(room, begin), looks=looks_of(room), first=first_looks_of(room))
+        blocked.result()
     pace = Pace(pause_ns).early_s if waits else None
     loop = Loop(room, checks, cycle, pace, separating=separating)
     _warm_up(loop, begin)
@@ -77,11 +82,6 @@ def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
         return
     if isinstance(cycle, Cycle):
         loop.room.placed(snapshot)
-        begin("motions that are blocked")
-        nothing = bits.empty(cycle.grid)
-        all_blocked = FreeSpace(cycle.grid, nothing, nothing, nothing, nothing)
-        somewhere = _mid_pose(cycle.machine) if snapshot.joints is None else snapshot.joints
-        check_motions(all_blocked, cycle.machine, somewhere, cycle.motions)
     begin("first cycle")
     if isinstance(cycle, Cycle) and snapshot.joints is None:
         # joints come later: the pass is made as if they had, and whoever watches the machine is not told of it
@@ -90,6 +90,14 @@ def _warm_up(loop: Loop, begin: Callable[[str], None]) -> None:
         result = loop.judge(snapshot)
     if result.fault is not None:
         raise InputError(f"the first cycle failed: {result.fault}")
+
+
+def _judge_blocked(cycle: Cycle | SpaceCycle) -> None:
+    """Judges motions once where nothing is free, as no pass may do for long: it compiles what looks at what blocks."""
+    if isinstance(cycle, Cycle):
+        nothing = bits.empty(cycle.grid)
+        all_blocked = FreeSpace(cycle.grid, nothing, nothing, nothing, nothing)
+        check_motions(all_blocked, cycle.machine, _mid_pose(cycle.machine), cycle.motions)
 
 
 def _mid_pose(machine: Machine) -> dict[str, float]:

@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 
 from elbowroom.errors import CalibrationError
 from elbowroom.geometry import DepthCamera
+from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
 from elbowroom.machine.rasterise import rasterise
 from elbowroom.monitor.health.drift.flat_spots import flat_spots
 from elbowroom.monitor.health.drift.reference import CameraReference, lens_of
-from elbowroom.sensing import Snapshot, rectified
+from elbowroom.sensing import DepthFrame, Snapshot, rectified
 from elbowroom.sensing.rays import pixel_rays
 
 UNIT_M = 0.00025
@@ -73,22 +74,26 @@ class Commissioning:
         by_name = {camera.name: camera for camera in self.cameras}
         if self.machine is not None and snapshot.joints is None:
             raise CalibrationError("commission: a machine without joints; give its joint positions")
-        for frame in snapshot.frames:
-            camera = by_name.get(frame.camera)
-            if camera is None or frame.depth_m.shape != (camera.height, camera.width):
-                raise CalibrationError(
-                    f"commission: frame of {frame.camera}: no such camera, or another size"
-                )
-            number = self._counts[camera.name]
-            if number >= self.frames:
-                raise CalibrationError(f"commission: more than the {self.frames} frames that were announced")
-            usable = (frame.depth_m >= max(camera.min_depth_m, UNIT_M)) & (frame.depth_m <= camera.deepest_m)
-            usable &= frame.depth_m < 65535 * UNIT_M
-            if self.machine is not None:
-                usable &= ~_machine_pixels(self.machine, camera, snapshot.joints_at(camera.name) or {})
-            depth = np.where(usable, frame.depth_m, 0) / UNIT_M
-            self._stacks[camera.name][number] = np.round(depth).astype(np.uint16)
-            self._counts[camera.name] += 1
+
+        def add(frame: DepthFrame) -> None:
+            self._add(frame, by_name.get(frame.camera), snapshot.joints_at(frame.camera) or {})
+
+        spread(add, snapshot.frames)
+
+    def _add(self, frame: DepthFrame, camera: DepthCamera | None, joints: Mapping[str, float]) -> None:
+        """Adds one frame of a camera, with where the machine was."""
+        if camera is None or frame.depth_m.shape != (camera.height, camera.width):
+            raise CalibrationError(f"commission: frame of {frame.camera}: no such camera, or another size")
+        number = self._counts[camera.name]
+        if number >= self.frames:
+            raise CalibrationError(f"commission: more than the {self.frames} frames that were announced")
+        usable = (frame.depth_m >= max(camera.min_depth_m, UNIT_M)) & (frame.depth_m <= camera.deepest_m)
+        usable &= frame.depth_m < 65535 * UNIT_M
+        if self.machine is not None:
+            usable &= ~_machine_pixels(self.machine, camera, joints)
+        depth = np.where(usable, frame.depth_m, 0) / UNIT_M
+        self._stacks[camera.name][number] = np.round(depth).astype(np.uint16)
+        self._counts[camera.name] += 1
 
     def reference_of(self, camera: DepthCamera) -> CameraReference:
         """The reference of one camera.
@@ -109,7 +114,7 @@ class Commissioning:
         Raises:
             CalibrationError: as `reference_of`.
         """
-        return tuple(self.reference_of(camera) for camera in self.cameras)
+        return tuple(spread(self.reference_of, self.cameras))
 
 
 def _reference(camera: DepthCamera, stack: NDArray[np.uint16]) -> CameraReference:

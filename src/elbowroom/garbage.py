@@ -18,3 +18,19 @@ def what_is_here_stays() -> Iterator[None]:
         yield
     finally:
         gc.unfreeze()
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """Within it no garbage is collected: that would look at every object of the program in the middle of a pass.
+
+    What is left over is collected afterwards, since collecting is asked for as more is made. Several threads may be
+    within it: who finds it off leaves it off.
+    """
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
