@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from elbowroom.motion import Cause, Level, Motion, check_motion, check_motions, joint_motions
 from elbowroom.motion.ground import grounds_of
-from elbowroom.motion.kernels.covered import COVERED, cover
+from elbowroom.motion.kernels.covered import COVERED, cover, open_cells
 from elbowroom.motion.kernels.shared import triangle_meets_cells
 from elbowroom.motion.pieces import pieces
-from elbowroom.motion.shared import MOST_SHARED, Start, _words
+from elbowroom.motion.shared import MOST_SHARED, Start
 from elbowroom.reconstruct.free_space import FreeSpace
 from reference import contact_machines as contacts
 from reference import motion_machines as machines
@@ -53,13 +53,30 @@ def test_covered_cells_are_those_near_the_surface_or_within(arm, place, seed, re
     assert links[row]
 
 
+@settings(max_examples=10)
+@given(PLACES, st.integers(0, 999))
+def test_many_voxels_are_asked_as_each_is(arm, place, seed):
+    rng, at, edge = np.random.default_rng(seed), placed(arm, joints_at(place)), 0.05
+    row = int(rng.integers(len(arm.links)))
+    on = arm.links[row].triangles[rng.integers(len(arm.links[row].faces), size=5)].mean(axis=1)
+    corners = on @ at[row][:3, :3].T + at[row][:3, 3] - rng.uniform(0, edge, (5, 3))
+    voxels, reach = np.column_stack([corners, np.full(5, edge)]), (0.003, 0.006)
+    cells, links = np.empty((5, 64), np.uint64), np.zeros((5, len(arm.links)), np.bool_)
+    open_cells(pieces(arm, edge), at, voxels, reach, cells, links)
+    for n, voxel in enumerate(voxels):
+        found, near = np.zeros((16, 16, 16), np.uint8), np.zeros(len(arm.links), np.bool_)
+        cover(pieces(arm, edge), at, voxel, reach, found, near)
+        np.testing.assert_array_equal(cells[n], naive.words_of(found != COVERED))
+        np.testing.assert_array_equal(links[n], near)
+
+
 @settings(max_examples=60)
 @given(st.integers(0, 9999), st.floats(0, 0.004))
 def test_a_triangle_meets_the_cells_that_it_cuts(seed, grown):
     rng = np.random.default_rng(seed)
     blocked = rng.random((16, 16, 16)) < rng.choice([0.001, 0.05])
     triangle = rng.uniform(-0.02, 0.07, 3) + rng.uniform(-0.02, 0.02, (3, 3))
-    meets = triangle_meets_cells(triangle, _words(blocked), 0.0, 0.0, 0.0, 0.05, grown)
+    meets = triangle_meets_cells(triangle, naive.words_of(blocked), 0.0, 0.0, 0.0, 0.05, grown)
     assert meets == naive.triangle_meets(triangle, blocked, (0, 0, 0), 0.05, grown, box_cuts_triangle)
 
 

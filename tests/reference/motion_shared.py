@@ -38,3 +38,9 @@ def triangle_meets(triangle, blocked, corner, edge, grown, box_cuts_triangle):
     return any(
         box_cuts_triangle(triangle, middle, half) for middle in middles(corner, edge)[np.asarray(blocked)]
     )
+
+
+def words_of(cells):
+    """The words of a voxel's cells, shape (16, 16, 16): one for each part of 4 x 4 x 4 of them."""
+    parts = cells.reshape(4, 4, 4, 4, 4, 4).transpose(0, 2, 4, 1, 3, 5).reshape(-1)
+    return np.packbits(parts, bitorder="little").view(np.uint64)

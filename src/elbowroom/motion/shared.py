@@ -24,10 +24,11 @@ from numpy.typing import NDArray
 from elbowroom.geometry import bits
 from elbowroom.geometry.bits import Words
 from elbowroom.geometry.kernels.bits import Lattice, plain
+from elbowroom.geometry.parallel import spread
 from elbowroom.machine import Machine
 from elbowroom.motion.course import Way
 from elbowroom.motion.ground import Ground
-from elbowroom.motion.kernels.covered import COVERED, cover, reached
+from elbowroom.motion.kernels.covered import open_cells, reached
 from elbowroom.motion.kernels.mover import Skin
 from elbowroom.motion.kernels.outward import Boxes
 from elbowroom.motion.kernels.shared import CELLS, WORDS, Shared
@@ -48,6 +49,8 @@ MOST_SHARED = 512
 """A machine that reaches into more blocked voxels stands in the dark: none of its motions is let go."""
 ROOM_FOR = 1 << 16
 """So many finds of such voxels are written, one after another from sample to sample."""
+AT_ONCE = 8
+"""Voxels whose cells a thread looks at before it takes the next."""
 HALF_DIAGONAL = np.sqrt(0.75)
 ALL_CELLS = ~np.uint64(0)
 """Of one part of a voxel; a part is a block of 4 cells along each axis."""
@@ -108,7 +111,7 @@ class Start:
         within = None
         if reached.numbers.size:
             plane = np.zeros_like(ground.volume.words)
-            i, j, k = np.array(_indices(reached, ground.volume.lattice)).T
+            i, j, k = np.array(_indices(reached.numbers, ground.volume.lattice)).T
             np.bitwise_or.at(plane, *bits.places_of(i, j, k, ground.space.grid))
             within = marked(ground.volume._replace(words=plane, shared=reached))
         return cls(ground, within, near_m, placed, reached)._known_in_cells()
@@ -212,7 +215,7 @@ class Start:
         """Where the way ends because links press what they reach into."""
         assert self.within is not None
         shared, lattice = self.within.shared, self.within.lattice
-        corners = _corners(shared, lattice)
+        corners = _corners(shared.numbers, lattice)
         parts = np.array([self._blocked_parts(number) for number in shared.numbers.tolist()], dtype=np.uint64)
         faces = faces_of(machine.shape, checked_rows(machine), skin.off)
         boxes = Boxes(corners, lattice.edge, parts, shared.links)
@@ -240,7 +243,7 @@ class Start:
     def _back(self, skin: Skin, speeds: NDArray[np.float64], way: Way, within: Volume) -> float:
         """How much travel the slowest part that may come to the shared voxels needs for 2 eps."""
         lattice, some = within.lattice, within.shared.cells.any(axis=1)
-        centres = _corners(within.shared, lattice)[some] + lattice.edge / 2
+        centres = _corners(within.shared.numbers, lattice)[some] + lattice.edge / 2
         rows = np.flatnonzero(speeds * way.length >= self.near_m / 2)
         pose = self.placed[skin.link[rows]]
         middles = np.einsum("nij,nj->ni", pose[:, :3, :3], skin.centre[rows]) + pose[:, :3, 3]
@@ -261,14 +264,14 @@ def _index(number: int, lattice: Lattice) -> Index:
     return number // lattice.nz // lattice.ny, number // lattice.nz % lattice.ny, number % lattice.nz
 
 
-def _indices(shared: Shared, lattice: Lattice) -> list[Index]:
-    """Of the voxels that are known cell by cell."""
-    return [_index(number, lattice) for number in shared.numbers.tolist()]
+def _indices(numbers: NDArray[np.int64], lattice: Lattice) -> list[Index]:
+    """Of voxels' numbers."""
+    return [_index(number, lattice) for number in numbers.tolist()]
 
 
-def _corners(shared: Shared, lattice: Lattice) -> NDArray[np.float64]:
-    """The least corners of the shared voxels, shape (n, 3) [m]."""
-    index = np.array(_indices(shared, lattice)).reshape(-1, 3)
+def _corners(numbers: NDArray[np.int64], lattice: Lattice) -> NDArray[np.float64]:
+    """The least corners of voxels, by their numbers, shape (n, 3) [m]."""
+    index = np.array(_indices(numbers, lattice)).reshape(-1, 3)
     corners: NDArray[np.float64] = index * lattice.edge + (lattice.x0, lattice.y0, lattice.z0)
     return corners
 
@@ -291,45 +294,30 @@ def _shared(
     numbers = np.unique(finds[: min(count, ROOM_FOR)])
     if not 0 < count <= ROOM_FOR or len(numbers) > MOST_SHARED:
         return volume.shared
-    links = np.zeros((len(numbers), len(machine.links)), dtype=np.bool_)
-    cells = np.zeros((len(numbers), WORDS), dtype=np.uint64)
-    found = Shared(numbers, links, cells, False)
-    is_shared = np.zeros(len(numbers), dtype=np.bool_)
-    for row, corner in enumerate(_corners(found, lattice)):
-        open_cells = _open_cells(machine, placed, np.append(corner, lattice.edge), reach_m, links[row])
-        if open_cells is not None:
-            is_shared[row], cells[row] = links[row].any(), _words(open_cells)
+    voxels = np.column_stack([_corners(numbers, lattice), np.full(len(numbers), lattice.edge)])
+    cells, links = _open_cells(machine, placed, voxels, reach_m)
+    is_shared, seen = links.any(axis=1), machine.as_seen
+    if seen is not machine:
+        # what is covered by what is swept, and not by what is there: something else may be in it
+        is_shared &= ~(~cells & _open_cells(seen, placed, voxels, reach_m)[0]).any(axis=1)
     return Shared(numbers[is_shared], links[is_shared], cells[is_shared], False)
 
 
 def _open_cells(
-    machine: Machine,
-    placed: NDArray[np.float64],
-    voxel: NDArray[np.float64],
-    reach_m: tuple[float, float],
-    links: NDArray[np.bool_],
-) -> NDArray[np.bool_] | None:
-    """Of one voxel, the cells that the machine does not cover, shape (16, 16, 16).
-
-    None: some are covered by what is swept, and not by what is there; so something else may be.
+    machine: Machine, placed: NDArray[np.float64], voxels: NDArray[np.float64], reach_m: tuple[float, float]
+) -> tuple[NDArray[np.uint64], NDArray[np.bool_]]:
+    """Of some voxels, the cells that the machine does not cover, shape (n, 64), and which links are near.
 
     Args:
         machine, placed, reach_m: as of `_shared`.
-        voxel: its least corner and its edge, shape (4,) [m].
-        links: set for those that are near, shape (n_links,).
+        voxels: their least corners, and their edge, shape (n, 4) [m].
     """
-    covered = np.empty((CELLS,) * 3, dtype=np.uint8)
-    cover(pieces(machine, float(voxel[3])), placed, voxel, reach_m, covered, links)
-    seen = machine.as_seen
-    if seen is not machine:
-        truly = np.empty_like(covered)
-        cover(pieces(seen, float(voxel[3])), placed, voxel, reach_m, truly, np.zeros_like(links))
-        if ((covered == COVERED) & (truly != COVERED)).any():
-            return None
-    return covered != COVERED
+    cells = np.empty((len(voxels), WORDS), dtype=np.uint64)
+    links = np.zeros((len(voxels), len(machine.links)), dtype=np.bool_)
+    body = pieces(machine, float(voxels[0, 3]))
 
+    def of(some: slice) -> None:
+        open_cells(body, placed, voxels[some], reach_m, cells[some], links[some])
 
-def _words(cells: NDArray[np.bool_]) -> NDArray[np.uint64]:
-    """The words of a voxel's cells."""
-    blocks = cells.reshape(4, 4, 4, 4, 4, 4).transpose(0, 2, 4, 1, 3, 5).reshape(-1)
-    return np.packbits(blocks, bitorder="little").view(np.uint64)
+    spread(of, [slice(first, first + AT_ONCE) for first in range(0, len(voxels), AT_ONCE)])
+    return cells, links

@@ -48,8 +48,8 @@ def fill(
         layout: cameras in a grid.
         images: of those cameras.
         model_depth: by camera, depth up to which the machine explains the pixel [m], 0 where it does not.
-        within: by camera the pixels that the pixel test may ask, all else is left as it was in memory (`regions`), and
-            of aged images squares of trust; None: all pixels, and squares of doubt, which the test of footprints asks.
+        within: by camera the pixels that the pixel test may ask, all else is left as it was in memory (`regions`);
+            None: all pixels, and squares of doubt, which the test of footprints asks. Of aged images, squares of trust.
 
     Returns:
         What kernels take, and the buffers behind it, to be given back after the carve.
@@ -82,7 +82,7 @@ def fill(
         _fill_levels(record, buffers, layout.tiles[c], own, (here, apart))
         record["within"] = here
         held, tiles = buffers.texels, layout.tiles[c]
-        if within is not None and record["aged_m"] > 0.0:
+        if record["aged_m"] > 0.0:
             _fill_squares(held.trust_tiles[tiles], held.trust_squares[:, tiles], own[0].shape, here)
         if within is None and buffers.split:
             _fill_squares(held.doubt_tiles[tiles], held.doubt_squares[:, tiles], own[0].shape, here)

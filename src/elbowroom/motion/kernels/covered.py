@@ -114,6 +114,28 @@ def _list_reached(world_from_link, skin, samples, reach, volume, numbers, count)
 
 
 @njit(cache=True, nogil=True)
+def open_cells(pieces, placed, voxels, reach, cells, links):
+    """Of some voxels, the cells that a body does not cover (`cover`).
+
+    Args:
+        pieces, placed, reach: as of `cover`.
+        voxels: their least corners, and their edge, (n, 4) [m].
+        cells: (n, 64) uint64, written: a word for each part of 4 x 4 x 4 cells, as of `kernels.shared.Shared`.
+        links: (n, links) bool: set for links that are near.
+    """
+    covered = np.empty((CELLS, CELLS, CELLS), dtype=np.uint8)
+    for n in range(len(voxels)):
+        cover(pieces, placed, voxels[n], reach, covered, links[n])
+        cells[n] = 0
+        for i in range(CELLS):
+            for j in range(CELLS):
+                for k in range(CELLS):
+                    if covered[i, j, k] != COVERED:
+                        part = ((i >> 2) * 4 + (j >> 2)) * 4 + (k >> 2)
+                        cells[n, part] |= bit_of(i, j, k)
+
+
+@njit(cache=True, nogil=True)
 def cover(pieces, placed, voxel, reach, covered, links):
     """Which cells of a voxel a body covers: those that come within reach of its surface, or lie within it.
 
