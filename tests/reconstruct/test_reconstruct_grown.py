@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from numba import njit
+from scipy.spatial.transform import Rotation
 
-from elbowroom.geometry import VoxelGrid
+from elbowroom.geometry import DepthCamera, Intrinsics, VoxelGrid
 from elbowroom.geometry.margin import Margin
 from elbowroom.geometry.noise import NoiseModel
 from elbowroom.reconstruct.images import room_images
@@ -14,6 +15,7 @@ from elbowroom.reconstruct.kernels.grown import GROWN, look_grown
 from elbowroom.reconstruct.kernels.place import Cube, blocks_of, box_in, voxels_of
 from elbowroom.reconstruct.layout import layout_of
 from elbowroom.reconstruct.views import fill
+from elbowroom.sensing import DepthFrame
 from reference import reconstruct_scenes as scenes
 
 ALL = np.uint64(0xFFFFFFFFFFFFFFFF)
@@ -82,6 +84,26 @@ def test_a_block_is_settled_as_all_its_voxels_are(seed):
             for block in lanes_of(word)[::5]:
                 boxes = voxels_of(cube, block)
                 assert {still(views, boxes, lane) for lane in range(64)} == {expected}
+
+
+def test_a_block_at_the_cameras_plane_is_not_judged_by_pixels_beside_it():
+    """Its near side may lie at the plane, and voxels of it well before the camera, seen through."""
+    turned = [[-0.755, 0.3994, 0.5201], [0.1444, -0.6724, 0.726], [0.6397, 0.6232, 0.45]]
+    turned = Rotation.from_matrix(turned).as_matrix()
+    pose, edge, middle, focal, side = np.eye(4), 0.02, np.array([0.11833, -0.01863, 0.11251]), 1000.0, 2880
+    pose[:3, :3] = turned.T
+    lens = Intrinsics(focal, focal, (side - 1) / 2, (side - 1) / 2)
+    camera = DepthCamera("near", side, side, pose, lens)
+    depth = np.full((side, side), 3.0, np.float32)
+    column, row = (middle[:2] * focal + (side - 1) / 2).astype(int)
+    depth[row - 12 : row + 13, column - 12 : column + 13] = 0
+    grid = VoxelGrid(tuple(turned.T @ middle - 6 * edge), (16, 16, 16), edge)
+    images = room_images([camera], [DepthFrame("near", 0, depth)], {"near": 0.0439467})
+    views, _ = fill(layout_of(grid, (camera,), Margin()), images, {}, [(0, side, 0, side)])
+    cube, block = Cube(0, *(float(a) for a in grid.origin_m), edge), 21
+    _, stopped = look(views.cameras, views.texels, ALL, blocks_of(cube), np.empty(1, GROWN))
+    seen = [still(views, voxels_of(cube, block), lane) for lane in range(64)]
+    assert any(seen) and not int(stopped) >> block & 1
 
 
 def test_only_what_is_asked_is_settled_by_pixels():

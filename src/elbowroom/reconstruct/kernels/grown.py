@@ -86,7 +86,7 @@ def _place(camera, first, boxes, out):
         z = pz + camera.offset[scale, 2, lane]
         near = z - reach_z - grown
         before = near > eps
-        per_z, per_near = one / (z if before else one), one / (near if before else one)
+        per_z, per_near = one / (z if z > eps else one), one / (near if before else one)
         # as of the ungrown box, whose nearest depth is greater
         per_box = one / (near + grown if before else one)
         u, v = x * per_z, y * per_z
@@ -156,6 +156,7 @@ def _place_inner(camera, radius, out):
     per_fx, per_fy, cx, cy = one / fx, one / fy, np.float32(camera.cx), np.float32(camera.cy)
     begin_v, end_v, begin_u, end_u = _ends(camera)
     two, three, spare = np.int32(2), np.int32(3), SPARE
+    nearest = max(radius, np.float32(2.0 * PLANE_EPS))
     radial = np.float32(1.0 if camera.radial else 0.0)
     for number in range(RECTANGLES - 1):
         behind, half_wide, half_high = INNER[number]
@@ -163,7 +164,7 @@ def _place_inner(camera, radius, out):
         for lane in range(64):
             z = out.z[lane]
             depth = z + behind * radius
-            per_depth = one / (depth if z > radius else one)
+            per_depth = one / (depth if z > nearest else one)
             across, down = half_wide * radius * per_depth * fx, half_high * radius * per_depth * fy
             u, v = out.u[lane] * z * per_depth, out.v[lane] * z * per_depth
             aside, above = max(abs(u) - across, zero) * per_fx, max(abs(v) - down, zero) * per_fy
@@ -178,7 +179,7 @@ def _place_inner(camera, radius, out):
             out.left[row, lane] = (left + three) >> two
             out.right[row, lane] = ((right + np.int32(1)) >> two) - np.int32(1)
             limit = (depth * steep + out.margin[lane]) * per_quantum - np.float32(2.0)
-            out.limit[row, lane] = limit if z > radius else -one
+            out.limit[row, lane] = limit if z > nearest else -one
 
 
 @njit(inline="always")

@@ -126,7 +126,7 @@ def least_of_tiles(squares, first_tile, across, rectangle):
     top, bottom, left, right = rectangle
     rows, columns = bottom - top + 1, right - left + 1
     narrow = min(rows, columns)
-    level = (narrow >= 2) + (narrow >= 4) + (narrow >= 8)
+    level = int(narrow >= 2) + int(narrow >= 4) + int(narrow >= 8)
     edge = 1 << level
     first, last = first_tile + top * across, first_tile + (bottom - edge + 1) * across
     end = right - edge + 1
