@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from dataclasses import replace
 
 from elbowroom.errors import InputError
@@ -39,7 +40,7 @@ def started(room: Room, begin: Callable[[str], None]) -> Loop:
     pause_ns = _gap_ns(room) if recorded else gap_ns(None)
     with ThreadPoolExecutor(1) as aside:
         # what is loaded for motions is loaded while cameras are commissioned
-        blocked = aside.submit(_judge_blocked, cycle)
+        blocked = aside.submit(copy_context().run, _judge_blocked, cycle)
         checks = replace(checks_of(room, begin), looks=looks_of(room), first=first_looks_of(room))
         blocked.result()
     pace = Pace(pause_ns).early_s if waits else None
