@@ -33,11 +33,11 @@ def a_view(seed):
     rng = np.random.default_rng(seed)
     grid = VoxelGrid(tuple(rng.uniform(-1, 1, 3)), (32, 32, 32), float(rng.uniform(0.02, 0.06)))
     noise = NoiseModel(0.003, 0.0, 0.002) if seed % 2 else None
-    focal = float(rng.uniform(60, 160))
+    focal = float(rng.uniform(40, 90))
     camera = scenes.random_cameras(rng, grid, 1, size=SIZE, focal=focal, noise=noise)[0]
-    frame = scenes.frame_of(camera, scenes.random_scene(rng, grid, balls=3, boxes=2, cameras=[camera]))
+    frame = scenes.frame_of(camera, scenes.random_scene(rng, grid, balls=1, boxes=1, cameras=[camera]))
     margin = Margin(lateral_px=float(rng.choice((0, 0.5))))
-    images = room_images([camera], [frame], {camera.name: float(rng.uniform(0.02, 0.3))})
+    images = room_images([camera], [frame], {camera.name: float(rng.uniform(0.01, 0.2))})
     views, _ = fill(layout_of(grid, (camera,), margin), images, {}, [(0, SIZE[1], 0, SIZE[0])])
     return rng, grid, views
 
@@ -60,18 +60,29 @@ def still(views, boxes, lane):
     return sees_through_grown(views.cameras[0], views.texels, box_in(boxes, lane), scratch[0])
 
 
+def test_something_is_settled_either_way_of_voxels_and_of_blocks():
+    """Else the laws below would hold of a look that says nothing."""
+    found, scratch = np.zeros((2, 2), int), np.empty(1, GROWN)
+    for seed in range(20):
+        rng, grid, views = a_view(seed)
+        for cube in cubes(rng, grid, 6):
+            for row, boxes in enumerate((voxels_of(cube, int(rng.integers(64))), blocks_of(cube))):
+                words = look(views.cameras, views.texels, ALL, boxes, scratch)
+                if words[1] != ALL:  # not all of them beside the image
+                    found[row] += [len(lanes_of(word)) for word in words]
+    assert (found >= 100).all(), found
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_what_is_settled_of_voxels_is_what_the_plain_test_says(seed):
     rng, grid, views = a_view(seed)
-    scratch, settled = np.empty(1, GROWN), 0
+    scratch = np.empty(1, GROWN)
     for cube in cubes(rng, grid, 6):
         boxes = voxels_of(cube, int(rng.integers(64)))
         through, stopped = look(views.cameras, views.texels, ALL, boxes, scratch)
         assert not int(through) & int(stopped)
-        settled += len(lanes_of(through)) + len(lanes_of(stopped))
         assert all(still(views, boxes, lane) for lane in lanes_of(through))
         assert not any(still(views, boxes, lane) for lane in lanes_of(stopped))
-    assert settled
 
 
 @pytest.mark.parametrize("seed", range(12, 20))
