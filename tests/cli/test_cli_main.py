@@ -1,5 +1,6 @@
 """Help shows examples, errors are one line, codes are 0, 2 and 130."""
 
+import json
 import subprocess
 import sys
 import warnings
@@ -82,6 +83,32 @@ def test_what_the_system_says_is_one_line(capsys, monkeypatch, raised, code, wor
     monkeypatch.setattr(type(app), "__call__", lambda *_, **__: fails())
     assert run(["monitor"]) == code
     assert words in capsys.readouterr().err
+
+
+TERMINATED = """
+import os, signal, sys, time
+from pathlib import Path
+from elbowroom.cli import main
+from elbowroom.cli.app import app
+from elbowroom.files.json_rows import json_rows
+
+def measures(*_, **__):
+    with json_rows(Path(sys.argv[1])) as add:
+        add({"turn": 1})
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(60)
+
+type(app).__call__ = measures
+main([])
+"""
+
+
+def test_what_the_system_ends_keeps_its_rows_as_after_ctrl_c(tmp_path):
+    out = tmp_path / "run.json"
+    ended = subprocess.run([sys.executable, "-c", TERMINATED, out], capture_output=True, text=True)
+    assert ended.returncode == 130
+    assert "interrupted; the 1 rows until then are in" in ended.stderr
+    assert json.loads((tmp_path / "run.part.json").read_text())["rows"] == [{"turn": 1}]
 
 
 @pytest.mark.filterwarnings("default")

@@ -1,5 +1,6 @@
 """The command line: `elbowroom COMMAND`. Errors are one line that says what to do."""
 
+import signal
 import sys
 import warnings
 from collections.abc import Sequence
@@ -15,11 +16,12 @@ INTERRUPTED = 130
 
 def main(argv: Sequence[str] | None = None) -> None:
     """Runs the command line and exits with its code: 0 done, 1 what was found or checked is not as it should be, 2 an
-    error, both in one line on stderr, 130 on Ctrl-C.
+    error, both in one line on stderr, 130 on Ctrl-C or where the system asks the process to end.
 
     Args:
         argv: the words after the program's name; None: those of this process.
     """
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(run(argv))
 
 
