@@ -77,7 +77,7 @@ def explain(view, depth, canvas, tolerance, model, around):
             _compare(view, depth, canvas, v, (start, stop), tolerance, rows, model)
     if view.flying:
         _settle_edges(
-            view, depth, canvas, model, np.empty(width, dtype=np.uint8), np.empty(RUN, dtype=np.int32)
+            view, depth, canvas, model, np.empty(width, dtype=np.uint8), np.empty(width, dtype=np.uint8)
         )
     scratch = Scratch(
         np.empty((2, width), dtype=np.float32),
@@ -170,7 +170,7 @@ def _fill_model(view, depth, drawn, columns, tolerance, most, least, model):
 
 
 @uncounted(error_model="numpy")
-def _settle_edges(view, depth, canvas, model, counts, columns):
+def _settle_edges(view, depth, canvas, model, counts, marks):
     """Pixels that the model is about without fitting, below zero on entry by the depth that the model frees.
 
     Those that see past the machine's edge and stand alone are mixed pixels of the edge: explained, infinity. Those that
@@ -180,21 +180,32 @@ def _settle_edges(view, depth, canvas, model, counts, columns):
 
     Args:
         view, depth, canvas, model: as of `explain`.
-        counts, columns: (width,) uint8 and (`RUN`,) int32, room to work in.
+        counts, marks: (width,) uint8 each, room to work in.
     """
     for turn in range(3):
         for v in range(view.height):
             first, last = _columns_about(canvas, v - 1, v + 2)
-            signs = model[v].view(np.uint32)
+            signs, within = model[v].view(np.uint32), 0 < v < view.height - 1
             # most runs of pixels hold none that is below zero
             for start in range(first, last + 1, RUN):
                 stop = min(start + RUN, last + 1)
                 if not _any_below_zero(signs, start, stop):
                     continue
-                if turn != 1:
-                    _count_about(view, depth, model, (start, v), stop, turn, counts)
-                for n in range(_list_below_zero(signs, start, stop, columns)):
-                    _settle_edge(view, depth, canvas, model, (np.int64(columns[n]), v, turn), counts)
+                if turn == 1:
+                    _explain_alone(model[v], start, stop)
+                    continue
+                # those that have eight neighbours many at once, others one by one
+                inner, end = max(start, 1), min(stop, view.width - 1)
+                if not within:
+                    inner, end = stop, stop
+                elif turn == 0:
+                    _settle_past(view, depth, canvas, model, (inner, v), end, counts, marks)
+                else:
+                    _settle_near(view, depth, model, (inner, v), end, counts, marks)
+                for u in range(start, inner):
+                    _settle_edge(view, depth, model, (u, v, turn))
+                for u in range(end, stop):
+                    _settle_edge(view, depth, model, (u, v, turn))
 
 
 @uncounted()
@@ -207,39 +218,104 @@ def _any_below_zero(signs, start, stop):
 
 
 @uncounted()
-def _list_below_zero(signs, start, stop, listed):
-    """Writes which of a run of float32 numbers, as bits, have a sign; how many. Without branches."""
-    count = np.uint64(0)
+def _explain_alone(freed, start, stop):
+    """Makes those of a run of pixels explained, infinity, that are marked as mixed pixels of the machine's edge."""
+    most = np.float32(np.inf)
     for n in range(start, stop):
-        listed[count] = n
-        count += np.uint64(signs[np.uint64(n)] >> np.uint32(31))
-    return np.int64(count)
+        u = np.uint64(n)
+        freed[u] = most if freed[u] == -most else freed[u]
 
 
 @uncounted(error_model="numpy")
-def _count_about(view, depth, model, at, stop, turn, counts):
-    """For each pixel of a run, how many of the eight about it are like it (turn 0: `has_support`), or near (turn 2).
+def _settle_past(view, depth, canvas, model, at, stop, counts, marks):
+    """The first turn of `_settle_edges` for pixels of a run that have eight neighbours, many at once.
 
-    Near are those that are neither explained nor farther than what the model frees in the pixel. Only of pixels that
-    have all eight; others are left as they are.
+    What becomes of a pixel is marked as minus infinity at first, so that all are judged by the same neighbours.
 
     Args:
-        view, depth, model: as of `explain`.
+        view, depth, canvas, model: as of `explain`.
         at: first column of the run, its row.
         stop: one past its last column.
-        turn: as of `_settle_edges`.
-        counts: (width,) uint8, written.
+        counts, marks: as of `_settle_edges`.
     """
     start, v = at
-    if not 0 < v < view.height - 1:
+    d, freed = depth[v], model[v]
+    if not _mark_past(view, d, freed, start, stop, marks):
         return
-    start, stop = max(start, 1), min(stop, view.width - 1)
-    measured = Three(depth[v - 1], depth[v], depth[v + 1])
-    freed = Three(model[v - 1], model[v], model[v + 1])
-    if turn == 0:
-        _count_like(view, measured, freed, start, stop, counts)
-    else:
-        _count_near(view, measured, freed, start, stop, counts)
+    _count_like(
+        view,
+        Three(depth[v - 1], d, depth[v + 1]),
+        Three(model[v - 1], freed, model[v + 1]),
+        start,
+        stop,
+        counts,
+    )
+    drawn = Three(canvas.inverse[v - 1], canvas.inverse[v], canvas.inverse[v + 1])
+    _mark_within(drawn, start, stop, marks)
+    enough, alone = np.uint8(SUPPORT), np.float32(-np.inf)
+    for n in range(start, stop):
+        u = np.uint64(n)
+        past, inside = marks[u] & np.uint8(1) != 0, marks[u] & np.uint8(2) != 0
+        supported = alone if counts[u] < enough else UNSAFE if inside else freed[u]
+        freed[u] = supported if past else freed[u]
+
+
+@uncounted(error_model="numpy")
+def _mark_past(view, depth, freed, start, stop, marks):
+    """Marks with 1 the pixels of a run that are below zero and see past what the model frees, others 0; whether any."""
+    low, high, some = least_from(view.min_depth), most_to(min(view.max_depth, MOST_M)), np.uint8(0)
+    for n in range(start, stop):
+        u = np.uint64(n)
+        d = depth[u]
+        past = (
+            (freed[u] < np.float32(0.0)) & (d > np.float32(0.0)) & (d >= low) & (d <= high) & (d > -freed[u])
+        )
+        marks[u] = np.uint8(past)
+        some |= marks[u]
+    return some != 0
+
+
+@uncounted(error_model="numpy")
+def _mark_within(drawn, start, stop, marks):
+    """Marks with 2 as well the pixels of a run that lie within the model: they and all about them are drawn."""
+    for n in range(start, stop):
+        u = np.uint64(n)
+        left, right = u - np.uint64(1), u + np.uint64(1)
+        above = min(drawn.above[left], min(drawn.above[u], drawn.above[right]))
+        here = min(drawn.here[left], min(drawn.here[u], drawn.here[right]))
+        below = min(drawn.below[left], min(drawn.below[u], drawn.below[right]))
+        marks[u] |= np.uint8(2) if min(above, min(here, below)) > np.float32(0.0) else np.uint8(0)
+
+
+@uncounted(error_model="numpy")
+def _settle_near(view, depth, model, at, stop, counts, marks):
+    """The last turn of `_settle_edges` for pixels of a run that have eight neighbours, many at once.
+
+    Args:
+        view, depth, model, counts, marks: as of `_settle_edges`.
+        at: first column of the run, its row.
+        stop: one past its last column.
+    """
+    start, v = at
+    freed, zero, some = model[v], np.float32(0.0), np.uint8(0)
+    _count_near(
+        view,
+        Three(depth[v - 1], depth[v], depth[v + 1]),
+        Three(model[v - 1], freed, model[v + 1]),
+        start,
+        stop,
+        counts,
+    )
+    for n in range(start, stop):
+        u = np.uint64(n)
+        open_ = (freed[u] < zero) & (freed[u] != UNSAFE)
+        freed[u] = UNSAFE if open_ & (counts[u] >= np.uint8(2)) else freed[u]
+        marks[u] = np.uint8(open_ & (counts[u] == np.uint8(1)))
+        some |= marks[u]
+    if some != 0:
+        for u in range(start, stop):
+            if marks[u] != 0 and not _is_speck_of_two(view, depth, model, u, v):
+                freed[u] = UNSAFE
 
 
 @uncounted(error_model="numpy")
@@ -295,61 +371,27 @@ def _is_near(other, free_to, far):
 
 
 @uncounted(error_model="numpy")
-def _settle_edge(view, depth, canvas, model, at, counts):
-    """One turn for one pixel of `_settle_edges`.
+def _settle_edge(view, depth, model, at):
+    """The first or last turn of `_settle_edges` for one pixel at the image's border.
 
     Args:
-        view, depth, canvas, model: as of `explain`.
+        view, depth, model: as of `explain`.
         at: its column, its row, the turn.
-        counts: of `_count_about` for its row.
     """
     u, v, turn = at
+    if not model[v, u] < 0.0:
+        return
     if turn == 0:
-        # with another mark first, so that all are judged by the same neighbours
         d = depth[v, u]
-        past = is_return(view, d) and d > -model[v, u]
-        if past and not _has_support(view, depth, model, u, v, counts):
+        if is_return(view, d) and d > -model[v, u] and not has_support(view, depth, model, u, v):
             model[v, u] = -np.inf
-        elif past and _is_within(canvas, u, v):
-            model[v, u] = UNSAFE
-    elif turn == 1:
-        if model[v, u] == -np.inf:
-            model[v, u] = np.inf
-    elif model[v, u] != UNSAFE and not _is_speck(view, depth, model, u, v, counts):
+    else:
         model[v, u] = UNSAFE
 
 
 @uncounted(error_model="numpy")
-def _has_support(view, depth, model, u, v, counts):
-    """As `has_support` for a camera whose pixels fly, with what was counted where all eight are in the image."""
-    if 0 < v < view.height - 1 and 0 < u < view.width - 1:
-        return counts[u] >= SUPPORT
-    return has_support(view, depth, model, u, v)
-
-
-@uncounted(error_model="numpy")
-def _is_within(canvas, u, v):
-    """Whether a pixel and all of its neighbours are drawn: it lies within the model, not at its edge."""
-    height, width = canvas.inverse.shape
-    if not (0 < v < height - 1 and 0 < u < width - 1):
-        return False
-    for nv in range(v - 1, v + 2):
-        for nu in range(u - 1, u + 2):
-            if not canvas.inverse[nv, nu] > 0.0:
-                return False
-    return True
-
-
-@uncounted(error_model="numpy")
-def _is_speck(view, depth, model, u, v, counts):
-    """Whether all neighbours of a pixel, or of it and one beside it, are explained or see past the model in it.
-
-    `counts`: how many of its neighbours are not, where all eight are in the image.
-    """
-    if not (0 < v < view.height - 1 and 0 < u < view.width - 1) or counts[u] >= 2:
-        return False
-    if counts[u] == 0:
-        return True
+def _is_speck_of_two(view, depth, model, u, v):
+    """Whether all neighbours of a pixel and one beside it are explained or see past the model in it."""
     for ov in range(v - 1, v + 2):
         for ou in range(u - 1, u + 2):
             inside = 0 < ov < view.height - 1 and 0 < ou < view.width - 1
