@@ -350,6 +350,20 @@ def test_what_stops_is_said_once_and_what_stood_at_the_begin_is_no_news():
     assert stops.hear(a_pass(5, Level.STOP, fault="KeyError: y")) == []
 
 
+def test_a_stop_whose_figures_change_is_one_stop_with_a_gate_and_without():
+    """It was a new stop in each pass, so that the file of a stop never ended, and filled the disk."""
+    stops, gated = Stops(), Stops()
+    texts = [f"the oldest image is {age} ms old" for age in (466, 222, 334)]
+    found, faults = [], []
+    for number, text in enumerate(["", *texts]):
+        late = [Fault(Reason.STALE, "", text)] if text else []
+        one = a_pass(number, Level.STOP)
+        found.append(stops.hear(replace(one, result=replace(one.result, late=text or None))))
+        faults.append(gated.hear(replace(one, decision=decision(Level.STOP, *late))))
+    assert found == [[], texts[:1], [], []]
+    assert [len(news) for news in faults] == [0, 1, 0, 0]
+
+
 def test_with_a_gate_the_machine_and_its_faults_count():
     stops, late = Stops(), Fault(Reason.STALE, "", "too old")
     passes = [

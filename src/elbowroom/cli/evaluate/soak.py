@@ -19,8 +19,9 @@ def soak(
     """Run the whole monitor at full rate for long: does its memory grow, is anything lost, what is its worst pass?
 
     The simulated room from memory, with its watch, gate, distances, a recording of
-    all passes and the black box. The recording is begun anew every 30 s and the file
-    before it taken away, so it needs no more than 20 GB of disk. Memory is looked at
+    all passes and the black box, with 1 GB of memory, which is soon full. The recording
+    is begun anew every 30 s and the file before it taken away, so it needs no more than
+    20 GB of disk. Memory is looked at
     once a second; its slope is that of Theil and Sen over the medians of 20 s, after
     the first quarter, with its interval of 95 %.
     """

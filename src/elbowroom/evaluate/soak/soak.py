@@ -17,7 +17,6 @@ from elbowroom.evaluate.recording.turns import InTurns
 from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import parallel
 from elbowroom.monitor import Loop, Pass
-from elbowroom.monitor.blackbox.made import MOST_BYTES
 from elbowroom.monitor.blackbox.recorder import Recorder
 from elbowroom.monitor.blackbox.sinks import BlackBox
 from elbowroom.monitor.separation.measuring import gate_beside
@@ -31,6 +30,9 @@ MOMENTS, RATE_HZ = 15, 15.0
 TURN_S, TOLD_S = 30.0, 15.0
 BEFORE_S, AFTER_S = 60.0, 10.0
 """Of a stop, the black box keeps so much [s]."""
+BOX_BYTES = 1_000_000_000
+"""Memory of the black box: so little that it is full whatever the rate of passes, or what it holds would go up and down
+with that [bytes]."""
 DUE = (
     Due("grows", "≤", 0, words="memory that grows: the interval of its slope above zero"),
     Due("lost", "≤", 0, words="passes not recorded"),
@@ -126,7 +128,7 @@ def soak_rows(
 
 def _row(loop: Loop, folder: Path, seconds: float, tell: Progress) -> dict[str, Any]:
     whole = InTurns(folder, round(TURN_S * 1e9), Path.unlink)
-    box = BlackBox(folder, round(BEFORE_S * 1e9), round(AFTER_S * 1e9), MOST_BYTES)
+    box = BlackBox(folder, round(BEFORE_S * 1e9), round(AFTER_S * 1e9), BOX_BYTES)
     recorder = Recorder([whole, box], cycle=loop.cycle)
     loop = replace(
         loop,
