@@ -95,8 +95,8 @@ machine stands; the loop here does not.
 The whole monitor with the simulated room from memory, 21 cameras of 640x480 at 15 Hz: watch, gate, distances, a
 recording of all passes (in files of 30 s that are taken away) and the black box (of 1 GB, which is soon full, so that
 what it holds does not go with the rate of passes). What the process holds is looked at once a second; its slope is that
-of Theil and Sen over the medians of 20 s, the first quarter left out, with the interval of 95 %. *the worst*: when it was, and its
-longest parts in ms.
+of Theil and Sen over the medians of 20 s, the first quarter left out, with the interval of 95 %. *the worst*: when it
+was, and its longest parts in ms.
 """,
         "elbowroom evaluate soak",
         tables.soak_tables,
