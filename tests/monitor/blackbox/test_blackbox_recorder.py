@@ -4,6 +4,7 @@ import threading
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -173,6 +174,12 @@ def test_where_nothing_more_may_wait_for_the_disk_who_packs_waits_and_the_order_
     assert "9 passes" in file.end() and written == list(range(9)) and file.busy_ns > 0
 
 
+class DiskUsage(NamedTuple):
+    total: int
+    used: int
+    free: int
+
+
 @pytest.fixture
 def full_disk(monkeypatch):
     """A disk that is full from a number of passes on."""
@@ -197,6 +204,20 @@ def test_a_full_disk_is_said_and_what_was_written_can_be_read(room, tmp_path, fu
     (trouble,) = recorder.troubles
     assert "No space left on device" in trouble and "after 4 passes" in trouble
     assert kept_in(tmp_path / "run.mcap") == [0, 1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("total", "free", "is_kept"),
+    [(1e12, 1.1e9, True), (1e12, 0.9e9, False), (1e6, 0.06e6, True), (1e6, 0.04e6, False)],
+)
+def test_a_disk_is_not_filled(room, tmp_path, monkeypatch, total, free, is_kept):
+    """What is left is for others: the latch of a gate was refused on a disk that the black box had filled."""
+    disk = DiskUsage(int(total), int(total - free), int(free))
+    monkeypatch.setattr("elbowroom.monitor.blackbox.pass_file.shutil.disk_usage", lambda path: disk)
+    recorder = run([WholeRun(tmp_path / "run.mcap")], room, map(a_pass, range(3)))
+    assert kept_in(tmp_path / "run.mcap") == ([0, 1, 2] if is_kept else [])
+    assert [words for words in recorder.troubles if "are left to others" in words] == recorder.troubles
+    assert (recorder.troubles == []) is is_kept
 
 
 def test_a_full_disk_does_not_end_the_run_and_is_in_its_findings(room, tmp_path, full_disk):

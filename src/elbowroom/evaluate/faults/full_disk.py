@@ -19,7 +19,7 @@ CASE = "off, and the disk is full while the stop is saved"
 FITS_BYTES = 262_144
 """So much the disk holds: less than the minute before a stop."""
 SAYS_S = 5.0
-FULL = ("No space left on device", "File too large")
+FULL = ("No space left on device", "are left to others", "File too large")
 """What the system says: of a disk, and of a file where nobody may mount one."""
 
 

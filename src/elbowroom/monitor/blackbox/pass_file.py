@@ -1,11 +1,16 @@
 """One file of passes, as they are kept."""
 
+import errno
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from elbowroom.monitor.blackbox.kept_pass import KeptPass
 from elbowroom.wire.mcap_writer import Attached, McapWriter, Told
+
+LEAST_FREE_BYTES, LEAST_FREE_SHARE = 1_000_000_000, 0.05
+"""Of a disk so much is left to others, or this share of a small one: what a gate has to remember must find room."""
 
 
 class Head(NamedTuple):
@@ -41,6 +46,7 @@ class PassFile:
         """Writes a pass."""
         new = [frame for frame in one.frames if self._newest.get(frame.camera) != frame.number]
         try:
+            require_free(self.path)
             self._writer.step([*self._still, *(frame.told for frame in new), *one.messages], one.time_ns)
         except OSError:
             self._writer.drop()
@@ -54,3 +60,19 @@ class PassFile:
         self._writer.end()
         megabytes = self._writer.length / 1e6
         return f"{self.path}: {self.passes} passes, {megabytes:.1f} MB, sum {self._writer.sum[:16]}"
+
+
+def require_free(path: Path) -> None:
+    """Leaves some of a disk to others.
+
+    Args:
+        path: of a file on it.
+
+    Raises:
+        OSError: so little is free that no more should be written.
+    """
+    disk = shutil.disk_usage(path.parent)
+    if disk.free < min(LEAST_FREE_BYTES, LEAST_FREE_SHARE * disk.total):
+        raise OSError(
+            errno.ENOSPC, f"{disk.free / 1e6:.0f} MB of the disk are free, which are left to others"
+        )
