@@ -26,6 +26,7 @@ ARGUMENTS, DUE_ARGS = 3, 1.0
 DUE_KERNEL_LINES = 3
 
 _Def = ast.FunctionDef | ast.AsyncFunctionDef
+_COUNTED = (ast.Call, ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 _NO_CODE = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT}
 
 
@@ -72,11 +73,17 @@ class House:
             for path in sorted(source.rglob("*.py"))
         }
         self.trees = {file: ast.parse(text, file) for file, text in self.texts.items()}
+        # looked through many times: what nothing is counted of is left out
+        self.nodes = {
+            file: [node for node in ast.walk(tree) if isinstance(node, _COUNTED)]
+            for file, tree in self.trees.items()
+        }
+        self._imports = {file: [*self._imported(file)] for file in self.trees}
         commands = {command for file in self.trees for command in self._handed_to_typer(file)}
         self.functions = [
             function
             for file, tree in self.trees.items()
-            for function in _functions(file, tree, _code_lines(self.texts[file], tree), commands)
+            for function in _functions(file, tree, _code_lines(self.texts[file], self.nodes[file]), commands)
         ]
 
     def parameters(self, commands: bool = False) -> list[int]:
@@ -105,14 +112,14 @@ class House:
         """Calls with `POSITIONS` or more; a starred one counts as one."""
         return sorted(
             Place(file, node.lineno, f"{ast.unparse(node.func)}(...): {len(node.args)} positions")
-            for file, tree in self.trees.items()
-            for node in ast.walk(tree)
+            for file, nodes in self.nodes.items()
+            for node in nodes
             if isinstance(node, ast.Call) and len(node.args) >= POSITIONS
         )
 
     def imports(self) -> dict[str, set[str]]:
         """By file, the files that it imports: also within functions and in types only."""
-        return {file: {found for found, _ in self._imported(file)} - {file} for file in self.trees}
+        return {file: {found for found, _ in imported} - {file} for file, imported in self._imports.items()}
 
     def file_circles(self) -> list[list[str]]:
         """Files that reach each other by imports."""
@@ -134,12 +141,12 @@ class House:
         found = set()
         for circle in self.file_circles():
             for file in circle:
-                for other, line in self._imported(file):
+                for other, line in self._imports[file]:
                     if other in circle and other != file:
                         found.add(Place(file, line, f"imports {other}, circle of files: {', '.join(circle)}"))
         for circle in self.folder_circles():
-            for file in self.trees:
-                for other, line in self._imported(file):
+            for file, imported in self._imports.items():
+                for other, line in imported:
                     here, there = _where_they_part(file, other)
                     if here != there and here in circle and there in circle:
                         found.add(
@@ -168,7 +175,7 @@ class House:
 
     def _imported(self, file: str) -> Iterator[tuple[str, int]]:
         """Files of the package that a file imports, with the line."""
-        for node in ast.walk(self.trees[file]):
+        for node in self.nodes[file]:
             if isinstance(node, ast.Import):
                 modules = [(alias.name,) for alias in node.names]
             elif isinstance(node, ast.ImportFrom):
@@ -198,14 +205,14 @@ class House:
 
     def _handed_to_typer(self, file: str) -> Iterator[tuple[str, str]]:
         """File and name of each function of `app.command(...)(function)`, traced to where it is defined."""
-        tree = self.trees[file]
+        nodes = self.nodes[file]
         home = {
             alias.asname or alias.name: (self._file_of(self._base(file, node)), alias.name)
-            for node in ast.walk(tree)
+            for node in nodes
             if isinstance(node, ast.ImportFrom)
             for alias in node.names
         }
-        for node in ast.walk(tree):
+        for node in nodes:
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Call) and _registers(node.func):
                 for handed in node.args:
                     if isinstance(handed, ast.Name):
@@ -273,7 +280,7 @@ def _functions(
             elif isinstance(child, ast.ClassDef):
                 shown = seen and not child.name.startswith("_")
                 yield from within(child, (*names, child.name), in_class=True, seen=shown)
-            else:
+            elif not isinstance(child, ast.expr):  # which holds no function
                 yield from within(child, names, in_class, seen)
 
     yield from within(tree, (), in_class=False, seen=public_file)
@@ -294,13 +301,13 @@ def _parameters(node: _Def, in_class: bool) -> tuple[str, ...]:
     return (*names, *(argument.arg for argument in rest if argument is not None))
 
 
-def _code_lines(text: str, tree: ast.Module) -> set[int]:
+def _code_lines(text: str, nodes: list[ast.AST]) -> set[int]:
     """Numbers of lines that hold code: no blank lines, comments or docstrings."""
     lines: set[int] = set()
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type not in _NO_CODE:
             lines.update(range(token.start[0], token.end[0] + 1))
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, _Def | ast.ClassDef) and ast.get_docstring(node) is not None:
             lines.difference_update(range(node.body[0].lineno, node.body[0].end_lineno + 1))
     return lines
