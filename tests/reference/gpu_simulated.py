@@ -29,7 +29,7 @@ from reference import reconstruct_scenes as scenes
 def compare_carves(seed):
     """Voxels of a random room that are the same; cameras whose pixels fly, an image that is missing, ages, counts."""
     rng = np.random.default_rng(seed)
-    grid = VoxelGrid(tuple(rng.uniform(-0.5, 0.5, 3)), (9, 6, 5), 0.08)
+    grid = VoxelGrid(tuple(rng.uniform(-0.5, 0.5, 3)), (6, 5, 5), 0.1)
     more = {"noise": NoiseModel(0.003, 0.0, 0.002)} if seed % 2 else {}
     cameras = scenes.random_cameras(rng, grid, 4, **more)
     scene = scenes.random_scene(rng, grid, cameras=cameras)
