@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowroom.geometry.kept import kept
+from elbowroom.geometry.kernels.bits import plain
 from elbowroom.machine import Machine
 from elbowroom.machine.boxes import boxes_of
 from elbowroom.machine.kernels.apart import Bodies
@@ -153,7 +154,7 @@ def _pairs(skin: Skin, width: NDArray[np.float64], fields: Fields, bodies: Bodie
         fields=fields,
         sampled=np.array([a for a, _ in by_side], dtype=np.int64),
         other=np.array([b for _, b in by_side], dtype=np.int64),
-        doubt=np.array([skin.cover + slack_of(fields.edge[b]) for _, b in by_side]),
+        doubt=np.array([skin.cover + plain(slack_of)(fields.edge[b]) for _, b in by_side]),
         pair=np.repeat(np.arange(len(rows)), [len(own) for own in members]),
         cluster=np.concatenate([np.zeros(0, dtype=np.int64), *members]),
         bodies=bodies,

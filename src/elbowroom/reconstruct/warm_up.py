@@ -11,8 +11,10 @@ from elbowroom.machine import Machine
 from elbowroom.reconstruct.images import room_images
 from elbowroom.reconstruct.kernels.cone import VOXEL
 from elbowroom.reconstruct.kernels.outline import OUTLINES, settle_block
+from elbowroom.reconstruct.kernels.parts import ask_parts
 from elbowroom.reconstruct.kernels.place import Boxes
 from elbowroom.reconstruct.layout import layout_of
+from elbowroom.reconstruct.parts import widened
 from elbowroom.reconstruct.reconstruct import reconstruct
 from elbowroom.reconstruct.views import fill
 from elbowroom.sensing import DepthFrame, NoiseModel
@@ -40,7 +42,7 @@ def warm_up(machine: Machine | None = None, details: Sequence[Detail] = DETAILS)
 
 
 def warm_up_pixel_test() -> None:
-    """Runs the pyramid and the pixel test alone, the part of `warm_up` that can be compiled beside the rest."""
+    """Runs the pyramid, the pixel test and the look at parts of voxels alone, which can be compiled beside the rest."""
     grid, cameras, frames = _tiny_scene()
     images = room_images(cameras, frames)
     layout = layout_of(grid, images.cameras, Margin())
@@ -52,6 +54,7 @@ def warm_up_pixel_test() -> None:
         settle_block(
             views.cameras[0], views.texels, (np.uint64(1), np.uint64(0)), False, boxes, (outlines, voxel)
         )
+        ask_parts(widened(views), boxes, np.uint64(1), np.zeros(len(views.cameras), dtype=np.uint64))
     finally:
         layout.give_back(buffers)
 

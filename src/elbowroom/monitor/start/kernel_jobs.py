@@ -147,7 +147,7 @@ def _simulated_cameras() -> None:
 
 JOBS = (
     Job("the machine's body", _body, ("elbowroom.machine.kernels.body", "mark_points"), "machine"),
-    Job("the pixel test", _pixel_test, ("elbowroom.reconstruct.kernels.outline", "settle_block")),
+    Job("the pixel test", _pixel_test, ("elbowroom.reconstruct.kernels.parts", "ask_parts")),
     Job(
         "the machine in images",
         _machine_in_images,
