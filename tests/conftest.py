@@ -39,9 +39,8 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
-    """The whole suite is spread over all cores and one process more, since many tests wait for browsers and clocks; to
-    start processes for a few named files takes longer than they do."""
-    return default_threads() + 1 if _is_whole(config) else 0
+    """The whole suite is spread over all cores; to start processes for a few named files takes longer than they do."""
+    return default_threads() if _is_whole(config) else 0
 
 
 def pytest_make_parametrize_id(config: pytest.Config, val: object, argname: str) -> str | None:
