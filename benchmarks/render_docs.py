@@ -100,8 +100,7 @@ earlier commit, 6c252c1, in turns in the same run; a third of it is due.
 What of a pass is about the machine, of both moments of the simulated room: 21 cameras of 640x480 with the noise of
 time-of-flight cameras, people walking, detail pixel, 2 cm. *explain*: what of the images is the machine; *body out*:
 the voxels of its body; *eight motions*, and *distances* up to 1.5 m, in a space that was looked at where motions lead;
-a path of 200 points, all joints at once. *before*: an earlier commit, 57e50d5, in turns in the same run. The computer
-had other work at the time (about ten processes for two cores), so processor time tells, and not the wall clock.
+a path of 200 points, all joints at once. *before*: an earlier commit, 4dbf1c27, in turns in the same run.
 """,
         "elbowroom bench parts --against ../before/src",
         tables.parts_tables,
