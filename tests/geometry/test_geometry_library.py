@@ -38,7 +38,9 @@ def said(tmp_path):
     (tmp_path / "inner.py").write_text(INNER)
 
     def run(*code: str) -> str:
-        place = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
+        # compiled, and kept beside it, whatever this process was told
+        told = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")}
+        place = {**told, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
         done = subprocess.run(
             [sys.executable, "-c", "\n".join(code)], env=place, capture_output=True, text=True, check=True
         )
