@@ -8,6 +8,16 @@ when the kernel is loaded: more than half of the time and memory that loading ta
 from llvmlite import binding
 from numba.core import codegen
 
+NEEDED = (
+    "enable_object_caching",
+    "get_pointer_to_function",
+    "_finalize_final_module",
+    "_get_module_for_linking",
+    "_set_compiled_object",
+    "_unserialize",
+)
+"""What numba's libraries must have for theirs to be loaded so; it is promised to nobody."""
+
 
 class UnparsedLibrary(codegen.JITCodeLibrary):
     """A compiled library as numba has it, but for bitcode that was kept, which is parsed when it is asked for."""
@@ -18,7 +28,7 @@ class UnparsedLibrary(codegen.JITCodeLibrary):
     @classmethod
     def _unserialize(cls, codegen, state):
         name, kind, data = state
-        if kind != "object":
+        if kind != "object" or len(data) != 2:
             return super()._unserialize(codegen, state)
         library = codegen.create_library(name)
         library._object, library._bitcode = data
@@ -44,5 +54,9 @@ class UnparsedLibrary(codegen.JITCodeLibrary):
 
 
 def load_unparsed():
-    """Libraries that are loaded from now on in this process are of this kind."""
-    codegen.JITCPUCodegen._library_class = UnparsedLibrary
+    """Libraries that are loaded from now on in this process are of this kind.
+
+    Where a numba to come is made otherwise they stay as it has them: that is slower, and the tests of this say so.
+    """
+    if all(hasattr(codegen.JITCodeLibrary, name) for name in NEEDED):
+        codegen.JITCPUCodegen._library_class = UnparsedLibrary
