@@ -77,6 +77,18 @@ def test_a_machine_behind_the_camera_is_not_drawn(arm):
     assert np.isinf(rasterise(arm, camera, AT_REST)).all()
 
 
+@pytest.mark.parametrize("view", VIEWS[:3])
+def test_a_surface_behind_where_the_machine_is_said_to_be_is_never_the_machine(arm, view):
+    """Seen past it everywhere, and not by single pixels: it is not there, and nothing is freed by it."""
+    camera = naive.camera_at(*view, noise=NoiseModel(0.001, 0.002, 0.003, 0.5))
+    drawn = rasterise(arm, camera, AT_REST)
+    found = explain_one(arm, camera, np.full(drawn.shape, 4.0)).model_depth["north"]
+    around = np.pad(np.isfinite(drawn), 1, constant_values=False)
+    within = np.lib.stride_tricks.sliding_window_view(around, (3, 3)).all(axis=(2, 3))
+    assert within.sum() > 100
+    assert (np.abs(found[within]) < 1e-5).all()
+
+
 @pytest.mark.parametrize("kind", ["planar", "radial"])
 @pytest.mark.parametrize("noise", [None, NoiseModel(0.001, 0.002, 0.003, 0.5)])
 @pytest.mark.parametrize("view", VIEWS)
