@@ -26,7 +26,7 @@ class Message(NamedTuple):
     channel: int
     sequence: int
     time_ns: int
-    data: bytes
+    data: bytes | memoryview
 
 
 class ChunkPlace(NamedTuple):

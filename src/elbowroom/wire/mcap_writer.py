@@ -19,6 +19,8 @@ AT_ONCE = 256
 STRETCH, BEHIND = 1 << 25, 4
 """What is written goes to the disk stretch by stretch [bytes], and out of memory so many stretches later."""
 
+Piece = bytes | memoryview
+
 
 class Told(NamedTuple):
     """A message that has no channel yet.
@@ -31,7 +33,7 @@ class Told(NamedTuple):
 
     topic: str
     type: str
-    data: bytes
+    data: Piece
     number: int = 0
 
 
@@ -95,7 +97,7 @@ class McapWriter:
             time_ns: at which they are logged [ns].
         """
         new, numbered = self._numbered(messages, max(time_ns, 0))
-        pieces, index, size = list(new), dict[int, list[tuple[int, int]]](), sum(map(len, new))
+        pieces, index, size = list[Piece](new), dict[int, list[tuple[int, int]]](), sum(map(len, new))
         for one in numbered:
             head_of_one = records.message_head(one)
             index.setdefault(one.channel, []).append((one.time_ns, size))
@@ -151,14 +153,14 @@ class McapWriter:
         self._tail.channels.append(records.channel(number, self._schemas[told.type], told.topic))
         return [*new, self._tail.channels[-1]]
 
-    def _write(self, pieces: Sequence[bytes]) -> None:
+    def _write(self, pieces: Sequence[Piece]) -> None:
         """Writes a step and its link."""
         for piece in pieces:
             self._chain.take(piece)
         self._tail.metadata += 1
         self._send([*pieces, self._chain.link()])
 
-    def _send(self, pieces: Sequence[bytes]) -> None:
+    def _send(self, pieces: Sequence[Piece]) -> None:
         self.length += sum(map(len, pieces))
         for begin in range(0, len(pieces), AT_ONCE):
             self._send_all(deque(memoryview(piece) for piece in pieces[begin : begin + AT_ONCE]))

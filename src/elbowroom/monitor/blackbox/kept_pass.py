@@ -3,6 +3,7 @@
 import hashlib
 import json
 import math
+import mmap
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, NamedTuple
@@ -95,6 +96,9 @@ class Moment(NamedTuple):
 class Keeping:
     """Makes passes into what is kept, one after the other.
 
+    What is kept for a minute lies in memory of its own, which the system has back as a whole when the last frame of a
+    pass is let go. Between what passes hold for a moment it leaves holes in the heap, which grows by them for hours.
+
     Args:
         units: by camera, what its whole numbers stand for.
         radial: names of cameras whose depth is the distance from their centre.
@@ -115,7 +119,7 @@ class Keeping:
             PackageError: zstandard is not installed.
         """
         done = moment.done
-        frames = tuple(self._frame(frame) for frame in done.snapshot.frames)
+        frames = self._kept(done.snapshot.frames)
         now_ns = done.snapshot.now_ns
         time_ns = moment.wall_ns if now_ns is None else now_ns
         record = pass_record(moment, [(frame.camera, frame.number) for frame in frames])
@@ -141,18 +145,42 @@ class Keeping:
             stops=tuple(stops),
         )
 
-    def _frame(self, frame: DepthFrame) -> KeptFrame:
-        """A frame, packed once however many passes it is part of."""
-        before, made = self._frames.get(frame.camera, (None, None))
-        if made is not None and before is frame:
-            return made
+    def _kept(self, frames: Sequence[DepthFrame]) -> tuple[KeptFrame, ...]:
+        """Frames, each packed once however many passes it is part of."""
+        new = [frame for frame in frames if not self._is_kept(frame)]
+        for frame, data in zip(new, together([self._message(frame) for frame in new]), strict=True):
+            _, before = self._frames.get(frame.camera, (None, None))
+            number = 1 if before is None else before.number + 1
+            told = Told(depth_topic(frame.camera), ros_schemas.COMPRESSED_IMAGE, data, number)
+            self._frames[frame.camera] = frame, KeptFrame(frame.camera, number, told)
+        return tuple(self._frames[frame.camera][1] for frame in frames)
+
+    def _is_kept(self, frame: DepthFrame) -> bool:
+        """Whether the pass before had it."""
+        return frame.camera in self._frames and self._frames[frame.camera][0] is frame
+
+    def _message(self, frame: DepthFrame) -> bytes:
+        """What a frame is kept as."""
         packed = packed_pieces(frame.depth_m, self.units.get(frame.camera))
-        number = 1 if made is None else made.number + 1
-        is_radial = frame.camera in self.radial
-        data = ros_messages.depth_message(frame.stamp_ns, frame.camera, packed, is_radial)
-        told = Told(depth_topic(frame.camera), ros_schemas.COMPRESSED_IMAGE, data, number)
-        self._frames[frame.camera] = frame, KeptFrame(frame.camera, number, told)
-        return self._frames[frame.camera][1]
+        return ros_messages.depth_message(frame.stamp_ns, frame.camera, packed, frame.camera in self.radial)
+
+
+def together(pieces: Sequence[bytes]) -> list[memoryview]:
+    """The same bytes in one stretch of memory that is the system's again when the last of them is let go.
+
+    Args:
+        pieces: each is copied.
+    """
+    size = sum(map(len, pieces))
+    if not size:
+        return [memoryview(b"") for _ in pieces]
+    memory, at = mmap.mmap(-1, size, flags=mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS), 0
+    whole, found = memoryview(memory), list[memoryview]()
+    for piece in pieces:
+        whole[at : at + len(piece)] = piece
+        found.append(whole[at : at + len(piece)].toreadonly())
+        at += len(piece)
+    return found
 
 
 def pass_record(moment: Moment, frames: Sequence[tuple[str, int]]) -> dict[str, Any]:
