@@ -73,6 +73,20 @@ def test_something_is_settled_either_way_of_voxels_and_of_blocks():
     assert (found >= 100).all(), found
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_squares_and_tiles_settle_what_their_pixels_would(seed):
+    """Of tiles that free nothing none is passed over for its depth."""
+    rng, grid, views = a_view(seed)
+    texels = views.texels._replace(
+        trust_squares=np.zeros_like(views.texels.trust_squares),
+        trust_tiles=np.zeros_like(views.texels.trust_tiles),
+    )
+    for cube in cubes(rng, grid, 6):
+        boxes = voxels_of(cube, int(rng.integers(64)))
+        found = [still(views, boxes, lane) for lane in range(64)]
+        assert found == [still(views._replace(texels=texels), boxes, lane) for lane in range(64)]
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_what_is_settled_of_voxels_is_what_the_plain_test_says(seed):
     rng, grid, views = a_view(seed)

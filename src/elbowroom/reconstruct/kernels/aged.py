@@ -9,15 +9,16 @@ import numpy as np
 
 from elbowroom.geometry.kernels.bits import lowest_bit, uncounted
 from elbowroom.geometry.kernels.noise import margin_at
-from elbowroom.geometry.kernels.pinhole import pixel_of
 from elbowroom.geometry.kernels.rigid import moved
 from elbowroom.reconstruct.kernels.box import PLANE_EPS
 from elbowroom.reconstruct.kernels.cone import Pixel, has_left, misses, prepare, steepness
-from elbowroom.reconstruct.kernels.pixel import bounds_about, outline_of, pixels_within
+from elbowroom.reconstruct.kernels.pixel import outline_of, pixels_within
 from elbowroom.reconstruct.kernels.place import box_in
 
-ROUNDING_M = 1e-6
-"""More than float64 can err in where a point lies [m]."""
+ROUNDING = 1e-9
+"""More than float64 can err in how far a cone lies from a line, or in a direction."""
+SQUARE_LEVEL = 2
+"""So large are squares of tiles that are passed over at once (`pyramid.least_of_tiles`)."""
 
 
 @uncounted(cache=True, error_model="numpy", forceinline=True)
@@ -52,65 +53,100 @@ def _prepare_grown(camera, box, near, voxel):
 
 
 @uncounted(cache=True, error_model="numpy")
-def _are_free_beyond(camera, texels, pixels, reach, voxel):
-    """Whether all pixels whose cones meet a grown voxel are free beyond it.
+def _are_beyond(camera, voxel, square, least, margin):
+    """Whether the cones of all pixels of a square miss a grown voxel, or have left it where each is free up to.
+
+    Cones of many pixels are a wider one: what this says, each of them would say as well.
 
     Args:
-        camera, texels: its record; those of all cameras.
+        camera: its record.
+        voxel: the scratch record, prepared.
+        square: column and row of its middle, and how far the outermost pixels' are from it.
+        least: that any is free up to [quanta].
+        margin: of depth [m].
+    """
+    u, v, half = square
+    for n in range(voxel.lines):
+        line = voxel.line[n]
+        most = line[0] + line[1] * u + line[2] * v + line[3] + half * (abs(line[1]) + abs(line[2]))
+        if most < -ROUNDING:
+            return True
+    t = np.float64(least) * camera.quantum - margin
+    if camera.radial:
+        aside = (abs(u - camera.cx) + half + 0.5 + camera.lateral_px) / camera.fx
+        above = (abs(v - camera.cy) + half + 0.5 + camera.lateral_px) / camera.fy
+        t /= np.sqrt(1.0 + aside * aside + above * above)
+    if t <= 0.0:
+        return False
+    for a in range(3):
+        d = camera.ray[0, a] + camera.ray[1, a] * u + camera.ray[2, a] * v
+        wide = half * (abs(camera.ray[1, a]) + abs(camera.ray[2, a])) + camera.ray_half_width[a] + ROUNDING
+        if d > wide and t * (d - wide) > voxel.high[a]:
+            return True
+        if d < -wide and t * (d + wide) < voxel.low[a]:
+            return True
+    return False
+
+
+@uncounted(cache=True, error_model="numpy")
+def _is_tile_free(camera, texels, part, reach, voxel):
+    """Whether all of some pixels whose cones meet a grown voxel are free beyond it.
+
+    Args:
+        camera, texels, reach, voxel: as of `_are_free_beyond`.
+        part: first and last row, first and last column.
+    """
+    margin, clear_from = reach
+    top, bottom, left, right = part
+    for v in range(top, bottom + 1):
+        row = camera.first_texel + v * camera.width
+        for u in range(left, right + 1):
+            texel = texels.trust_texels[row + u]
+            free_to = texel >> np.uint32(16)
+            if free_to >= clear_from or misses(voxel, u, v):
+                continue
+            _, steep_far = steepness(camera, u, v)
+            t = (free_to * camera.quantum - margin) / steep_far
+            if not has_left(camera, voxel, Pixel(u, v, free_to, texel), t):
+                return False
+    return True
+
+
+@uncounted(cache=True, error_model="numpy")
+def _are_free_beyond(camera, texels, pixels, reach, voxel):
+    """Whether all pixels whose cones meet a grown voxel are free beyond it: squares of them, then tiles, then pixels.
+
+    Args:
+        camera, texels: its record; those of all cameras, with squares of trust.
         pixels: that may meet it.
         reach: the margin of depth [m], and from where on [quanta] what is free is free beyond the voxel.
         voxel: the scratch record, prepared.
     """
     margin, clear_from = reach
-    across = (camera.width + 3) >> 2
-    for tv in range(pixels.top >> 2, (pixels.bottom >> 2) + 1):
-        for tu in range(pixels.left >> 2, (pixels.right >> 2) + 1):
-            if texels.trust_tiles[camera.first_tile + tv * across + tu] >> np.uint32(16) >= clear_from:
+    across, first, edge = (camera.width + 3) >> 2, camera.first_tile, 1 << SQUARE_LEVEL
+    bottom, right = pixels.bottom >> 2, pixels.right >> 2
+    for sv in range(pixels.top >> 2, bottom + 1, edge):
+        for su in range(pixels.left >> 2, right + 1, edge):
+            least = texels.trust_squares[SQUARE_LEVEL, first + sv * across + su] >> np.uint32(16)
+            half = 2.0 * edge - 0.5
+            square = 4.0 * su + half, 4.0 * sv + half, half
+            if least >= clear_from or _are_beyond(camera, voxel, square, least, margin):
                 continue
-            for v in range(max(pixels.top, 4 * tv), min(pixels.bottom, 4 * tv + 3) + 1):
-                row = camera.first_texel + v * camera.width
-                for u in range(max(pixels.left, 4 * tu), min(pixels.right, 4 * tu + 3) + 1):
-                    texel = texels.trust_texels[row + u]
-                    free_to = texel >> np.uint32(16)
-                    if free_to >= clear_from or misses(voxel, u, v):
+            for tv in range(sv, min(sv + edge, bottom + 1)):
+                for tu in range(su, min(su + edge, right + 1)):
+                    least = texels.trust_tiles[first + tv * across + tu] >> np.uint32(16)
+                    square = 4.0 * tu + 1.5, 4.0 * tv + 1.5, 1.5
+                    if least >= clear_from or _are_beyond(camera, voxel, square, least, margin):
                         continue
-                    _, steep_far = steepness(camera, u, v)
-                    t = (free_to * camera.quantum - margin) / steep_far
-                    if not has_left(camera, voxel, Pixel(u, v, free_to, texel), t):
+                    part = (
+                        max(pixels.top, 4 * tv),
+                        min(pixels.bottom, 4 * tv + 3),
+                        max(pixels.left, 4 * tu),
+                        min(pixels.right, 4 * tu + 3),
+                    )
+                    if not _is_tile_free(camera, texels, part, reach, voxel):
                         return False
     return True
-
-
-@uncounted(cache=True, error_model="numpy", forceinline=True)
-def _is_stopped_at(camera, texels, x, y, z):
-    """Whether the pixel of a point in the camera's axes, which lies in the image, is free no farther than to it."""
-    u, v = pixel_of(camera, x, y, z)
-    at = np.sqrt(x * x + y * y + z * z) if camera.radial else z
-    pixel = camera.first_texel + int(np.floor(v + 0.5)) * camera.width + int(np.floor(u + 0.5))
-    return (texels.trust_texels[pixel] >> np.uint32(16)) * camera.quantum < at - ROUNDING_M
-
-
-@uncounted(cache=True, error_model="numpy")
-def _is_surely_stopped(camera, texels, middle):
-    """Whether some point of a grown voxel, of a few on the rim of the ball about its middle, is surely not free.
-
-    It settles most voxels that are not seen through, before every pixel is looked at.
-    """
-    x, y, z = middle
-    far, aslant = camera.aged_m, 0.7071 * camera.aged_m
-    if _is_stopped_at(camera, texels, x, y, z + far):
-        return True
-    for side in (-1.0, 1.0):
-        if (
-            _is_stopped_at(camera, texels, x + side * far, y, z)
-            or _is_stopped_at(camera, texels, x, y + side * far, z)
-            or _is_stopped_at(camera, texels, x + side * aslant, y, z + aslant)
-            or _is_stopped_at(camera, texels, x, y + side * aslant, z + aslant)
-            or _is_stopped_at(camera, texels, x + side * aslant, y + aslant, z)
-            or _is_stopped_at(camera, texels, x + side * aslant, y - aslant, z)
-        ):
-            return True
-    return False
 
 
 @uncounted(cache=True, error_model="numpy")
@@ -119,7 +155,7 @@ def sees_through_grown(camera, texels, box, voxel):
 
     Args:
         camera: its record.
-        texels: of all cameras.
+        texels: of all cameras, with squares of trust.
         box: the voxel.
         voxel: scratch.
     """
@@ -130,16 +166,13 @@ def sees_through_grown(camera, texels, box, voxel):
     if near <= PLANE_EPS:
         return False
     pixels = pixels_within(camera, _grown_outline(camera, middle, half, near))
-    if not pixels.whole or _is_surely_stopped(camera, texels, middle):
+    if not pixels.whole:
         return False
     if camera.radial:
         px, py, pz = middle
         far = np.sqrt(px * px + py * py + pz * pz) + 0.8660255 * box.edge + grown
     margin = margin_at(camera.margin, far)
     clear_from = np.uint32(min((far + margin) / camera.quantum + 2.0, 65535.0))
-    least, _ = bounds_about(camera, texels, pixels)
-    if least >= clear_from:
-        return True
     _prepare_grown(camera, box, near, voxel)
     return _are_free_beyond(camera, texels, pixels, (margin, clear_from), voxel)
 
