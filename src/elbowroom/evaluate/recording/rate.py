@@ -11,6 +11,7 @@ import numpy as np
 
 from elbowroom.evaluate.due import Due
 from elbowroom.evaluate.held_memory import Watched
+from elbowroom.evaluate.moments import in_units
 from elbowroom.evaluate.recording.compared import Comparing, sum_of
 from elbowroom.evaluate.recording.turns import InTurns
 from elbowroom.files.progress import Progress, silent
@@ -31,7 +32,6 @@ DUE = (
 )
 """21 cameras of 640x480, 15 images a second."""
 RATE_HZ = 15.0
-UNIT_M = 0.001
 MOMENTS = 6
 """So many moments are rendered; they come again and again."""
 WHOLE, BOX = "whole run", "black box, a stop on the way"
@@ -71,7 +71,7 @@ class Given:
         images = []
         for number in range(MOMENTS):
             frames = render(room.cameras, simulated.at(2.0 * number), seed=number)
-            images.append([_in_units(frame).depth_m for frame in frames])
+            images.append([in_units(frame).depth_m for frame in frames])
         return cls(room, images)
 
     @property
@@ -180,13 +180,6 @@ def _pass(given: Given, number: int, stops: bool) -> Pass:
     verdicts = tuple(Verdict(motion, level, 0.1, "m", None, None, cause) for motion in motions)
     result = CycleResult(number, snapshot.now_ns or 0, None, verdicts, {}, 0.0)
     return Pass(snapshot, result, 0.0)
-
-
-def _in_units(frame: DepthFrame) -> DepthFrame:
-    """In whole millimetres, as sensors give it."""
-    with np.errstate(invalid="ignore"):
-        raw = np.where(np.isfinite(frame.depth_m), np.floor(frame.depth_m / UNIT_M), 0).astype(np.uint16)
-    return DepthFrame.from_raw(frame.camera, frame.stamp_ns, raw, scale_m=UNIT_M)
 
 
 def _frame(camera: DepthCamera, stamp_ns: int, image: np.ndarray[Any, np.dtype[np.float32]]) -> DepthFrame:

@@ -1,6 +1,5 @@
 """The whole monitor for long: at full rate from memory, with its watch, gate, distances, recording and black box."""
 
-import itertools
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
@@ -13,6 +12,7 @@ import numpy as np
 from elbowroom.errors import InputError
 from elbowroom.evaluate.due import FULL_ROOM, Due, where
 from elbowroom.evaluate.held_memory import Watched
+from elbowroom.evaluate.moments import there_and_back
 from elbowroom.evaluate.recording.turns import InTurns
 from elbowroom.files.progress import Progress, silent
 from elbowroom.geometry import parallel
@@ -24,7 +24,6 @@ from elbowroom.monitor.start.start import started
 from elbowroom.site import Site
 from elbowroom.sources import Room, open_room
 from elbowroom.sources.from_memory import FromMemory
-from elbowroom.sources.simulated import Simulated
 
 MOMENTS, RATE_HZ = 15, 15.0
 TURN_S, TOLD_S = 30.0, 15.0
@@ -116,10 +115,8 @@ def soak_rows(
         InputError: a pass failed.
     """
     room = open_room(Site.simulated_room(), cameras=cameras, resolution=size)
-    assert isinstance(room.source, Simulated)
     tell("rendering what the cameras see")
-    there = list(itertools.islice(room.source.at(np.arange(MOMENTS) / RATE_HZ), MOMENTS))
-    moments = [*there, *there[-2:0:-1]]  # and back: a machine that jumped would be stopped, and rightly
+    moments = there_and_back(room, MOMENTS, RATE_HZ)
     loop = started(room, tell)
     loop = replace(loop, room=replace(room, source=FromMemory(moments, RATE_HZ)))
     with tempfile.TemporaryDirectory() as folder:

@@ -1,6 +1,5 @@
 """From the middle of exposure to the decision: the monitor's whole way, on frames that lie in memory."""
 
-import itertools
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
@@ -12,6 +11,7 @@ import numpy as np
 
 from elbowroom.errors import InputError
 from elbowroom.evaluate.due import FULL_ROOM, Due
+from elbowroom.evaluate.moments import there_and_back
 from elbowroom.geometry import parallel
 from elbowroom.monitor import Pass
 from elbowroom.monitor.separation.measuring import gate_beside
@@ -19,7 +19,6 @@ from elbowroom.monitor.start.start import started
 from elbowroom.site import Site
 from elbowroom.sources import Room, open_room
 from elbowroom.sources.from_memory import FromMemory
-from elbowroom.sources.simulated import Simulated
 
 MOMENTS = 15
 RATE_HZ = 15.0
@@ -89,9 +88,7 @@ def decision_rows(
         InputError: a pass failed.
     """
     room = open_room(Site.simulated_room(), cameras=cameras, resolution=size)
-    assert isinstance(room.source, Simulated)
-    there = list(itertools.islice(room.source.at(np.arange(MOMENTS) / RATE_HZ), MOMENTS))
-    moments = [*there, *there[-2:0:-1]]  # and back: a machine that jumped would be stopped, and rightly
+    moments = there_and_back(room, MOMENTS, RATE_HZ)
     for case, spread in SPREADS.items():
         # the room is commissioned as it is simulated; then its moments come from memory
         loop = started(room, lambda step: None)
