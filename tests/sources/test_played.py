@@ -297,3 +297,19 @@ def test_joints_of_several_machines_are_heard_as_those_of_one(tmp_path):
     assert any("ahead of when joints come" in finding.text for finding in time_findings(site))
     for snapshot, *_ in played(site)[0]:
         assert snapshot.joints_ns <= snapshot.now_ns
+
+
+def test_who_is_slow_waits_for_images_that_are_due_soon_and_begins_with_young_ones(tmp_path):
+    messages = long_bag(lambda c, at, stamp: (at, stamp), seconds=2)
+    found, _ = played(site_of(tmp_path, messages), judge_ns=150 * MS)
+    behind = [snapshot.now_ns - snapshot.frames[0].stamp_ns - LATE_NS for snapshot, *_ in found]
+    # half a period over when it asks: once the period is known, every second moment, the moment that it comes
+    assert max(behind[:2]) >= 45 * MS and max(behind[3:]) < 5 * MS
+    assert np.diff([snapshot.frames[0].stamp_ns for snapshot, *_ in found[3:]]).max() <= 2 * STEP_NS
+
+
+def test_images_of_one_moment_that_come_one_behind_the_other_are_one_snapshot(tmp_path):
+    late = {camera.name: 3 * MS * number for number, camera in enumerate(bag_room().cameras)}
+    found, _ = played(site_of(tmp_path, long_bag(lambda c, at, stamp: (at + late[c], stamp), seconds=2)))
+    settled = [snapshot for snapshot, *_ in found if snapshot.now_ns > T0 + 5 * STEP_NS]
+    assert len(settled) == 15 and all(snapshot.skew_ms < 10 for snapshot in settled)

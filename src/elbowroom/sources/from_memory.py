@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from elbowroom.errors import InputError
 from elbowroom.sensing import DepthFrame, Snapshot
+from elbowroom.sources.cadence import Cadence
 
 NS_A_S = 1_000_000_000
 
@@ -43,19 +44,32 @@ class FromMemory:
         return "memory"
 
     def __iter__(self) -> Iterator[Snapshot]:
-        """The newest frame of each camera, whenever there is one that was not given yet."""
-        start_ns, given = self.clock_ns(), -1.0
+        """The newest frame of each camera, whenever there is one that was not given yet and none that is worth a wait
+        (`Cadence`).
+        """
+        start_ns, given, asked_ns, cadence = self.clock_ns(), -1.0, None, Cadence()
         count = len(self.moments[0].frames)
         delays = [self.spread * number / max(1, count) for number in range(count)]
+        came = [0] * count
         while True:
-            periods = (self.clock_ns() - start_ns) * self.rate_hz / NS_A_S
+            now_ns = self.clock_ns()
+            periods = (now_ns - start_ns) * self.rate_hz / NS_A_S
+            for number, delay in enumerate(delays):
+                while came[number] + delay <= periods:
+                    at_ns = start_ns + round((came[number] + delay) * NS_A_S / self.rate_hz)
+                    cadence.come(self.moments[0].frames[number].camera, at_ns)
+                    came[number] += 1
             newest = max((periods - delay) // 1 + delay for delay in delays)
+            later_s = min((periods - delay) // 1 + 1 + delay - periods for delay in delays) / self.rate_hz
             if newest <= given or periods < max(delays):
-                # exposures come at these times and at no others
-                later = min((periods - delay) // 1 + 1 + delay for delay in delays)
-                self.sleep(max(0.0, (later - periods) / self.rate_hz))
+                self.sleep(max(0.0, later_s))  # exposures come at these times and at no others
                 continue
-            given = newest
+            asked_ns = now_ns if asked_ns is None else asked_ns
+            wait_ns = cadence.worth_until_ns(now_ns, asked_ns) - now_ns
+            if wait_ns > 0:
+                self.sleep(min(wait_ns / NS_A_S, max(0.0, later_s)))
+                continue
+            given, asked_ns = newest, None
             yield self._at(start_ns, periods, delays)
 
     def _at(self, start_ns: int, periods: float, delays: Sequence[float]) -> Snapshot:

@@ -9,6 +9,7 @@ from elbowroom.finding import Finding
 from elbowroom.sensing import JointRecord, Snapshot
 from elbowroom.site.recording_entry import BagRecording
 from elbowroom.site.site import Site
+from elbowroom.sources.cadence import Cadence
 from elbowroom.sources.layouts.bag import BagFrames
 from elbowroom.sources.layouts.bag_image import Arrival
 from elbowroom.sources.newest import Newest
@@ -75,21 +76,29 @@ class Played:
 
     def _snapshots(self, arrivals: Sequence[Arrival], frames: Newest, joints: Told) -> Iterator[Snapshot]:
         done, begin_ns, start_ns = 0, _begin_ns(arrivals), self.clock_ns()
-        while done < len(arrivals):
+        cadence, asked_ns = Cadence(), None  # since when there are images that were not given yet
+        while done < len(arrivals) or asked_ns is not None:
             now_ns = begin_ns + self.clock_ns() - start_ns
-            wait_ns = arrivals[done].received_ns - now_ns
-            if done and wait_ns > self.gap_ns:
-                begin_ns, wait_ns = begin_ns + wait_ns, 0
-                now_ns = arrivals[done].received_ns
-            if wait_ns > 0:
-                self.sleep(min(wait_ns, IDLE_NS) / 1e9)
-                if wait_ns <= IDLE_NS:
-                    continue
-                now_ns = begin_ns + self.clock_ns() - start_ns
+            next_ns = arrivals[done].received_ns if done < len(arrivals) else None
+            if done and asked_ns is None and next_ns is not None and next_ns - now_ns > self.gap_ns:
+                begin_ns, now_ns = begin_ns + next_ns - now_ns, next_ns
             first = done
             while done < len(arrivals) and arrivals[done].received_ns <= now_ns:
+                cadence.come(arrivals[done].image.camera.name, arrivals[done].received_ns)
                 done += 1
             frames.come(arrivals[first:done])
+            if done > first and asked_ns is None:
+                asked_ns = now_ns
+            wait_ns = arrivals[done].received_ns - now_ns if done < len(arrivals) else 0
+            if asked_ns is not None:
+                # images that are due soon make the others worth nothing
+                wait_ns = min(wait_ns, cadence.worth_until_ns(now_ns, asked_ns) - now_ns)
+            if wait_ns > 0:
+                self.sleep(min(wait_ns, IDLE_NS) / 1e9)
+                if asked_ns is not None or wait_ns <= IDLE_NS:
+                    continue
+                now_ns = begin_ns + self.clock_ns() - start_ns
+            asked_ns = None
             yield self._snapshot(frames, now_ns, joints)
 
     def _snapshot(self, frames: Newest, now_ns: int, joints: Told) -> Snapshot:
