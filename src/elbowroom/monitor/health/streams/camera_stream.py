@@ -110,13 +110,13 @@ class CameraStream:
         if self.spots is not None:
             self.good, self._cover = self.spots, Cover.commissioned(self.spots)
 
-    def hear(self, frame: DepthFrame | None, moment: Moment, others: Mapping[str, Thumb]) -> None:
+    def hear(self, frame: DepthFrame | None, moment: Moment, good: Mapping[str, Thumb]) -> None:
         """Takes one pass into account.
 
         Args:
             frame: the newest of this camera; None: there is none.
             moment: what is known beside it.
-            others: the last good images of the other cameras.
+            good: by camera, the last good images of all, before this pass.
         """
         is_new = self._is_new(frame)
         self._since_start_ns += min(max(moment.went_ns, 0), MOST_A_PASS_NS)
@@ -129,13 +129,15 @@ class CameraStream:
         text = f"gives images of {size[1]} x {size[0]} pixels, the site says {due[1]} x {due[0]}"
         self._say(C.CAMERA_WRONG_SIZE, size != due, text)
         if size == due:
-            self._look(Thumb.of(frame.depth_m), frame, others)
+            self._look(Thumb.of(frame.depth_m), frame, good)
         self._last = frame
 
     @property
     def causes(self) -> Iterator[HealthCause]:
         """Those that are there, what explains others without them."""
         there = {cause for cause, held in self._held.items() if held.is_there}
+        if not there:
+            return iter(())
         if there & {C.CAMERA_DISCONNECTED, C.CAMERA_FROZEN, C.CAMERA_STARTING}:
             there -= {C.CAMERA_GAPS, C.CAMERA_TOO_OLD}
         if there & {C.CAMERA_DISCONNECTED, C.CAMERA_COVERED}:
@@ -198,7 +200,7 @@ class CameraStream:
         text = f"gives images that are {age_ns / 1e6:.0f} ms old, at most {limit_ns / 1e6:.0f} ms are right"
         self._say(C.CAMERA_TOO_OLD, True if age_ns > limit_ns else (False if is_new else None), text)
 
-    def _look(self, thumb: Thumb, frame: DepthFrame, others: Mapping[str, Thumb]) -> None:
+    def _look(self, thumb: Thumb, frame: DepthFrame, good: Mapping[str, Thumb]) -> None:
         """What a new image of the right size says."""
         has_returns = thumb.share >= NOTHING
         self._say(C.CAMERA_STARTING, None if not has_returns else False, "")
@@ -208,7 +210,7 @@ class CameraStream:
                 self._say(C.CAMERA_COVERED, True, "has given no image with returns yet")
         self._look_for_same(thumb, frame)
         self._look_at_cover(thumb)
-        odd = self._look_at_picture(thumb, others) if has_returns else None
+        odd = self._look_at_picture(thumb, good) if has_returns else None
         self._thumb = thumb
         if odd is None and has_returns and not any(True for _ in self.causes):
             self.good = thumb
@@ -237,7 +239,7 @@ class CameraStream:
         self._say(C.CAMERA_COVERED, lost >= COVERED, text)
         self._say(C.CAMERA_PARTLY_COVERED, lost >= PARTLY, text)
 
-    def _look_at_picture(self, thumb: Thumb, others: Mapping[str, Thumb]) -> Odd | None:
+    def _look_at_picture(self, thumb: Thumb, good: Mapping[str, Thumb]) -> Odd | None:
         """What is odd about the picture; nothing is over until it agrees with the last good one again."""
         is_own = None if self.good is None else agrees(thumb, self.good)
         if self.good is None or is_own is None:
@@ -248,6 +250,7 @@ class CameraStream:
             return None
         pairs = pairs_of(thumb, self.good, self._stretch)
         assert pairs is not None
+        others = {name: each for name, each in good.items() if name != self.camera.name}
         odd = oddity(thumb, self.good, pairs, others)
         if odd is not None:
             self._say(odd.cause, True, odd.text)

@@ -33,6 +33,9 @@ class HealthCause(Enum):
     JOINTS_IMPLAUSIBLE = Reason.JOINTS_IMPLAUSIBLE
     JOINTS_FROZEN = Reason.JOINTS_FROZEN
 
+    __hash__ = object.__hash__
+    """Members are one each: a hash of the name, as enumerations have it, is work in Python at each look-up."""
+
     @property
     def is_of_camera(self) -> bool:
         """Whether it is about a camera, which is left out; one about joints stops every motion."""

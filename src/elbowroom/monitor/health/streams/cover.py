@@ -94,6 +94,8 @@ def _shared(counts: NDArray[np.float32], fixed: NDArray[np.bool_]) -> NDArray[np
 def _in_blocks(counts: NDArray[np.float32]) -> NDArray[np.float32]:
     """The sum over the block of two by two tiles that each tile is in, shape as of the counts."""
     rows, columns = counts.shape
-    padded = np.pad(counts, ((0, rows % 2), (0, columns % 2)))
-    sums = padded.reshape(-1, 2, padded.shape[1] // 2, 2).sum(axis=(1, 3))
-    return np.asarray(sums.repeat(2, axis=0).repeat(2, axis=1)[:rows, :columns], np.float32)
+    padded = np.zeros((rows + rows % 2, columns + columns % 2), np.float32)
+    padded[:rows, :columns] = counts
+    sums = padded[::2] + padded[1::2]
+    padded[::2] = padded[1::2] = (sums[:, ::2] + sums[:, 1::2]).repeat(2, axis=1)
+    return padded[:rows, :columns]

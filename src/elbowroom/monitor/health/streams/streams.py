@@ -98,8 +98,7 @@ class Streams:
                 _about(found, name, CLOCKS),
                 _about(found, name, (DAMAGED,)),
             )
-            others = {other: thumb for other, thumb in good.items() if other != name}
-            stream.hear(frames.get(name), moment, others)
+            stream.hear(frames.get(name), moment, good)
         if self._joints is not None:
             self._joints.hear(_heard(snapshot, went_ns, self._health))
         return self._since_heard.lasting(self._sick(), self._clock_ns())

@@ -68,12 +68,23 @@ class Thumb:
         """How many pixels of each tile have a return, shape (tile rows, tile columns)."""
         return self.per_tile(self.returned)
 
-    @cached_property
+    @property
     def tile_sizes(self) -> NDArray[np.float32]:
         """How many pixels each tile has, shape (tile rows, tile columns)."""
-        down, across = _sums(*self.depth_m.shape)
-        sizes: NDArray[np.float32] = down.sum(axis=1)[:, None] * across.sum(axis=0)[None, :]
-        return sizes
+        return _sizes(*self.depth_m.shape)
+
+
+@lru_cache(maxsize=64)
+def _sizes(rows: int, columns: int) -> NDArray[np.float32]:
+    """As `Thumb.tile_sizes`, read-only.
+
+    Args:
+        rows, columns: of the small image.
+    """
+    down, across = _sums(rows, columns)
+    sizes: NDArray[np.float32] = down.sum(axis=1)[:, None] * across.sum(axis=0)[None, :]
+    sizes.setflags(write=False)
+    return sizes
 
 
 @lru_cache(maxsize=64)
