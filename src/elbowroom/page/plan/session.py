@@ -57,6 +57,8 @@ class Session:
     camera: str | None = field(default=None, init=False)
     other: str | None = field(default=None, init=False)
     newest: Said | None = field(default=None, init=False)
+    _doing: threading.RLock = field(default_factory=threading.RLock, init=False)
+    """The server hands on what is clicked in threads of its own: one deed is done before the next begins."""
     _drawing: threading.RLock = field(default_factory=threading.RLock, init=False)
     _keeping: threading.Timer | None = field(default=None, init=False)
     _reckoned: Reckoner | None = field(default=None, init=False)
@@ -151,7 +153,8 @@ class Session:
     def _tried(self, deed: Callable[[Any], Any], event: Any = None) -> None:
         """Does a deed; what hinders it is said on the page, and the plan stays as it was."""
         try:
-            deed(event)
+            with self._doing:
+                deed(event)
         except (ElbowroomError, OSError) as error:
             self.panel.say(self.words("plan.trouble", text=" ".join(str(error).split())))
             self._show(self.planner.layout)
