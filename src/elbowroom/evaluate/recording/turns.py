@@ -72,9 +72,10 @@ class InTurns:
         """Lets the open file be ended beside the run, as that of a whole run is after it."""
         if self._turn is None:
             return
-        self._ending.append(threading.Thread(target=self._ended, args=(self._turn,)))
+        ending = threading.Thread(target=self._ended, args=(self._turn,))
+        self._ending = [*(each for each in self._ending if each.is_alive()), ending]
         self._turn = None
-        self._ending[-1].start()
+        ending.start()
 
     def _ended(self, turn: WholeRun) -> None:
         turn.end()
