@@ -11,7 +11,7 @@ HEARD = 9
 """Of so many arrivals the period of a camera is the median of what lies between."""
 PRICE = 1 / 7
 """A millisecond of waiting is worth it where images are younger by so many on average. Of cameras that expose together
-those are awaited of which an eighth of the period is over; cameras that run free are never awaited."""
+those are awaited of which an eighth of the period is over; of cameras that run free at most the next image is."""
 LEAST = 3
 """After so many images a camera's period is known."""
 SLACK, STEP = 0.25, 1 / 32
